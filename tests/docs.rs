@@ -20,14 +20,20 @@ between
 after
 ";
 
-/// The README and every page under `docs/`.
+/// The pages at the root, and every page under `docs/` and `docs/guide/`.
 fn pages() -> Vec<(PathBuf, String)> {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
-    let docs =
-        fs::read_dir(root.join("docs")).expect("a page").map(|entry| entry.expect("a page").path());
-    let markdown = docs.filter(|path| path.extension().is_some_and(|end| end == "md"));
-    let paths = markdown.chain([root.join("README.md")]);
-    paths.map(|path| (path.clone(), fs::read_to_string(path).expect("a page"))).collect()
+    let mut paths =
+        ["README.md", "CONTRIBUTING.md", "CHANGELOG.md"].map(|name| root.join(name)).to_vec();
+    for folder in ["docs", "docs/guide"] {
+        let files = fs::read_dir(root.join(folder)).expect("a folder of pages");
+        let files = files.map(|entry| entry.expect("a page").path());
+        paths.extend(files.filter(|path| path.extension().is_some_and(|end| end == "md")));
+    }
+    paths
+        .into_iter()
+        .map(|path| (path.clone(), fs::read_to_string(path).expect("a page")))
+        .collect()
 }
 
 #[test]
@@ -59,6 +65,30 @@ fn every_link_to_a_file_leads_to_one() {
             assert!(found.exists(), "{}: no {}", path.display(), found.display());
         }
     }
+}
+
+#[test]
+fn every_link_to_a_heading_leads_to_one() {
+    for (path, text) in pages() {
+        for target in text.split("](").skip(1).filter_map(|rest| rest.split(')').next()) {
+            let Some((file, heading)) = target.split_once('#') else { continue };
+            if file.contains("://") {
+                continue;
+            }
+            let file =
+                if file.is_empty() { path.clone() } else { path.parent().unwrap().join(file) };
+            let other = fs::read_to_string(&file).expect("a page");
+            let mut headings = other.lines().filter(|line| line.starts_with('#')).map(anchor);
+            assert!(headings.any(|one| one == heading), "{}: no {target}", path.display());
+        }
+    }
+}
+
+/// The name that GitHub gives to a heading, for links.
+fn anchor(heading: &str) -> String {
+    let kept = |c: &char| c.is_alphanumeric() || matches!(c, ' ' | '-' | '_');
+    let text = heading.trim_start_matches('#').trim();
+    text.chars().filter(kept).collect::<String>().to_lowercase().replace(' ', "-")
 }
 
 #[test]

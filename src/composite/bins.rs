@@ -1,8 +1,8 @@
 //! Low-precision and Voronoi-enhanced depth \[ZP06, eq. 6 and 10\].
 //!
-//! With `d_min` and `d_max` the nearest and the farthest depth and n bins, both are kept in units
-//! of a bin, that is n times the paper's value (`Departs:` a final product with 1/n would only
-//! round digits away, and no comparison needs it):
+//! `d_min` and `d_max` are the nearest and the farthest depth, and n is the number of bins. Both
+//! depths below are in units of a bin, that is n times the paper's value. (`Departs:` a final
+//! product with 1/n would only round digits away, and no comparison needs it.)
 //!
 //! ```text
 //!   bin(t)        = floor(((t - d_min) / (d_max - d_min)) n), brought into [0, n]          eq. 6
@@ -10,33 +10,36 @@
 //!   ratio         = d_i / r_i, the distance from the splat's centre as a part of its radius
 //! ```
 //!
-//! in this order of operations. Bins may be [moved](DepthBins::moved) towards the eye by a part of a bin; the part is
-//! then added to `((t - d_min) / (d_max - d_min)) n` before that is rounded down. `Departs:` at the rim of a splat the ratio is 1 and eq. 10 gives
-//! the value of the next bin's centre; the ratio therefore ends at 255/256, which added to a bin up
-//! to [`MAX_BINS`] is exact in `f32`.
+//! in this order of operations. Bins may be [moved](DepthBins::moved) towards the eye by a part of
+//! a bin. That part is then added to `((t - d_min) / (d_max - d_min)) n` before rounding down.
 //!
-//! `Departs:` section 5.1 says of an overlap first that the splat with the *lower* weight gives colour
-//! and weight, then that fragments with *lower* weights are culled. The second is meant: eq. 10, and
-//! the words under it, let the fragment nearest to its own centre win, which has the higher weight.
+//! `Departs:` at the rim of a splat the ratio is 1, and eq. 10 gives the value of the next bin's
+//! centre. The ratio therefore ends at 255/256, which added to a bin up to [`MAX_BINS`] is exact in
+//! `f32`.
+//!
+//! `Departs:` section 5.1 contradicts itself about an overlap. It first says that the splat with
+//! the *lower* weight gives colour and weight, then that fragments with *lower* weights are culled.
+//! The second is meant: by eq. 10, and the words under it, the fragment nearest to its own centre
+//! wins, and that fragment has the higher weight.
 //!
 //! Laws, for numbers t >= 0 as depths are:
 //!
-//! - `bin` never falls as t grows: no rounding turns two layers around.
+//! - `bin` never falls as t grows: no rounding swaps two layers.
 //! - Depths in [`d_min`, `d_max`] that differ by at least (1 + 2^-5) `(d_max - d_min) / n` are in
 //!   different bins, and then z decides as the depth does, whatever the ratios. (In exact
-//!   arithmetic 1/n is enough; `f32` with the most bins rounds away up to 2^-5 of one.) Depths
-//!   beyond an end are all in its bin.
+//!   arithmetic 1/n is enough; `f32` with the most bins rounds away up to 2^-5 of a bin.) All
+//!   depths beyond an end are in the bin of that end.
 //! - Within a bin z never falls as the ratio grows: the fragment nearest to its own centre wins.
-//!   Two ratios that differ by no more than the spacing of `f32` at the bin, at most 2^-8, may tie;
-//!   all from 255/256 on do.
+//!   Two ratios may tie if they differ by no more than the spacing of `f32` at the bin, at most
+//!   2^-8; all ratios from 255/256 on tie.
 
 use crate::error::{Error, Result};
 use crate::number::Real;
 
-/// The most bins: z then still tells 256 ratios apart in `f32`.
+/// The most bins: with so many, z still tells 256 ratios apart in `f32`.
 pub const MAX_BINS: u32 = 65_535;
 
-/// The range of depth that is divided, and into how many bins.
+/// The range of depth that is divided, and the number of bins.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Range {
     /// `d_min`: the nearest depth.
@@ -48,7 +51,8 @@ pub struct Range {
 }
 
 impl Range {
-    /// Bins as deep as `epsilon`, or a little less: n = `ceil((d_max - d_min) / epsilon)`, in f64.
+    /// Makes bins as deep as `epsilon`, or a little less: n = `ceil((d_max - d_min) / epsilon)`, in
+    /// f64.
     ///
     /// \[ZP06, section 4.2.1\]: `n >= (d_max - d_min) / epsilon`. At least one bin.
     ///
@@ -57,7 +61,7 @@ impl Range {
     pub fn of_epsilon(nearest: f32, farthest: f32, epsilon: f32) -> Result<Self> {
         let count = ((f64::from(farthest) - f64::from(nearest)) / f64::from(epsilon)).ceil();
         if count <= f64::from(MAX_BINS) {
-            // Saturates: a count below 1 is brought up.
+            // A count below 1 becomes 1.
             let count = if count < 1.0 { 1 } else { count as u32 };
             Ok(Self { nearest, farthest, count })
         } else {
@@ -69,13 +73,13 @@ impl Range {
     }
 }
 
-/// [`Range`] in the numbers of the arithmetic.
+/// A [`Range`] in the numbers of the arithmetic.
 #[derive(Clone, Copy, Debug)]
 pub struct DepthBins<R> {
     nearest: R,
     extent: R,
     count: R,
-    /// By what part of a bin the bins are moved towards the eye, if they are.
+    /// The part of a bin by which the bins are moved towards the eye, if they are moved.
     shift: Option<R>,
 }
 
@@ -84,13 +88,13 @@ impl<R: Real> DepthBins<R> {
     #[must_use]
     pub fn new(range: &Range) -> Self {
         let nearest = R::from_f32(range.nearest);
-        // At most 65,535, so exact.
+        // At most 65,535, so the count is exact.
         let count = R::from_f32(range.count as f32);
         Self { nearest, extent: R::from_f32(range.farthest) - nearest, count, shift: None }
     }
 
-    /// The same bins moved towards the eye by this part of a bin, at least 0 and less than 1. The first and
-    /// the last reach beyond the range as before.
+    /// The same bins moved towards the eye by this part of a bin, at least 0 and less than 1. The
+    /// first and the last bin still reach beyond the range.
     #[must_use]
     pub fn moved(self, shift: f32) -> Self {
         Self { shift: Some(R::from_f32(shift)), ..self }
@@ -102,19 +106,19 @@ impl<R: Real> DepthBins<R> {
         self.bin_of(self.position(t))
     }
 
-    /// The depth in bins from where the first begins, before it is rounded down.
+    /// The depth in bins, counted from the start of the first bin, before it is rounded down.
     #[inline(always)]
     pub fn position(&self, t: R) -> R {
         self.moving(self.unmoved(t))
     }
 
-    /// The same of bins that are not moved.
+    /// The same for bins that are not moved.
     #[inline(always)]
     pub fn unmoved(&self, t: R) -> R {
         ((t - self.nearest) / self.extent) * self.count
     }
 
-    /// The position in these bins of one in the same bins before they were moved.
+    /// The position in these bins, from the position in the same bins before they were moved.
     #[inline(always)]
     pub fn moving(&self, position: R) -> R {
         match self.shift {
@@ -135,7 +139,7 @@ impl<R: Real> DepthBins<R> {
         Self::within(self.bin(t), ratio)
     }
 
-    /// The paper's value of a depth in bins: divided by n.
+    /// The paper's value of a depth in bins: the depth divided by n.
     #[inline]
     pub fn share(&self, z: R) -> R {
         z / self.count

@@ -1,11 +1,11 @@
-//! Every decision on fragments and cells by its name: the one home of their comparisons.
+//! Every decision on fragments and cells, by its name: the one home of their comparisons.
 //!
-//! A decision gives a [`Truth`](crate::number::Truth): a `bool` in `f32` and `f64`. A number that
-//! stands for an interval can take every decision too, and says which are undecided. The
-//! definitions, the fast paths and `explain` ask the same functions. A comparison with NaN is
+//! Each decision gives a [`Truth`](crate::number::Truth): a `bool` in `f32` and `f64`. A number
+//! that stands for an interval can take every decision too, and says which ones are undecided. The
+//! definitions, the fast paths and `explain` call the same functions. A comparison with NaN is
 //! false.
 //!
-//! | decision | operator | tie | asked by |
+//! | decision | operator | tie | used by |
 //! |---|---|---|---|
 //! | [`inside`] | q <= k k | the rim is inside | every splatting pass, discs |
 //! | [`nearer`] | w > than | the fragment that came first stays | visibility splatting |
@@ -23,8 +23,8 @@
 //! | [`meets`] | t - `t_f` <= r + `r_f` | touching spheres meet | merging of centres |
 //! | [`ternary`] | > on both sides | touching spheres blend | gathering |
 //!
-//! Among fragments that come in ascending surfel index, "the one that came first" is the one of the
-//! lower index.
+//! Where fragments come in ascending surfel index, the fragment that came first has the lower
+//! index.
 
 use crate::number::Real;
 
@@ -36,8 +36,8 @@ pub fn inside<R: Real>(q: R, limit: R) -> R::Truth {
     q.le(limit)
 }
 
-/// Whether a fragment of nearness `w` is in front of the nearest so far: `w > than`, strict, so
-/// that of equally near fragments the first one stays.
+/// Whether a fragment of nearness `w` is in front of the nearest so far: `w > than`. The comparison
+/// is strict, so the first of equally near fragments stays.
 ///
 /// Nearness is 1/t or -t, see [`crate::splat`]; `than` may be the nearness of an empty pixel.
 /// Source: visibility splatting, \[GBP04, section 3\], \[ZP06, section 3.1\].
@@ -46,8 +46,8 @@ pub fn nearer<R: Real>(w: R, than: R) -> R::Truth {
     w.gt(than)
 }
 
-/// [`nearer`] for fragments that come in any order of their surfels: of equally near fragments the
-/// one of the lower index is the nearer.
+/// [`nearer`] for fragments that come in any order of their surfels: among equally near fragments,
+/// the one with the lower index is the nearer.
 ///
 /// Source: the id of the compositing pass, \[ZP06, section 3.2\]; `Decided:` the tie.
 #[inline(always)]
@@ -64,20 +64,24 @@ pub fn limit<R: Real>(nearest: R, epsilon: R) -> R {
     nearest + epsilon
 }
 
-/// The epsilon-z test, whether a fragment of depth `t` belongs to the visible surface: `t <= limit`
+/// The epsilon-z test: whether a fragment of depth `t` belongs to the visible surface. `t <= limit`
 /// with the [`limit`] of its pixel, the limit included.
 ///
-/// The conservative test of \[ZP06, section 3.2, Fig. 5, line 6\] and of the 2+1-pass methods
-/// before it. Laws: the nearest fragment always passes; epsilon = 0 keeps the depth of the nearest
-/// alone; epsilon = +inf keeps everything; a greater epsilon never drops a fragment that a smaller
-/// kept.
+/// This is the conservative test of \[ZP06, section 3.2, Fig. 5, line 6\] and of the 2+1-pass
+/// methods before it. Laws:
+///
+/// - The nearest fragment always passes.
+/// - epsilon = 0 keeps only the fragments at the nearest depth.
+/// - epsilon = +inf keeps everything.
+/// - A greater epsilon never drops a fragment that a smaller one kept.
 #[inline(always)]
 pub fn visible<R: Real>(t: R, limit: R) -> R::Truth {
     t.le(limit)
 }
 
 /// Whether a fragment of depth `t` lies behind every layer so far: `t > limit`, with the [`limit`]
-/// of the last layer; -inf before the first. What was [`visible`] in a layer is in no other.
+/// of the last layer; -inf before the first. A fragment that was [`visible`] in a layer is in no
+/// other.
 ///
 /// Source: depth peeling, see [`crate::method::peeling`].
 #[inline(always)]
@@ -85,9 +89,9 @@ pub fn beyond<R: Real>(t: R, limit: R) -> R::Truth {
     t.gt(limit)
 }
 
-/// Whether a fragment passes a depth test in bins: `z < than`, strict, with its
+/// Whether a fragment passes a depth test in bins: `z < than`, strict. z is its
 /// [bin](super::bins::DepthBins::bin) or its [Voronoi-enhanced
-/// depth](super::bins::DepthBins::voronoi); `than` is +inf where there is none yet.
+/// depth](super::bins::DepthBins::voronoi); `than` is +inf where there is no fragment yet.
 ///
 /// Source: \[ZP06, eq. 6 and 10\].
 #[inline(always)]
@@ -95,17 +99,17 @@ pub fn nearer_bin<R: Real>(z: R, than: R) -> R::Truth {
     z.lt(than)
 }
 
-/// Whether a depth is in front of another: `t < than`, strict, so that of equal depths the first
-/// one stays; +inf is in front of nothing.
+/// Whether a depth is in front of another: `t < than`. The comparison is strict, so the first of
+/// equal depths stays; +inf is in front of nothing.
 ///
-/// Source: the nearest sample of a pixel \[MKC08, section 3.1\], the foremost of four
-/// \[MKC08, section 3.2\], \[MOC08, section 3.1\].
+/// Source: the nearest sample of a pixel \[MKC08, section 3.1\], the foremost of four \[MKC08,
+/// section 3.2\], \[MOC08, section 3.1\].
 #[inline(always)]
 pub fn before<R: Real>(t: R, than: R) -> R::Truth {
     t.lt(than)
 }
 
-/// [`before`], and of equal depths the one of the lower surfel index is in front.
+/// [`before`], and among equal depths the one with the lower surfel index is in front.
 ///
 /// Source: the average of the groups of Algorithm 2, \[ZP06, section 3.3\]; `Decided:` the tie.
 #[inline(always)]
@@ -113,7 +117,7 @@ pub fn before_or_lower<R: Real>((t, surfel): (R, u32), (than, id): (R, u32)) -> 
     t.lt(than) | (t.le(than) & R::Truth::from(surfel < id))
 }
 
-/// Whether a fragment of this opacity hides all that is behind: `alpha >= 1`.
+/// Whether a fragment with this opacity hides everything behind it: `alpha >= 1`.
 ///
 /// Source: \[ZP06, section 5.2.3\].
 #[inline(always)]
@@ -121,8 +125,8 @@ pub fn opaque<R: Real>(alpha: R) -> R::Truth {
     alpha.ge(R::ONE)
 }
 
-/// Whether an ellipse holds a point: `square > 0` and `form <= square`, the rim included, see
-/// [`crate::splat::ellipse`]. An edge-on disc, whose form is infinite or NaN, holds nothing.
+/// Whether an ellipse contains a point: `square > 0` and `form <= square`, the rim included, see
+/// [`crate::splat::ellipse`]. An edge-on disc, whose form is infinite or NaN, contains nothing.
 ///
 /// Source: \[MKC08, section 3.2\], \[MOC08, section 3.2\].
 #[inline(always)]
@@ -130,8 +134,8 @@ pub fn holds<R: Real>(form: R, square: R) -> R::Truth {
     square.gt(R::ZERO) & form.le(square)
 }
 
-/// Whether an interval of depth that begins at `front` overlaps with one that begins no later and
-/// ends at `end`: `front <= end`, touching included.
+/// Whether an interval of depth that begins at `front` overlaps an interval that begins no later
+/// and ends at `end`: `front <= end`, touching included.
 ///
 /// Source: \[MKC08, section 3.2\].
 #[inline(always)]
@@ -139,8 +143,8 @@ pub fn overlaps<R: Real>(front: R, end: R) -> R::Truth {
     front.le(end)
 }
 
-/// Whether a cell whose interval begins at `front` is occluded by the interval of its parent:
-/// `front > end`, behind the interval; with `outside` also `front < begin`, before the interval.
+/// Whether the interval of a parent occludes a cell whose interval begins at `front`:
+/// `front > end`, behind the interval. With `outside` also `front < begin`, before the interval.
 ///
 /// Source: \[MKC08, section 3.3\].
 #[inline(always)]
@@ -148,8 +152,8 @@ pub fn occluded<R: Real>(front: R, [begin, end]: [R; 2], outside: bool) -> R::Tr
     front.gt(end) | (R::Truth::from(outside) & front.lt(begin))
 }
 
-/// Whether a centre of radius `extent` pixels moves on from a level that can show radii up to
-/// `reach`: `extent > reach`; NaN moves on too.
+/// Whether a centre with a radius of `extent` pixels moves on from a level that can show radii up
+/// to `reach`: `extent > reach`; NaN moves on too.
 ///
 /// Source: \[MOC08, section 3.1, eq. 1\].
 #[inline(always)]
@@ -161,23 +165,24 @@ pub fn moves<R: Real>(extent: R, reach: R) -> R::Truth {
 /// world units, `t >= t_f`.
 ///
 /// `Departs:` \[MOC08, section 3.1\] says "its depth is less than the foremost depth minus the sum
-/// of their radii", which no depth behind the foremost can be.
+/// of their radii", which is impossible for a depth behind the foremost.
 #[inline(always)]
 pub fn meets<R: Real>([t, r]: [R; 2], [t_front, r_front]: [R; 2]) -> R::Truth {
     (t - t_front).le(r + r_front)
 }
 
-/// Where a centre lies against the front of a pixel: before, behind, or else near enough to blend.
+/// Where a centre lies relative to the front of a pixel: before, behind, or else near enough to
+/// blend.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Ternary<T> {
-    /// The centre hides the front: the sums of the pixel start anew.
+    /// The centre hides the front: the sums of the pixel start again.
     pub before: T,
     /// The front hides the centre: nothing happens.
     pub behind: T,
 }
 
-/// The ternary test: `before` if `t_f - t > r + r_f`, `behind` if `t - t_f > r + r_f`. An empty
-/// front, of depth +inf, has the centre before it.
+/// The ternary test: `before` if `t_f - t > r + r_f`, `behind` if `t - t_f > r + r_f`. Every centre
+/// is before an empty front, whose depth is +inf.
 ///
 /// Source: \[MOC08, section 3.2\].
 #[inline(always)]

@@ -1,7 +1,7 @@
 //! The compositing operator over the depth-images of groups \[ZP06, section 3.2, Fig. 5\].
 //!
-//! [`compose`] is n-ary, and has to be: the epsilon-z test of one image needs the nearest depth of
-//! all. With `t_k`, the depth of image k, and its weighted attributes:
+//! [`compose`] takes all images at once, because the epsilon-z test of one image needs the nearest
+//! depth of all. `t_k` is the depth of image k, which also holds weighted attributes:
 //!
 //! ```text
 //!   nearest = the least t_k                                         line 4
@@ -12,22 +12,23 @@
 //! Normalization, line 11, is [`super::sum::average`]. Laws:
 //!
 //! - An empty image (depth +inf) is neutral.
-//! - epsilon = 0 keeps the images of the nearest depth alone; epsilon = +inf sums all that are not
+//! - epsilon = 0 keeps only the images of the nearest depth; epsilon = +inf sums all that are not
 //!   empty.
 //! - Relabelling the groups changes nothing but the order of the sums.
-//! - Taking one fragment out of an image into an image of its own changes nothing but the order of
-//!   the sums: what counts is the set of fragments. (Splitting a group can show a fragment that the
-//!   depth test of the whole group hid, and, if that is the Voronoi one, hide another by a nearer
-//!   depth: that is the depth test's doing, not this operator's.)
-//! - It is **not** associative: folding it over pairs is another function. With epsilon = 1 and
-//!   depths 0, 0.75, 1.5, all three together keep the first two; `(1 with 2) with 0` keeps all
-//!   three if the pair is represented by its nearest depth, 0.75 - the pair was blended before the
-//!   nearest was known. So a backend may not composite images as they come.
+//! - Moving one fragment out of an image into an image of its own changes nothing but the order of
+//!   the sums, because only the set of fragments counts. (Splitting a group is different. It can
+//!   show a fragment that the depth test of the whole group hid. If that depth test is the Voronoi
+//!   one, the split can also hide another fragment by a nearer depth. The depth test causes this,
+//!   not this operator.)
+//! - It is **not** associative: folding it over pairs is another function. Take epsilon = 1 and
+//!   depths 0, 0.75, 1.5. All three together keep the first two. `(1 with 2) with 0` keeps all
+//!   three if the pair is represented by its nearest depth, 0.75, because the pair was blended
+//!   before the nearest depth was known. So a backend may not composite images as they come.
 
 use super::{decide, sum};
 use crate::number::{Exact, Real};
 
-/// What a depth-image holds at a pixel: the attributes of one fragment, times its weight.
+/// The content of a depth-image at a pixel: the attributes of one fragment, times its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct WeightedFragment<R> {
     /// Depth t of the fragment; +inf where the image is empty.
@@ -43,7 +44,7 @@ pub struct WeightedFragment<R> {
 }
 
 impl<R> WeightedFragment<R> {
-    /// Each number in another arithmetic.
+    /// Converts each number to another arithmetic.
     #[must_use]
     pub fn map<S>(self, f: impl Fn(R) -> S) -> WeightedFragment<S> {
         WeightedFragment {
@@ -66,7 +67,7 @@ impl<R: Real> WeightedFragment<R> {
         opacity: R::ZERO,
     };
 
-    /// One fragment: each attribute is multiplied by the weight once.
+    /// Makes one fragment: each attribute is multiplied by the weight once.
     #[inline(always)]
     #[must_use]
     pub fn new(depth: R, weight: R, normal: [R; 3], color: [R; 3], opacity: R) -> Self {
@@ -87,7 +88,7 @@ impl<R: Real> WeightedFragment<R> {
 
 /// The operator of Fig. 5 over the samples of all images at one pixel, in the order of the groups.
 ///
-/// Gives the sums, with the nearest depth, and how many samples passed the epsilon-z test.
+/// Returns the sums, with the nearest depth, and how many samples passed the epsilon-z test.
 /// `epsilon` is >= 0 and may be +inf.
 pub fn compose<R: Exact>(
     samples: &[WeightedFragment<R>],
@@ -100,7 +101,8 @@ pub fn compose<R: Exact>(
     let limit = decide::limit(sums.depth, epsilon);
     let mut count = 0;
     for sample in samples {
-        // An empty sample passes where epsilon or the nearest depth is infinite, and adds nothing.
+        // An empty sample passes where epsilon or the nearest depth is infinite, but it must not
+        // count.
         if sample.depth < R::INFINITY && decide::visible(sample.depth, limit) {
             sums.add(sample);
             count += 1;

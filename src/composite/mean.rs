@@ -1,7 +1,7 @@
 //! The average of up to four neighbours \[MKC08, sections 3.2 and 3.3\], \[MOC08, section 3.1\].
 //!
-//! With weights `w_j` > 0 for the neighbours that take part, in this order of operations, an absent
-//! neighbour's term and weight being 0:
+//! The weights `w_j` > 0 belong to the neighbours that take part; the term and the weight of an
+//! absent neighbour are 0. In this order of operations:
 //!
 //! ```text
 //!   average = ((w_0 a_0 + w_1 a_1) + (w_2 a_2 + w_3 a_3)) (1 / ((w_0 + w_1) + (w_2 + w_3)))
@@ -9,11 +9,16 @@
 //! ```
 //!
 //! `Decided:` the bounds. They change nothing but rounding (three equal numbers, added and divided
-//! by 3, can differ from them). They are a part of the definition all the same: an average without them
-//! can lie a rounding outside, and is wrong there. They give the laws: a constant is reproduced exactly, an average
-//! never leaves the hull of its terms, and since the sums pair neighbours 0 with 1 and 2 with 3,
-//! exchanging left with right or top with bottom changes no bit. Of 1, 2 or 4 terms of weight 1 it
-//! is the plain mean.
+//! by 3, can differ from them). They are a part of the definition all the same: an average without
+//! them can lie a rounding outside, and is wrong there. The bounds and the order of the sums give
+//! the laws:
+//!
+//! - A constant is reproduced exactly.
+//! - An average never leaves the hull of its terms.
+//! - The sums pair neighbours 0 with 1 and 2 with 3, so exchanging left with right or top with
+//!   bottom changes no bit.
+//!
+//! For 1, 2 or 4 terms of weight 1 the average is the plain mean.
 
 use super::decide;
 use crate::number::{Exact, Real};
@@ -28,7 +33,7 @@ pub struct Mean<R> {
 }
 
 impl<R: Real> Mean<R> {
-    /// The weights of neighbours; those of which `takes` is false are ignored.
+    /// Sets the weights of the neighbours; a neighbour whose `takes` is false is ignored.
     #[inline(always)]
     #[must_use]
     pub fn new(takes: [bool; 4], weights: [R; 4]) -> Self {
@@ -36,14 +41,14 @@ impl<R: Real> Mean<R> {
         Self { takes, weights: w, scale: R::ONE / ((w[0] + w[1]) + (w[2] + w[3])) }
     }
 
-    /// Each with the weight 1.
+    /// Gives each neighbour the weight 1.
     #[inline(always)]
     #[must_use]
     pub fn plain(takes: [bool; 4]) -> Self {
         Self::new(takes, [R::ONE; 4])
     }
 
-    /// The average of a number, see the module page; of none at all it means nothing.
+    /// The average of a number, see the module page; meaningless if no neighbour takes part.
     #[inline(always)]
     #[must_use]
     pub fn of(&self, a: [R; 4]) -> R {
@@ -52,7 +57,7 @@ impl<R: Real> Mean<R> {
         mean.clamped(self.least(a), self.greatest(a)) + R::ZERO
     }
 
-    /// The least of those that take part; +inf if there are none.
+    /// The least value that takes part; +inf if there are none.
     #[inline(always)]
     #[must_use]
     pub fn least(&self, a: [R; 4]) -> R {
@@ -60,7 +65,7 @@ impl<R: Real> Mean<R> {
         (or(0).at_most(or(1))).at_most(or(2).at_most(or(3)))
     }
 
-    /// The greatest of those that take part; -inf if there are none.
+    /// The greatest value that takes part; -inf if there are none.
     #[inline(always)]
     #[must_use]
     pub fn greatest(&self, a: [R; 4]) -> R {
@@ -69,11 +74,11 @@ impl<R: Real> Mean<R> {
     }
 }
 
-/// Which of four neighbours belong to the surface in front: of the `candidates` the one with the
-/// least `front`, ties to the earlier, and all whose `front` is not beyond its `back`.
+/// Which of four neighbours belong to the surface in front: the candidate with the least `front`,
+/// ties to the earlier, and all `candidates` whose `front` is not beyond the `back` of that one.
 ///
-/// Intervals [front, back] that overlap, since no other begins before that of the frontmost. The
-/// second result is which one is in front, 0 if there is no candidate.
+/// These are the intervals [front, back] that overlap the frontmost, because no other begins before
+/// it. The second result is the index of the frontmost, 0 if there is no candidate.
 #[inline(always)]
 #[must_use]
 pub fn foremost<R: Exact>(

@@ -1,12 +1,12 @@
-//! Alpha-blending of transparent layers.
+//! Alpha-blend transparent layers.
 //!
-//! Colours are accumulated over black, that is, multiplied by their opacity; whatever lies behind
-//! is blended in at the end by what the layers let through.
+//! Colours are accumulated over black, that is, multiplied by their opacity. Whatever lies behind
+//! is blended in at the end, times what the layers let through.
 
 use super::sum;
 use crate::number::Real;
 
-/// Layers that have been blended: their colour over black, and their opacity.
+/// Blended layers: their colour over black, and their opacity.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blend<R> {
     /// Linear RGB over black.
@@ -16,7 +16,7 @@ pub struct Blend<R> {
 }
 
 impl<R> Blend<R> {
-    /// Each number in another arithmetic.
+    /// Converts each number to another arithmetic.
     #[must_use]
     pub fn map<S>(self, f: impl Fn(R) -> S) -> Blend<S> {
         Blend { color: self.color.map(&f), alpha: f(self.alpha) }
@@ -27,14 +27,14 @@ impl<R: Real> Blend<R> {
     /// Nothing: black and transparent.
     pub const CLEAR: Self = Self { color: [R::ZERO; 3], alpha: R::ZERO };
 
-    /// The sum of two, as averaging needs it.
+    /// The sum of two blends, as averaging needs it.
     #[inline(always)]
     #[must_use]
     pub fn plus(&self, other: &Self) -> Self {
         Self { color: sum::plus(self.color, other.color), alpha: self.alpha + other.alpha }
     }
 
-    /// The layers before something opaque: colour + (1 - A) `behind`, of opacity 1.
+    /// Puts the layers in front of something opaque: colour + (1 - A) `behind`, with opacity 1.
     #[inline(always)]
     #[must_use]
     pub fn before(self, behind: [R; 3]) -> Self {
@@ -42,11 +42,11 @@ impl<R: Real> Blend<R> {
         Self { color: sum::plus(self.color, behind.map(|c| through * c)), alpha: R::ONE }
     }
 
-    /// The next nearer layer, back to front: `alpha c + (1 - alpha) below`, of the colour and, with
-    /// c = 1, of the opacity \[ZP06, section 3.3\].
+    /// Blends the next nearer layer, from back to front: `alpha c + (1 - alpha) below`, for the
+    /// colour and, with c = 1, for the opacity \[ZP06, section 3.3\].
     ///
-    /// Laws: alpha = 1 leaves the layer alone, alpha = 0 leaves what was, and the opacity of layers
-    /// is 1 - the product of their 1 - alpha, up to rounding.
+    /// Laws: alpha = 1 leaves only the layer, and alpha = 0 leaves what was there. The opacity of
+    /// layers is 1 - the product of their 1 - alpha, up to rounding.
     #[inline(always)]
     #[must_use]
     pub fn over(self, alpha: R, color: [R; 3]) -> Self {

@@ -14,18 +14,19 @@ pub fn plus<R: Real>(a: [R; 3], b: [R; 3]) -> [R; 3] {
     [a[0] + b[0], a[1] + b[1], a[2] + b[2]]
 }
 
-/// `sum / weight + 0`, component by component; 0 where no weight has arrived. Adding 0 turns a -0,
-/// of an underflow, into +0.
+/// `sum / weight + 0`, component by component; 0 where the weight is 0. An underflow can give -0,
+/// and adding 0 turns it into +0.
 ///
 /// Law: if every value was v, the average is v up to the rounding of the sums.
 #[inline(always)]
 pub fn average<R: Real>(sum: [R; 3], weight: R) -> [R; 3] {
     let some = weight.gt(R::ZERO);
-    // Not by `map`, in which a loop over pixels does not vectorize.
+    // Not by `map`, because a loop over pixels does not vectorize with it.
     [part(some, sum[0], weight), part(some, sum[1], weight), part(some, sum[2], weight)]
 }
 
-/// A component of an average. No closure, which would stay a function where numbers are balls.
+/// A component of an average. It is not a closure, because a closure would not be inlined where
+/// numbers are balls.
 #[inline(always)]
 fn part<R: Real>(some: R::Truth, sum: R, weight: R) -> R {
     R::select(some, sum / weight + R::ZERO, R::ZERO)

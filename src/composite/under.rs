@@ -1,7 +1,7 @@
-//! Alpha-blending of transparent layers from front to back: each goes under what is there.
+//! Alpha-blend transparent layers from front to back: each goes under what is there.
 //!
-//! As [Porter, Duff 1984, *Compositing Digital Images*] have it, with the colour over black, that
-//! is, multiplied by its opacity:
+//! The rule comes from [Porter, Duff 1984, *Compositing Digital Images*], with the colour over
+//! black, that is, multiplied by its opacity:
 //!
 //! ```text
 //!   start    C = 0, A = 0, T = 1
@@ -9,26 +9,28 @@
 //!            T = T (1 - a)
 //! ```
 //!
-//! The layers nearest to the eye lose no digits, and T tells when there is no more to see. A factor
-//! of 0 adds nothing, even of an infinite colour. Laws: a = 1 on a clear pixel gives the layer's
-//! colour unchanged and hides the rest; a = 0 changes nothing; blending the same layers from back
-//! to front gives the same up to rounding.
+//! The layers nearest to the eye lose no digits, and T tells when nothing more can be seen. A
+//! factor of 0 adds nothing, not even from an infinite colour. Laws:
+//!
+//! - a = 1 on a clear pixel gives the layer's colour unchanged and hides the rest.
+//! - a = 0 changes nothing.
+//! - Blending the same layers from back to front gives the same up to rounding.
 
 use crate::number::Real;
 
-/// Layers that have been blended, and what they let through.
+/// Blended layers, and the light that they let through.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Under<R> {
     /// C: linear RGB over black.
     pub color: [R; 3],
     /// A: opacity; rounding of the sum may leave it a few ulp above 1.
     pub alpha: R,
-    /// T: the part of what lies behind that is seen. In [0, 1].
+    /// T: how much of the background is seen. In [0, 1].
     pub through: R,
 }
 
 impl<R> Under<R> {
-    /// Each number in another arithmetic.
+    /// Converts each number to another arithmetic.
     #[must_use]
     pub fn map<S>(self, f: impl Fn(R) -> S) -> Under<S> {
         Under { color: self.color.map(&f), alpha: f(self.alpha), through: f(self.through) }
@@ -39,7 +41,8 @@ impl<R: Real> Under<R> {
     /// Nothing: black and transparent.
     pub const CLEAR: Self = Self { color: [R::ZERO; 3], alpha: R::ZERO, through: R::ONE };
 
-    /// The next farther layer, of an opacity in [0, 1] and a colour that is not multiplied by it.
+    /// Blends the next farther layer; the opacity is in [0, 1], and the colour is not multiplied by
+    /// it.
     #[inline(always)]
     #[must_use]
     pub fn under(self, alpha: R, color: [R; 3]) -> Self {

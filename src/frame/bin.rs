@@ -1,25 +1,26 @@
-//! From screen bounds to tiles, by counting sort, at the resolution that suits the bounds.
+//! Sort screen bounds into tiles, by counting sort, at the resolution that suits the bounds.
 
 use super::{Grid, Rect};
 
-/// Which tiles a batch of bounds touches: for each tile indices in ascending order.
+/// The bounds that touch each tile: for each tile, indices in ascending order.
 ///
-/// Bounds that touch at most 16 tiles are listed in each of these. Larger ones are listed in cells of
-/// 2 x 2, 4 x 4 ... tiles, the smallest of which they touch at most 16, and a tile has the lists of
-/// all cells that it is in. So memory is at most 64 bytes a splat whatever its size. A splat is met by
-/// about twice as many tiles as it touches (at most four times in the tests, of up to 13 x 10 tiles),
-/// and by many more if it is far longer than 16 tiles and thin.
+/// Bounds that touch at most 16 tiles are listed in each of these tiles. Larger bounds are listed
+/// in cells of 2 x 2, 4 x 4 ... tiles, as small as possible so that the bounds touch at most 16
+/// cells. A tile has the lists of all cells that it is in. So memory is at most 64 bytes a splat,
+/// whatever the size of the splat. About twice as many tiles visit a splat as it touches (at most
+/// four times in the tests, with up to 13 x 10 tiles). Many more tiles visit a splat that is far
+/// longer than 16 tiles and thin.
 #[derive(Clone, Debug, Default)]
 pub struct Bins {
     /// Columns of tiles.
     columns: u32,
-    /// Those of the levels that list anything, finest first.
+    /// The levels that list anything, finest first.
     levels: Vec<Level>,
 }
 
-/// The most cells that bounds are listed in.
+/// The most cells in which one item is listed.
 const MOST: u32 = 16;
-/// Levels there can be: cells of up to 2^16 tiles a side, which no picture exceeds.
+/// How many levels there can be: cells of up to 2^16 tiles a side, which no picture exceeds.
 const LEVELS: usize = 17;
 
 /// The lists of cells of 2^shift x 2^shift tiles.
@@ -28,7 +29,7 @@ struct Level {
     shift: u32,
     /// Columns of cells.
     columns: u32,
-    /// Where the list of each cell starts in `items`, and where the last ends.
+    /// Where the list of each cell starts in `items`, and where the last list ends.
     starts: Vec<u32>,
     items: Vec<u32>,
 }
@@ -40,14 +41,14 @@ fn tiles(grid: &Grid, r: &Rect) -> Rect {
     coarser(r, grid.side.map(u32::trailing_zeros))
 }
 
-/// The cells of 2^x by 2^y that a rectangle touches, which is not empty.
+/// The cells of 2^x by 2^y that a rectangle touches; the rectangle is not empty.
 #[inline(always)]
 fn coarser(r: &Rect, [x, y]: [u32; 2]) -> Rect {
     let end = |end: u32, shift: u32| ((end - 1) >> shift) + 1;
     Rect { x0: r.x0 >> x, y0: r.y0 >> y, x1: end(r.x1, x), y1: end(r.y1, y) }
 }
 
-/// The level of bounds that touch these tiles, and the cells that they touch there.
+/// The level for bounds that touch these tiles, and the cells that they touch on that level.
 #[inline(always)]
 fn place(tiles: Rect) -> (u32, Rect) {
     let (mut shift, mut cells) = (0, tiles);
@@ -63,7 +64,7 @@ impl Bins {
     #[must_use]
     pub fn new(grid: &Grid, count: usize, bounds: impl Fn(usize) -> Rect) -> Self {
         let placed = |i: usize| place(tiles(grid, &bounds(i)));
-        // Count; a level is made when the first is listed in it.
+        // Count first; a level is made when the first item is listed in it.
         let mut levels: [Option<Level>; LEVELS] = Default::default();
         for i in 0..count {
             let (shift, cells) = placed(i);
@@ -73,7 +74,7 @@ impl Bins {
         for level in levels.iter_mut().flatten() {
             level.sum();
         }
-        // Fill, in ascending order.
+        // Fill in ascending order.
         for i in 0..count {
             let (shift, cells) = placed(i);
             if let Some(level) = &mut levels[shift as usize] {
@@ -83,7 +84,7 @@ impl Bins {
         Self { columns: grid.columns, levels: levels.into_iter().flatten().collect() }
     }
 
-    /// At most how many indices [`Bins::for_each`] visits.
+    /// The most indices that [`Bins::for_each`] visits.
     #[must_use]
     pub fn count(&self, tile: usize) -> usize {
         self.lists(tile).map(<[u32]>::len).sum()
@@ -92,6 +93,7 @@ impl Bins {
     /// Calls `visit` for each index whose bounds may touch the tile, in ascending order.
     #[inline(always)]
     pub fn for_each(&self, tile: usize, mut visit: impl FnMut(u32)) {
+        // Lists of tiles only: there is one level, and its list is in order.
         if self.is_exact() {
             return self
                 .levels
@@ -104,7 +106,8 @@ impl Bins {
             lists[left] = list;
             left += 1;
         }
-        // The list that begins lowest, up to where another one begins.
+        // Several sorted lists are merged: take from the list that begins lowest, up to where
+        // another begins.
         while left > 1 {
             let lowest =
                 (1..left).fold(0, |low, k| if lists[k][0] < lists[low][0] { k } else { low });
@@ -117,6 +120,7 @@ impl Bins {
                 visit(first);
                 lists[lowest] = rest;
             }
+            // The last list takes the place of an exhausted one.
             if lists[lowest].is_empty() {
                 left -= 1;
                 lists[lowest] = lists[left];
@@ -125,11 +129,13 @@ impl Bins {
         lists[0].iter().for_each(|&i| visit(i));
     }
 
-    /// Gives the bounds new indices, in the order in which the tiles, one after the other, first list
-    /// them, and returns the old index of each: what is kept in this order lies side by side for a
-    /// tile. Tiles visit the same bounds as before, in the same order, which is no longer that of the
-    /// indices. None, and nothing changes, if nothing is listed, or if the lists are not
-    /// [exact](Bins::is_exact): those of several levels are merged by their indices.
+    /// Renumbers the bounds in the order in which the tiles, one after the other, first list them,
+    /// and returns the old index of each. Data kept in this order lies side by side for a tile.
+    ///
+    /// Tiles visit the same bounds as before, in the same order, which is no longer the order of
+    /// the indices. Returns none and changes nothing in two cases: nothing is listed, or the lists
+    /// are not [exact](Bins::is_exact), because lists of several levels are merged by their
+    /// indices.
     pub(crate) fn renumber(&mut self, count: usize) -> Option<Vec<u32>> {
         if !self.is_exact() {
             return None;
@@ -139,7 +145,8 @@ impl Bins {
         let mut next = 0;
         for item in &mut level.items {
             let number = &mut numbers[*item as usize];
-            // Without a branch, which would be foreseen badly: about every sixth index is listed again.
+            // No branch, because the processor would predict it badly: about every sixth index is
+            // listed again.
             let fresh = *number == u32::MAX;
             *number = if fresh { next } else { *number };
             old[*number as usize] = *item;
@@ -156,7 +163,7 @@ impl Bins {
         self.levels.iter().map(move |level| level.list(cell(level) as usize))
     }
 
-    /// Whether the lists are of tiles, so that bounds touch each tile that they are visited for.
+    /// Whether every list belongs to one tile, so that bounds touch each tile that visits them.
     #[must_use]
     pub fn is_exact(&self) -> bool {
         self.levels.iter().all(|level| level.shift == 0)
@@ -167,9 +174,9 @@ impl Level {
     fn new(grid: &Grid, shift: u32) -> Self {
         let cells = |tiles: u32| ((tiles - 1) >> shift) + 1;
         let (columns, rows) = (cells(grid.columns), cells(grid.rows));
-        // One place more at the end, and counts go two places late: after `sum` the list of a cell
-        // starts one place late, and `put` moves each start to where the list ends, which is the
-        // start of the next.
+        // One place more at the end, and counts go two places late. After `sum` the list of a cell
+        // starts one place late, and `put` moves each start to where its list ends, which is the
+        // start of the next list.
         let starts = vec![0; (columns * rows) as usize + 2];
         Self { shift, columns, starts, items: Vec::new() }
     }
@@ -180,7 +187,7 @@ impl Level {
         &self.items[self.starts[cell] as usize..self.starts[cell + 1] as usize]
     }
 
-    /// From counts to starts.
+    /// Turns counts into starts.
     fn sum(&mut self) {
         let mut sum = 0;
         for start in &mut self.starts {
@@ -190,7 +197,7 @@ impl Level {
         self.items = vec![0; sum as usize];
     }
 
-    /// Appends an index to the lists of cells.
+    /// Appends an index to the lists of these cells.
     #[inline(always)]
     fn put(&mut self, cells: &Rect, index: u32) {
         each_cell(self.columns, cells, |cell| {
@@ -246,7 +253,8 @@ mod tests {
                 }
             }
             for (bounds, met) in bounds.iter().zip(met) {
-                // 5 tiles a side can lie in 3 cells of 2, which makes 36 of 25; 9 in 4 of 4.
+                // 5 tiles a side can lie in 3 cells of 2, so 36 tiles instead of 25; 9 tiles a side
+                // in 4 cells of 4.
                 let touched = tiles(&grid, bounds).pixels();
                 prop_assert!(met <= 4 * touched, "{met} tiles for {touched}");
             }

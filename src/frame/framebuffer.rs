@@ -1,4 +1,4 @@
-//! The framebuffer: depth, stencil and floating accumulation.
+//! The framebuffer: depth, stencil and floating-point accumulation.
 
 use super::tile::TileMut;
 use super::{Exec, Grid, NO_ID, Plane};
@@ -7,19 +7,20 @@ use crate::number::Real;
 /// Which planes a picture needs besides depth, id and weight.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Wanted {
-    /// Normals: where there is light.
+    /// Normals: needed where there is light.
     pub normal: bool,
-    /// Colours: where the surfels have their own.
+    /// Colours: needed where the surfels have their own.
     pub color: bool,
     /// Counts of fragments and margins of decisions.
     pub observed: bool,
 }
 
-/// What splats are drawn into.
+/// The planes that splats are drawn into.
 ///
-/// `depth` holds nearness (see [`crate::splat`]) while splats are drawn, as the depth buffer of a
-/// GPU holds 1/t, and depth t once resolved; `color` and `normal` hold weighted sums while splats
-/// are drawn, and averages once resolved. A plane that the picture does not need is not there.
+/// While splats are drawn, `depth` holds nearness (see [`crate::splat`]), as the depth buffer of a
+/// GPU holds 1/t; once resolved, it holds depth t. `color` and `normal` hold weighted sums while
+/// splats are drawn, and averages once resolved. A plane that the picture does not need is not
+/// allocated.
 #[derive(Clone, Debug)]
 pub struct Framebuffer<R> {
     /// Width in pixels.
@@ -36,7 +37,7 @@ pub struct Framebuffer<R> {
     pub normal: Option<Plane<[R; 3]>>,
     /// Weighted sum of colours, then their average; linear RGB.
     pub color: Option<Plane<[R; 3]>>,
-    /// Fragments that were accumulated, up to 255.
+    /// How many fragments were accumulated, up to 255.
     pub stencil: Option<Plane<u8>>,
     /// How close the nearest decision came to flipping, in units of the last place.
     pub margin: Option<Plane<R>>,
@@ -75,7 +76,7 @@ impl<R: Real> Framebuffer<R> {
         }
     }
 
-    /// The tiles, row by row.
+    /// Cuts the planes into tiles, row by row.
     pub fn cut(&mut self, grid: &Grid, exec: &Exec) -> Vec<FramebufferTile<'_, R>> {
         let depth = grid.cut(&mut self.depth, exec);
         let mut id = grid.cut(&mut self.id, exec).into_iter();

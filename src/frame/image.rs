@@ -1,8 +1,8 @@
-//! A picture as files hold it: what is compared, measured and hashed.
+//! A picture as files hold it: the form that is compared, measured and hashed.
 
 use super::{ChannelData, Frame, Plane};
 
-/// A picture as files hold it: channels by name, without the planes that they are of.
+/// A picture as files hold it: channels by name, without the planes that the channels belong to.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Image {
     /// Width in pixels, at least 1.
@@ -25,7 +25,7 @@ pub enum Values {
 }
 
 impl From<&Frame<f32>> for Image {
-    /// What a file of the frame holds, text aside.
+    /// Takes what a file of the frame would hold, except the text.
     fn from(frame: &Frame<f32>) -> Self {
         let channels = frame.channels().into_iter().map(|channel| {
             let values = match channel.data {

@@ -1,14 +1,15 @@
-//! What is rendered into: planes, named planes, the framebuffer, bins and tiles.
+//! Hold a picture, its planes and its tiles.
 //!
-//! - [`plane`], [`rect`], [`named`]: pixels, rectangles of them, and the names they have in files.
+//! - [`plane`], [`rect`], [`named`]: pixels, rectangles of pixels, and the names that planes have
+//!   in files.
 //! - [`mod@image`]: a picture as files hold it.
-//! - [`framebuffer`]: depth, stencil and floating accumulation.
-//! - [`pool`]: planes that are used again.
+//! - [`framebuffer`]: depth, stencil and floating-point accumulation.
+//! - [`pool`]: planes that are reused.
 //! - [`raster`]: the pixels of triangles and of lines, exactly.
 //! - [`mod@pyramid`]: the sizes of an image pyramid.
 //! - [`stencil`]: the 8-bit stencil of GPU APIs.
-//! - [`bin`]: from screen bounds to tiles.
-//! - [`tile`]: tiles and the one parallel loop of the crate.
+//! - [`bin`]: sort screen bounds into tiles.
+//! - [`tile`]: tiles, and the one parallel loop of the crate.
 
 pub mod bin;
 pub mod framebuffer;

@@ -1,4 +1,4 @@
-//! Named planes: what a method leaves, in the names that EXR viewers understand.
+//! Named planes: the output of a method, under the names that EXR viewers understand.
 
 use super::Plane;
 use crate::error::{Error, Result};
@@ -7,7 +7,7 @@ use crate::number::Real;
 /// The most bytes of a channel's name: a reader of EXR without its long-names flag takes no more.
 pub const LONGEST_NAME: usize = 31;
 
-/// The values of a named plane; the variant decides the channel names.
+/// The values of a named plane; the variant decides the names of the channels.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Samples<R> {
     /// One number a pixel; the name is the channel: `Z`, `visibility.Z`, `weight`.
@@ -34,7 +34,7 @@ impl<R> Samples<R> {
         }
     }
 
-    /// The values with their rows in the other order.
+    /// The values with their rows in reverse order.
     pub(crate) fn flipped(&self) -> Self
     where
         R: Copy,
@@ -48,7 +48,7 @@ impl<R> Samples<R> {
         }
     }
 
-    /// What a value is, in words.
+    /// The kind of the values, in words.
     fn kind(&self) -> &'static str {
         match self {
             Self::Scalar(_) => "scalar",
@@ -78,7 +78,7 @@ pub struct NamedPlane<R> {
     pub samples: Samples<R>,
 }
 
-/// The planes that a method left, all of one size.
+/// The planes that a method produced, all of one size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Frame<R> {
     /// Width in pixels.
@@ -98,7 +98,7 @@ pub struct Channel<'a> {
     pub data: ChannelData<'a>,
 }
 
-/// The values of a channel: that of pixel `i` is `values[offset + stride * i]`.
+/// The values of a channel: the value of pixel `i` is `values[offset + stride * i]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ChannelData<'a> {
     /// `f32`, strided.
@@ -117,7 +117,7 @@ pub enum ChannelData<'a> {
 }
 
 impl<R> Frame<R> {
-    /// A frame without planes, of so many pixels: [`Frame::push`] adds planes.
+    /// Makes a frame of this many pixels without planes: [`Frame::push`] adds planes.
     ///
     /// ```
     /// use splatref::frame::{Frame, Image, Plane, Samples};
@@ -140,10 +140,10 @@ impl<R> Frame<R> {
     /// Adds a plane.
     ///
     /// # Errors
-    /// [`Error::Invalid`], and the frame stays as it was, if the plane has another size than the
-    /// frame, or if a channel of the plane could not have its name in a file: a name that is empty
-    /// (only a colour may have the empty name, its channels are `R`, `G` and `B`), that is longer
-    /// than [`LONGEST_NAME`], that has a control character, or that is taken.
+    /// [`Error::Invalid`] if the plane has another size than the frame, or if a channel of the
+    /// plane could not have its name in a file; the frame then stays as it was. Such a name is
+    /// empty, longer than [`LONGEST_NAME`], contains a control character, or is already taken.
+    /// (Only a colour may have the empty name, because its channels are `R`, `G` and `B`.)
     pub fn push(&mut self, name: &str, samples: Samples<R>) -> Result<()> {
         let ((width, height), size) = (samples.size(), (self.width, self.height));
         if (width, height) != size {
@@ -153,6 +153,7 @@ impl<R> Frame<R> {
             )));
         }
         let is_color = matches!(samples, Samples::Color(_));
+        // Only the channels of a colour have names of their own: R, G and B.
         if name.is_empty() && !is_color {
             let kind = samples.kind();
             let what = format!("a {kind} plane without a name; only the colour may have none");
@@ -165,6 +166,7 @@ impl<R> Frame<R> {
                      characters"
                 )));
             }
+            // Two planes may share a channel: a vector `a` and a scalar `a.X`.
             let mut others = self.planes.iter().map(|p| p.samples.channel_names(&p.name));
             if others.any(|names| names.contains(&channel)) {
                 return Err(Error::Invalid(format!("two channels are called `{channel}`")));
@@ -174,7 +176,7 @@ impl<R> Frame<R> {
         Ok(())
     }
 
-    /// The frame with one more plane.
+    /// Returns the frame with one more plane.
     ///
     /// # Errors
     /// As [`Frame::push`].
@@ -183,7 +185,7 @@ impl<R> Frame<R> {
         Ok(self)
     }
 
-    /// Puts planes in the place of those of their names, or after all.
+    /// Replaces the planes that have the same names, and appends the others.
     pub(crate) fn put(&mut self, planes: Self) {
         for plane in planes.planes {
             match self.planes.iter_mut().find(|own| own.name == plane.name) {
@@ -199,11 +201,10 @@ impl<R> Frame<R> {
         self.planes.iter().find(|plane| plane.name == name).map(|plane| &plane.samples)
     }
 
-    /// The plane of one number a pixel that is called `name`.
+    /// The plane called `name` with one number a pixel.
     ///
     /// # Errors
-    /// [`Error::Invalid`], which lists the planes that there are, if none of that kind has the
-    /// name.
+    /// [`Error::Invalid`], which lists the frame's planes, if no plane of this kind has the name.
     pub fn scalar(&self, name: &str) -> Result<&Plane<R>> {
         match self.plane(name) {
             Some(Samples::Scalar(plane)) => Ok(plane),
@@ -211,7 +212,7 @@ impl<R> Frame<R> {
         }
     }
 
-    /// The plane of linear RGB that is called `name`; the picture's own has the empty name.
+    /// The plane of linear RGB called `name`; the picture itself has the empty name.
     ///
     /// # Errors
     /// As [`Frame::scalar`].
@@ -222,7 +223,7 @@ impl<R> Frame<R> {
         }
     }
 
-    /// The plane of vectors that is called `name`.
+    /// The plane of vectors called `name`.
     ///
     /// # Errors
     /// As [`Frame::scalar`].
@@ -233,7 +234,7 @@ impl<R> Frame<R> {
         }
     }
 
-    /// The plane of surfel indices that is called `name`.
+    /// The plane of surfel indices called `name`.
     ///
     /// # Errors
     /// As [`Frame::scalar`].
@@ -244,7 +245,7 @@ impl<R> Frame<R> {
         }
     }
 
-    /// The plane of counts that is called `name`.
+    /// The plane of counts called `name`.
     ///
     /// # Errors
     /// As [`Frame::scalar`].
@@ -255,7 +256,7 @@ impl<R> Frame<R> {
         }
     }
 
-    /// Why a lookup found nothing.
+    /// The error of a lookup that found nothing.
     fn missing(&self, kind: &str, name: &str) -> Error {
         let there = self.planes.iter().map(|p| format!("`{}` ({})", p.name, p.samples.kind()));
         let there: Vec<String> = there.collect();
@@ -283,7 +284,7 @@ impl<R: Real> Frame<R> {
 }
 
 impl Frame<f32> {
-    /// Every channel, sorted by name as EXR wants them.
+    /// Every channel, sorted by name, as EXR requires.
     #[must_use]
     pub fn channels(&self) -> Vec<Channel<'_>> {
         let mut channels = Vec::new();

@@ -20,7 +20,7 @@ impl<T> Plane<T> {
         Self { width, height, values: vec![value; width as usize * height as usize] }
     }
 
-    /// A plane of given values, row by row.
+    /// A plane with these values, row by row.
     ///
     /// # Panics
     /// If there are not `width * height` values.
@@ -30,7 +30,7 @@ impl<T> Plane<T> {
         Self { width, height, values }
     }
 
-    /// A value for each pixel, by column and row.
+    /// Computes a value for each pixel from its column and row.
     pub(crate) fn from_pixels([width, height]: [u32; 2], value: impl Fn(u32, u32) -> T) -> Self {
         let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
         Self::from_values(width, height, pixels.map(|(x, y)| value(x, y)).collect())
@@ -59,7 +59,7 @@ impl<T> Plane<T> {
         &mut self.values
     }
 
-    /// The rows of pixels, from the top, to change them.
+    /// The rows of pixels, from the top, writable.
     pub fn rows_mut(&mut self) -> ChunksMut<'_, T> {
         let width = self.width.max(1) as usize;
         self.values.chunks_mut(width)
@@ -76,7 +76,7 @@ impl<T> Plane<T> {
         &self.values[y as usize * self.width as usize + x as usize]
     }
 
-    /// The values with their rows in the other order.
+    /// The values with their rows in reverse order.
     pub(crate) fn flipped(&self) -> Self
     where
         T: Copy,
@@ -84,7 +84,7 @@ impl<T> Plane<T> {
         Self::from_pixels([self.width, self.height], |x, y| *self.at(x, self.height - 1 - y))
     }
 
-    /// A plane of the same size, each value computed from this one's.
+    /// A plane of the same size, each value computed from the value here.
     #[must_use]
     pub fn map<U>(&self, f: impl Fn(&T) -> U) -> Plane<U> {
         let values = self.values.iter().map(f).collect();

@@ -1,11 +1,12 @@
-//! Planes that are used again: the memory of an earlier picture is much of the time of a small one.
+//! Reuse the planes of earlier pictures, because allocating memory takes much of the time of a
+//! small picture.
 
 use super::{Frame, NamedPlane, Plane, Samples};
 
-/// Planes of finished pictures, ready for the next one.
+/// Planes of finished pictures, ready for the next picture.
 ///
-/// A plane that is taken holds any values, those of an earlier picture or 0: whoever takes a plane
-/// writes every pixel.
+/// A plane taken from the pool holds any values, those of an earlier picture or 0, so the caller
+/// must write every pixel.
 #[derive(Debug, Default)]
 pub struct Pool {
     scalars: Vec<Plane<f32>>,
@@ -15,7 +16,7 @@ pub struct Pool {
 }
 
 impl Pool {
-    /// Takes the planes of a picture that nobody looks at any more.
+    /// Takes the planes of a picture that is no longer needed.
     pub fn recycle(&mut self, frame: Frame<f32>) {
         for NamedPlane { samples, .. } in frame.planes {
             match samples {
@@ -47,14 +48,14 @@ impl Pool {
         take(&mut self.counts, size)
     }
 
-    /// Forgets the planes that the last picture did not take: a session never holds more than the
-    /// planes of two pictures.
+    /// Drops the planes that the last picture did not take, so that a session never holds more than
+    /// the planes of two pictures.
     pub fn clear(&mut self) {
         *self = Self::default();
     }
 }
 
-/// A plane of this size; planes of other sizes are dropped on the way.
+/// Takes a plane of this size, and drops planes of other sizes on the way.
 fn take<T: Copy + Default>(planes: &mut Vec<Plane<T>>, [width, height]: [u32; 2]) -> Plane<T> {
     while let Some(plane) = planes.pop() {
         if (plane.width(), plane.height()) == (width, height) {

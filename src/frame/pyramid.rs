@@ -4,12 +4,13 @@ use super::Plane;
 
 /// The width and height of every level, from the picture to the level of one pixel.
 ///
-/// `Decided:` a level is half as wide and half as high as the finer one, rounded up: pixel (X, Y)
-/// stands for the finer pixels (2X, 2Y), (2X + 1, 2Y), (2X, 2Y + 1), (2X + 1, 2Y + 1), of which
-/// those beyond the right or lower edge of an odd level do not exist. (\[MKC08\] and \[MOC08\] show
-/// powers of two.) So a pixel of level l is a square of side 2^l pixels whose centre is (2^l (X +
-/// 1/2), 2^l (Y + 1/2)). Along a side that is a power of two, and not the shorter one, the squares
-/// of all levels end where the picture ends; along any other those of some level reach beyond it.
+/// `Decided:` a level is half as wide and half as high as the next finer level, rounded up.
+/// (\[MKC08\] and \[MOC08\] show powers of two.) Pixel (X, Y) stands for the finer pixels (2X, 2Y),
+/// (2X + 1, 2Y), (2X, 2Y + 1), (2X + 1, 2Y + 1); the ones beyond the right or lower edge of an odd
+/// level do not exist. So a pixel of level l is a square of side 2^l pixels whose centre is (2^l
+/// (X + 1/2), 2^l (Y + 1/2)). Along a side that is a power of two, and not the shorter side, the
+/// squares of all levels end where the picture ends. Along any other side the squares of some level
+/// reach beyond the picture.
 #[must_use]
 pub fn sizes(width: u32, height: u32) -> Vec<[u32; 2]> {
     let mut levels = vec![[width, height]];
@@ -21,7 +22,7 @@ pub fn sizes(width: u32, height: u32) -> Vec<[u32; 2]> {
     levels
 }
 
-/// A level in the upper left corner of a plane of the size of the picture.
+/// Puts a level into the upper left corner of a plane with the size of the picture.
 #[must_use]
 pub fn in_corner<T: Copy>(level: &Plane<T>, [width, height]: [u32; 2], empty: T) -> Plane<T> {
     let mut whole = Plane::filled(width, height, empty);

@@ -36,7 +36,7 @@ impl Rect {
         }
     }
 
-    /// The least rectangle that holds both.
+    /// The smallest rectangle that contains both.
     #[must_use]
     pub(crate) fn hull(&self, other: &Self) -> Self {
         if self.is_empty() {
@@ -49,14 +49,14 @@ impl Rect {
         Self { x0, y0, x1: self.x1.max(other.x1), y1: self.y1.max(other.y1) }
     }
 
-    /// How many columns there are, of a rectangle that is not empty.
+    /// How many columns a rectangle that is not empty has.
     #[inline(always)]
     #[must_use]
     pub fn columns(&self) -> usize {
         (self.x1 - self.x0) as usize
     }
 
-    /// How many rows there are, likewise.
+    /// How many rows a rectangle that is not empty has.
     #[inline(always)]
     #[must_use]
     pub fn rows(&self) -> usize {
@@ -69,7 +69,7 @@ impl Rect {
         (self.x0..self.x1).contains(&x) && (self.y0..self.y1).contains(&y)
     }
 
-    /// The pixels in both.
+    /// The pixels that are in both.
     #[inline(always)]
     #[must_use]
     pub fn intersection(&self, other: &Self) -> Self {

@@ -1,7 +1,7 @@
 //! The 8-bit stencil: the functions and operations of GPU APIs.
 //!
 //! Source: Vulkan 1.3 specification, chapter *Fragment Operations*, section *Stencil Test*; the
-//! stencils of OpenGL, Direct3D 12 and WebGPU are the same. In that order, for each fragment:
+//! stencils of OpenGL, Direct3D 12 and WebGPU are the same. For each fragment, in this order:
 //!
 //! ```text
 //!   passes = (reference & read_mask) FUNCTION (stored & read_mask)
@@ -9,7 +9,7 @@
 //!   stored = (stored & !write_mask) | (new & write_mask)
 //! ```
 //!
-//! The read mask enters the test only: operations act on the whole stored byte and the whole
+//! The read mask affects the test only. Operations act on the whole stored byte and the whole
 //! reference, and the write mask decides which bits of the result are kept.
 
 /// How the masked reference (left) is compared with the masked stored value (right).
@@ -33,28 +33,28 @@ pub enum Function {
     Always,
 }
 
-/// What becomes of the stored value, before the write mask.
+/// How the stored value changes, before the write mask.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Operation {
-    /// The stored value.
+    /// Keep the stored value.
     Keep,
-    /// 0.
+    /// Set it to 0.
     Zero,
-    /// The reference, without the read mask.
+    /// Set it to the reference, without the read mask.
     Replace,
-    /// One more; 255 stays 255.
+    /// Add one; 255 stays 255.
     IncrementClamp,
-    /// One less; 0 stays 0.
+    /// Subtract one; 0 stays 0.
     DecrementClamp,
-    /// One more; 255 becomes 0.
+    /// Add one; 255 becomes 0.
     IncrementWrap,
-    /// One less; 0 becomes 255.
+    /// Subtract one; 0 becomes 255.
     DecrementWrap,
-    /// Every bit flipped.
+    /// Flip every bit.
     Invert,
 }
 
-/// How a fragment fared, which chooses the operation.
+/// The result of the tests of a fragment; it chooses the operation.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
     /// The stencil test failed; the depth test was not made.
@@ -70,7 +70,7 @@ pub enum Outcome {
 pub struct Stencil {
     /// The comparison.
     pub function: Function,
-    /// The value that stored ones are compared with, and that [`Operation::Replace`] writes.
+    /// The value that is compared with the stored one, and that [`Operation::Replace`] writes.
     pub reference: u8,
     /// The bits that are compared.
     pub read_mask: u8,
@@ -99,7 +99,7 @@ impl Stencil {
     /// Counts the fragments that pass the depth test; 255 stands for 255 or more.
     pub const COUNT: Self = Self { pass: Operation::IncrementClamp, ..Self::DISABLED };
 
-    /// Whether a fragment passes where `stored` is in the stencil.
+    /// Whether a fragment passes where the stencil holds `stored`.
     #[inline]
     #[must_use]
     pub fn test(&self, stored: u8) -> bool {
@@ -117,7 +117,7 @@ impl Stencil {
         }
     }
 
-    /// What is in the stencil after a fragment that met `stored` there.
+    /// The new value of the stencil after a fragment that found `stored` there.
     #[inline]
     #[must_use]
     pub fn update(&self, stored: u8, outcome: Outcome) -> u8 {
@@ -158,7 +158,7 @@ mod tests {
         (Function::Always, [true, true, true]),
     ];
 
-    /// The new value from the stored one and the reference.
+    /// Computes the new value from the stored value and the reference.
     type Truth = fn(i32, i32) -> i32;
 
     /// The eight bits of a number, lowest first.
@@ -166,7 +166,7 @@ mod tests {
         std::array::from_fn(|i| value.rem_euclid(256) / (1 << i) % 2 == 1)
     }
 
-    /// A number of the bits for which `keep` holds.
+    /// A number made of the bits for which `keep` holds.
     fn number(bits: [bool; 8], keep: impl Fn(usize) -> bool) -> i32 {
         (0..8).map(|i| if bits[i] && keep(i) { 1 << i } else { 0 }).sum()
     }

@@ -1,7 +1,8 @@
-//! How a picture is made, which cannot change one bit of it: threads and tiles.
+//! Choose threads and tile size. They decide how a picture is made, and cannot change one bit of
+//! it.
 //!
-//! [`Exec::ordered`] is the one parallel loop of the crate. Its jobs own what they write, disjoint
-//! tiles or chunks, and its results come back in the order of the jobs.
+//! [`Exec::ordered`] is the one parallel loop of the crate. Each job owns what it writes, a tile or
+//! a chunk that no other job touches. The results come back in the order of the jobs.
 
 use super::{Plane, Rect};
 use crate::error::{Error, Result};
@@ -9,7 +10,7 @@ use rayon::prelude::*;
 use std::mem;
 use std::sync::{Mutex, PoisonError};
 
-/// Threads and tile size: how, never what.
+/// Threads and tile size: how a picture is computed, never what.
 #[derive(Debug)]
 pub struct Exec {
     tile: u32,
@@ -17,7 +18,7 @@ pub struct Exec {
 }
 
 impl Exec {
-    /// `threads` = 0 takes every core; tiles of `tile` x `tile` pixels.
+    /// Starts `threads` threads, one per core if `threads` is 0; tiles have `tile` x `tile` pixels.
     ///
     /// # Errors
     /// [`Error::Usage`] if the tile is not 8, 16, 32 or 64, or if the threads cannot be started.
@@ -31,7 +32,7 @@ impl Exec {
             return Err(Error::Usage(format!("{threads} threads; give at most 1024")));
         }
         let pool = if threads == 1 {
-            // No pool at all: targets without threads render too.
+            // No pool at all, so that targets without threads render too.
             None
         } else {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
@@ -68,7 +69,7 @@ impl Exec {
         // One thread goes through the same closure, because a second call of `run` would be compiled again.
         self.each(slots.len(), &|i| {
             let slot = || slots[i].lock().unwrap_or_else(PoisonError::into_inner);
-            // A statement, so that the lock is not held while the job runs.
+            // A statement of its own, so that the lock is not held while the job runs.
             let job = mem::replace(&mut *slot(), Slot::Empty);
             if let Slot::Job(job) = job {
                 let result = run(job);
@@ -76,7 +77,7 @@ impl Exec {
             }
         });
         let done = slots.into_iter().map(|slot| slot.into_inner());
-        // All are done: a job that panics has made `each` panic.
+        // Every slot has a result here, because a job that panics makes `each` panic.
         done.filter_map(|slot| match slot.unwrap_or_else(PoisonError::into_inner) {
             Slot::Result(result) => Some(result),
             Slot::Job(_) | Slot::Empty => None,
@@ -112,7 +113,7 @@ impl Exec {
         }
     }
 
-    /// Does work that runs jobs many times: between them no thread falls asleep.
+    /// Does work that runs jobs many times; between the jobs no thread falls asleep.
     pub(crate) fn within<T: Send>(&self, work: impl FnOnce() -> T + Send) -> T {
         match &self.pool {
             None => work(),
@@ -133,7 +134,7 @@ impl Exec {
         }
     }
 
-    /// Sorts values of which no two are equal, in parallel.
+    /// Sorts values in parallel; no two values may be equal.
     pub(crate) fn sort<T: Ord + Send>(&self, values: &mut [T]) {
         match &self.pool {
             None => values.sort_unstable(),
@@ -141,7 +142,8 @@ impl Exec {
         }
     }
 
-    /// Runs `size` neighbouring items a job, in parallel; with the index of the first of them.
+    /// Runs jobs of `size` neighbouring items each, in parallel, with the index of the job's first
+    /// item.
     pub(crate) fn chunks<T: Send>(
         &self,
         items: impl Iterator<Item = T>,
@@ -157,14 +159,14 @@ impl Exec {
     }
 }
 
-/// A job that waits, one that runs, or what it has left.
+/// A job that waits, a job that runs, or the result of a job.
 enum Slot<J, T> {
     Job(J),
     Empty,
     Result(T),
 }
 
-/// The division of a picture into tiles; those at the right and lower edge may be cut.
+/// The division of a picture into tiles; the tiles at the right and lower edge may be cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid {
     width: u32,
@@ -184,8 +186,8 @@ impl Grid {
     }
 
     /// The same picture in strips, the tiles of the fast paths: as high as a tile, and at least 64
-    /// pixels wide. What a strip costs, and what a splat costs in each strip that the splat touches,
-    /// is shared by as many pixels, however small the tiles are.
+    /// pixels wide. The costs per strip, and per splat in each strip that it touches, are then
+    /// shared by that many pixels, however small the tiles are.
     #[must_use]
     pub fn strips(&self) -> Self {
         let [wide, high] = self.side;
@@ -224,7 +226,7 @@ impl Grid {
         [self.width, self.height]
     }
 
-    /// The tile of a pixel, and the place of the pixel in its tile, both counted row by row.
+    /// The tile of a pixel, and the index of the pixel in its tile, both counted row by row.
     #[must_use]
     pub fn place(&self, x: u32, y: u32) -> (usize, usize) {
         let (column, row) = (x / self.side[0], y / self.side[1]);
@@ -240,7 +242,7 @@ impl Grid {
         tiles.map(|(column, row)| self.rect(column, row)).collect()
     }
 
-    /// The plane whose values are given by tile and by pixel in the tile, both counted row by row.
+    /// Assembles a plane from values by tile and by pixel in the tile, both counted row by row.
     pub fn assemble<T: Clone>(&self, fill: T, value: impl Fn(usize, usize) -> T) -> Plane<T> {
         let mut plane = Plane::filled(self.width, self.height, fill);
         for (tile, rect) in self.rects().iter().enumerate() {
@@ -256,11 +258,11 @@ impl Grid {
         plane
     }
 
-    /// A plane cut into its tiles, disjoint and writable, row by row.
+    /// Cuts a plane into its tiles, disjoint and writable, row by row.
     pub fn cut<'a, T: Send>(&self, plane: &'a mut Plane<T>, exec: &Exec) -> Vec<TileMut<'a, T>> {
         let (width, high) = (self.width.max(1) as usize, self.side[1] as usize);
         let bands = (0..).zip(plane.values_mut().chunks_mut(width * high));
-        // A tile is many short rows: cutting them out is work enough to be shared.
+        // A tile is many short rows, so cutting them out is enough work to run in parallel.
         let cut = exec.ordered(bands.collect(), |(row, band): (u32, &'a mut [T])| {
             let empty = |column| TileMut {
                 index: (row * self.columns + column) as usize,
@@ -287,15 +289,15 @@ const STRIP: u32 = 64;
 /// The pixels of one tile of a plane, writable.
 #[derive(Debug)]
 pub struct TileMut<'a, T> {
-    /// Its number, counted row by row.
+    /// The tile's number, counted row by row.
     pub index: usize,
-    /// Where it is.
+    /// The pixels of the picture that the tile covers.
     pub rect: Rect,
     rows: Vec<&'a mut [T]>,
 }
 
 impl<T> TileMut<'_, T> {
-    /// Its rows, from the top.
+    /// The tile's rows, from the top.
     pub fn rows(&mut self) -> impl Iterator<Item = &mut [T]> {
         self.rows.iter_mut().map(|row| &mut **row)
     }

@@ -1,9 +1,9 @@
-//! The surfels as a tree orders them, with the groups of each as a set.
+//! Surfels in the order of a tree, each with its groups as a set.
 //!
-//! A view from back to front walks the tree, and surfels that are close in it are close in space. In the
-//! order of their indices they are anywhere in memory; a copy in the order of the tree is read almost from
-//! one end to the other. With its set of groups a surfel is projected once for all groups that draw it
-//! alike.
+//! A view from back to front walks the tree, and surfels that are close in the tree are close in
+//! space. In the order of their indices, the surfels of a walk are scattered in memory. A copy in
+//! the order of the tree is read almost from one end to the other. With its set of groups, a surfel
+//! is projected once for all groups that draw it alike.
 
 use super::order::BackToFront;
 use crate::error::Result;
@@ -11,25 +11,25 @@ use crate::frame::Exec;
 use crate::memory;
 use crate::scene::{Groups, MAX_GROUPS, Surfels};
 
-/// Groups, a bit each.
+/// A set of groups, one bit for each group.
 pub(crate) type Set = u64;
 const _: () = assert!(MAX_GROUPS <= Set::BITS as usize, "a bit for each group");
 
 /// The surfels in the order of a tree, and their groups.
 #[derive(Debug)]
 pub struct Members {
-    /// Each surfel in its place in the tree.
+    /// The surfels in the order of the tree.
     pub(crate) surfels: Surfels,
-    /// The group that each of them has of its own.
+    /// Each surfel's own group.
     pub(crate) own: Vec<u8>,
-    /// All groups that each of them is in.
+    /// All groups that each surfel is in.
     sets: Vec<Set>,
-    /// The groups that multiply radii by the same number: the number, and which they are.
+    /// Groups with the same factor on radii: the factor, and the set of groups.
     alike: Vec<(f32, Set)>,
 }
 
 impl Members {
-    /// Groups and order are of as many surfels.
+    /// Builds the copy; groups and order must have as many surfels.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] if that takes too much memory.
@@ -59,7 +59,7 @@ impl Members {
         Ok(Self { surfels: surfels.reordered(order.indices(), exec), own, sets, alike })
     }
 
-    /// How many splats a view has at the most.
+    /// The most splats that a view can have.
     pub(crate) fn splats(&self) -> usize {
         let mut splats = 0;
         (0..self.sets.len()).for_each(|place| self.each_scale(place, |_, _| splats += 1));
@@ -71,8 +71,8 @@ impl Members {
         self.alike.iter().all(|(scale, _)| *scale == 1.0)
     }
 
-    /// Calls `visit` for each scale at which a surfel is drawn, given by its place in the tree: with the
-    /// scale, and with the groups that draw it so.
+    /// Calls `visit` for each scale at which a surfel, given by its place in the tree, is drawn:
+    /// with the scale, and with the groups that draw it at this scale.
     #[inline(always)]
     pub(crate) fn each_scale(&self, place: usize, mut visit: impl FnMut(f32, Set)) {
         for &(scale, alike) in &self.alike {

@@ -1,20 +1,22 @@
-//! Prefiltered colours, made of the colours of finer neighbours in the same model \[GBP04, 4.4\]. Those of a mesh with a
-//! texture are made of the texture, by [`crate::source::derive`].
+//! Compute prefiltered colours from the colours of finer neighbours in the same model \[GBP04,
+//! 4.4\]. A mesh with a texture gets its prefiltered colours from the texture, by
+//! [`crate::source::derive`].
 //!
-//! The colour of level k of a surfel is a mean over what lies within R = 2^k s of its centre, where s is
-//! its radius, or sqrt(|U x V|) of an ellipse with the half axes U and V. The surfels around it are not
-//! taken one by one, of which there may be thousands, but as *samples*: the surfels of one cell of a grid
-//! that face one way. All in f64, from the `f32` numbers of the surfels, each operation rounded in the
-//! order written.
+//! The colour of level k of a surfel is a mean over everything within R = 2^k s of its centre. s is
+//! its radius, or sqrt(|U x V|) for an ellipse with the half axes U and V. There may be thousands
+//! of surfels around it, so they are not taken one by one. They are taken as *samples*: the surfels
+//! of one cell of a grid that face one way. All in f64, from the `f32` numbers of the surfels, each
+//! operation rounded in the order written.
 //!
-//! **Grid.** With 2^e <= R < 2^(e+1), the side of a cell is 2^(e-2): a cell is a quarter of R at most,
-//! more than an eighth. The cell of a position is floor(x / side) for each coordinate; 0 and -0 are one
-//! number. A grid depends on e alone, so that surfels of all sizes and levels share it.
+//! **Grid.** With 2^e <= R < 2^(e+1), the side of a cell is 2^(e-2): a cell is a quarter of R at
+//! most, and more than an eighth. The cell of a position is floor(x / side) for each coordinate; 0
+//! and -0 are one number. A grid depends on e alone, so surfels of all sizes and levels share it.
 //!
-//! **Samples.** The side of a surfel is the axis along which its normal is longest in magnitude, of
-//! equal ones the first, and whether the normal points backwards along it: +x, -x, +y, -y, +z, -z in
-//! this order. A sample is made of the surfels of one cell and one side, in ascending order, all sums
-//! from 0. With the area a = s s, the position p, the normal n and the colour c of each,
+//! **Samples.** The side of a surfel is the axis along which its normal is longest in magnitude,
+//! among equal ones the first, with a sign: minus if the normal points backwards along the axis.
+//! The order of sides is +x, -x, +y, -y, +z, -z. A sample is made of the surfels of one cell and
+//! one side, in ascending order, all sums from 0. With the area a = s s, the position p, the normal
+//! n and the colour c of each surfel,
 //!
 //! ```text
 //!   A = sum of a      P = (sum of p a) / A, rounded to f32      N = sum of n a      C = (sum of c a) / A
@@ -22,27 +24,27 @@
 //!
 //! Samples are ordered by their cells, by x, then y, then z, and then by their sides.
 //!
-//! **Mean.** With d the difference of P and the surfel's position, and q = d.d / (R R), over all samples
-//! with d.d < R R and N . n > 0, in their order, n being the surfel's normal:
+//! **Mean.** d is the difference of P and the surfel's position, n the surfel's normal, and q = d.d
+//! / (R R). The sums go over all samples with d.d < R R and N . n > 0, in their order:
 //!
 //! ```text
 //!   w      = A ((1 - q) (1 - q))
 //!   colour = (sum of C w) / (sum of w), rounded to f32 once, plus 0
 //! ```
 //!
-//! Where the sum of w is not > 0 it is the colour of the level before. x.y is (x.x y.x + x.y y.y) + x.z
-//! y.z. A model of one colour has that colour at every level, bit for bit.
+//! Where the sum of w is not > 0, the colour is the colour of the level before. x.y is (x.x y.x +
+//! x.y y.y) + x.z y.z. A model of one colour has that colour at every level, bit for bit.
 //!
-//! # Decided
+//! # What the paper leaves open, decided here
 //!
-//! - \[GBP04\] says that samples are prefiltered and not how; Pfister et al. 2000 (*Surfels*) do it with Gaussians, on the
-//!   texture that the surfels were sampled from. (1 - q)^2 is near a Gaussian of variance R R / 8 along each axis, ends
-//!   at R, and is arithmetic.
-//! - Neighbours count by their area: where surfels are dense they are small.
-//! - Of two sheets back to back only the one that faces the same way counts. Sheets that face the same
-//!   way and are closer than R do mix.
-//! - Cells instead of surfels: a level costs about the same whatever it covers. Cells of half
-//!   the side take three times as long; the flicker of a sphere (bench `deferred`) is the same with
+//! - \[GBP04\] says that samples are prefiltered, but not how. Pfister et al. 2000 (*Surfels*) do
+//!   it with Gaussians, on the texture that the surfels were sampled from. (1 - q)^2 is close to a
+//!   Gaussian of variance R R / 8 along each axis, ends at R, and needs only arithmetic.
+//! - Neighbours count by their area, because surfels are small where they are dense.
+//! - Of two sheets back to back, only the sheet that faces the same way counts. Sheets that face
+//!   the same way and are closer than R do mix.
+//! - Cells instead of surfels: a level costs about the same whatever it covers. Cells of half the
+//!   side take three times as long; the flicker of a sphere (bench `deferred`) is the same with
 //!   them to 0.0001.
 
 use crate::error::{Error, Result};
@@ -56,20 +58,20 @@ use std::ops::Range;
 
 /// How much smaller than R cells are, as an exponent of 2.
 const FINER: i32 = 2;
-/// What making them takes for a surfel, besides what is made.
+/// How many bytes a surfel takes while the colours are made, without the result.
 const BYTES_A_SURFEL: u64 = 384;
-/// Ranges of samples up to this length are searched through.
+/// Ranges of samples up to this length are searched one by one.
 const LEAF: usize = 8;
-/// Surfels of one job, and between two reports of progress.
+/// How many surfels one job has, and how many come between two reports of progress.
 const JOB: usize = 1 << 8;
 const BATCH: usize = 1 << 16;
 
-/// Levels 1 to `levels` of surfels with colours. `progress` is told the name of the step, how many
-/// colours are done, and of how many.
+/// Makes levels 1 to `levels` for surfels with colours. `progress` receives the name of the step,
+/// how many colours are done, and how many there are.
 ///
 /// # Errors
-/// [`Error::Invalid`] if the surfels have no colours, as [`Mipmap::new`], or if the process may not hold
-/// them.
+/// [`Error::Invalid`] if the surfels have no colours, as [`Mipmap::new`], or if the process may not
+/// hold the colours.
 pub fn build(
     surfels: &Surfels,
     levels: usize,
@@ -86,7 +88,7 @@ pub fn build(
     let exponents: Vec<i32> = (0..count).map(|i| exponent(size(surfels, i))).collect();
     let [least, most] = ends(&exponents);
     let mut done = 0;
-    // A level of a surfel comes after the one before: its R is twice as large.
+    // A level of a surfel comes after the level before, because its R is twice as large.
     for e in least + 1..=most + levels as i32 {
         let level = |i: usize| usize::try_from(e - exponents[i]).ok();
         let wanted: Vec<(usize, usize)> = (0..count)
@@ -116,14 +118,14 @@ fn colors(surfels: &Surfels) -> Result<&[Vec3]> {
     })
 }
 
-/// The least and the greatest; (0, -MANY) of none, between which there is nothing.
+/// The least and the greatest exponent; without exponents (0, -1024), an empty range.
 fn ends(exponents: &[i32]) -> [i32; 2] {
     let least = exponents.iter().copied().min().unwrap_or(0);
     let most = exponents.iter().copied().max().unwrap_or(-1024);
     [least, most]
 }
 
-/// s.
+/// s: the size of a surfel.
 fn size(surfels: &Surfels, i: usize) -> f64 {
     match surfels.tangents() {
         None => surfels.radius()[i].into(),
@@ -139,23 +141,23 @@ fn dot(a: DVec3, b: DVec3) -> f64 {
     (a.x * b.x + a.y * b.y) + a.z * b.z
 }
 
-/// e with 2^e <= x < 2^(e+1), of a normal number > 0.
+/// The e with 2^e <= x < 2^(e+1), for a normal number > 0.
 fn exponent(x: f64) -> i32 {
     (x.to_bits() >> 52) as i32 - 1023
 }
 
-/// 2^e of a normal number.
+/// 2^e, if that is a normal number.
 fn power(e: i32) -> f64 {
     f64::from_bits(((e + 1023) as u64) << 52)
 }
 
-/// What orders a surfel: cell, side, index.
+/// The sort key of a surfel: cell, side, index.
 type Key = ([u64; 3], u8, u32);
 
 /// The samples of one grid.
 struct Samples<'a> {
     surfels: &'a Surfels,
-    /// P, for the search.
+    /// The positions P, for the search.
     tree: PointTree,
     all: Vec<Sample>,
 }
@@ -201,8 +203,9 @@ impl<'a> Samples<'a> {
         some.iter().map(mean).collect()
     }
 
-    /// Appends the samples of a range that are nearer than R. `offset` is how far away the range is
-    /// along each axis, at least; as rounding is monotone, no sample in it is nearer than that.
+    /// Appends the samples of a range that are nearer than R. `offset` is the least distance of the
+    /// range along each axis; because rounding is monotone, no sample in the range is nearer than
+    /// that.
     fn find(
         &self,
         range: Range<usize>,
@@ -230,13 +233,14 @@ impl<'a> Samples<'a> {
         let mut offset = offset;
         offset[axis] = beyond;
         let away = DVec3::from_array(offset);
+        // The far half matters only if the plane is within R.
         if dot(away, away) < reach2 {
             self.find(far, center, (reach2, offset), found);
         }
     }
 }
 
-/// The mean of samples in their order around a surfel of this place and normal.
+/// The mean of samples, in their order, around a surfel with this position and normal.
 fn mean<'s>(
     samples: impl Iterator<Item = &'s Sample>,
     (center, normal): (DVec3, DVec3),
@@ -258,7 +262,7 @@ fn mean<'s>(
 }
 
 impl Sample {
-    /// Of the surfels of one cell that face one way.
+    /// Makes the sample of the surfels of one cell that face one way.
     fn new(surfels: &Surfels, colors: &[Vec3], members: &[Key]) -> Self {
         let mut sum =
             Self { position: DVec3::ZERO, normal: DVec3::ZERO, color: DVec3::ZERO, area: 0.0 };
@@ -277,11 +281,11 @@ impl Sample {
     }
 }
 
-/// The cell of a position, in an order of its own: that of the numbers.
+/// The cell of a position, as integers in the order of the cell's coordinates.
 fn cell(position: Vec3, side: f64) -> [u64; 3] {
     position.to_array().map(|x| {
         let bits = ((f64::from(x) / side).floor() + 0.0).to_bits();
-        // The bits of numbers >= 0 are in their order, those of others in the reverse one.
+        // The bits of numbers >= 0 ascend with the numbers; the bits of negative numbers descend.
         if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }
     })
 }

@@ -1,10 +1,10 @@
-//! What is built once from a scene and asked for every view.
+//! Build structures of a scene once, and query them for every view.
 //!
 //! - [`grouping`]: groups of surfels that do not overlap, so that a group shares one depth-image.
-//! - [`members`]: surfels in the order of a tree, with all groups of each.
+//! - [`members`]: surfels in the order of a tree, each with all its groups.
 //! - [`mipmap`]: prefiltered colours of surfels.
 //! - [`order`]: surfels from back to front.
-//! - [`seen`]: which surfels the frame before saw.
+//! - [`seen`]: which surfels the previous frame saw.
 //! - [`sequential`]: levels of detail as a list.
 
 pub mod grouping;
@@ -21,9 +21,9 @@ use members::Members;
 use order::BackToFront;
 use seen::Seen;
 
-/// What a view draws as one splat: a surfel, in one of its groups.
+/// One splat of a view: a surfel, in one of its groups.
 ///
-/// A view selects a plain list of items; their order is the order in which they are drawn.
+/// A view selects a plain list of items, and draws them in the order of the list.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Item {
     /// The surfel.
@@ -32,7 +32,7 @@ pub struct Item {
     pub group: u8,
 }
 
-/// What a method asks of a scene for every view, as far as the method needs it.
+/// What a method queries for every view, as far as the method needs it.
 #[derive(Debug, Default)]
 pub struct Index {
     /// Which surfels share a depth-image.
@@ -41,7 +41,7 @@ pub struct Index {
     pub order: Option<BackToFront>,
     /// Boxes around the surfels of a scene without objects.
     pub boxes: Option<Boxes>,
-    /// What the frame before saw; none before the first.
+    /// What the previous frame saw; none before the first frame.
     pub seen: Option<Seen>,
     /// The surfels in the order of the tree behind `order`, if there are groups too.
     pub members: Option<Members>,
@@ -72,14 +72,14 @@ impl Index {
         self.members.as_ref().ok_or_else(|| missing("groups in an order from back to front"))
     }
 
-    /// Every surfel in each of its groups, from back to front: what blending draws.
+    /// Every surfel in each of its groups, from back to front: the list that blending draws.
     ///
     /// # Errors
     /// [`Error::Invalid`] if there are no groups or no order.
     pub fn back_to_front(&self, camera: &Camera) -> Result<Vec<Item>> {
         let (groups, order) = (self.groups()?, self.order()?);
         let (own, added) = (groups.own(), groups.added());
-        // Where the further groups of each surfel end: searched for one by one they would take
+        // Where the further groups of each surfel end. Searching for them one by one would take
         // longer than the order.
         let mut ends = vec![0_u32; own.len()];
         let mut end = 0;
@@ -98,10 +98,10 @@ impl Index {
         Ok(items)
     }
 
-    /// Whether this can be an index of these surfels: it must be of as many.
+    /// Checks that this can be an index of these surfels: the numbers of surfels must agree.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if it is not.
+    /// [`Error::Invalid`] if it cannot.
     pub fn check(&self, surfels: &Surfels) -> Result<()> {
         self.groups.as_ref().map_or(Ok(()), |groups| groups.check(surfels))?;
         self.order.as_ref().map_or(Ok(()), |order| order.check(surfels))

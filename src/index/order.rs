@@ -1,47 +1,48 @@
-//! Surfels from back to front: a BSP tree that is built once and walked for every view.
+//! Draw surfels from back to front: a BSP tree that is built once and walked for every view.
 //!
 //! \[ZP06, section 5.2.1\] takes it from \[Sam89\] (Samet: *The Design and Analysis of Spatial Data
 //! Structures*, 1989). The tree splits the **centres** of the surfels; their radii and normals do
 //! not matter.
 //!
-//! **The tree**, a function of the positions and their indices:
+//! **The tree** is a function of the positions and their indices:
 //!
 //! 1. A node is a set of surfels; the root has all of them. A node of one surfel is not split.
 //! 2. Its axis is the one with the largest extent: largest minus smallest coordinate, in f64. Ties:
 //!    the first of x, y, z.
 //! 3. Sort its surfels by (coordinate along the axis, surfel index). Coordinates compare as
-//!    numbers: -0 = +0. The surfel of rank floor(len/2), counted from 0, is the node's own; those
-//!    before it are the low half, those after it the high half, which may be empty. Its coordinate
-//!    is the plane.
+//!    numbers: -0 = +0. The surfel of rank floor(len/2), counted from 0, is the node's own surfel.
+//!    The surfels before it are the low half; the surfels after it are the high half, which may be
+//!    empty. The coordinate of the node's own surfel is the plane.
 //!
-//! So surfels that lie in the plane may be in either half, and coincident ones cost nothing extra:
-//! the tree of n surfels is floor(log2 n) deep whatever they are.
+//! So surfels that lie in the plane may be in either half, and coincident surfels cost nothing
+//! extra: the tree of n surfels is floor(log2 n) deep whatever they are.
 //!
 //! **The walk**, at each node: the far half, the node's own surfel, the near half. The high half is
-//! the near one if `e > plane` in f64, else the low half is, with e the eye along the node's axis:
+//! the near one if `e > plane` in f64, else the low half is. e is the eye along the node's axis:
 //!
 //! - perspective: the coordinate of [`Camera::eye`]. `Decided:` if the eye lies in the plane, the
-//!   low half is the near one: no ray passes from one half into the other.
-//! - orthographic: +inf if the component along the axis of the direction towards the eye, which is
-//!   the third row of the view matrix, is > 0, else -inf. `Decided:` a component of 0 counts as
-//!   negative, for the same reason.
+//!   low half is the near one, because no ray passes from one half into the other.
+//! - orthographic: +inf or -inf, by the direction towards the eye, which is the third row of the
+//!   view matrix. +inf if its component along the axis is > 0, else -inf. `Decided:` a component of
+//!   0 counts as negative, for the same reason.
 //!
-//! **The law**: of two surfels of a node whose centres lie strictly on different sides of its
-//! plane, the one on the side away from the eye comes first. No ray from the eye meets the near
-//! side after the far one, so that one order is right for all pixels, and exactly so for surfels
-//! that reach across no plane.
+//! **The law**: take two surfels of a node whose centres lie strictly on different sides of its
+//! plane. The one on the side away from the eye comes first. No ray from the eye meets the near
+//! side after the far one. So one order is right for all pixels, and exactly so for surfels that
+//! reach across no plane.
 //!
-//! `Decided:` where centres coincide along the axis, the index decides which is low, and so it is
-//! the eye that decides which comes first. If all surfels are at one place every axis is x: they
+//! `Decided:` where centres coincide along the axis, the index decides which half is low, and so
+//! the eye decides which surfel comes first. If all surfels are at one place, every axis is x: they
 //! come in ascending order of index if `e > plane`, and in descending order if not.
 //!
 //! `Decided:` surfels that reach across a plane are not cut, as a BSP tree of polygons would cut
-//! them: each is ordered as a whole, by its centre. What goes wrong: of two surfels that overlap on
-//! the screen and both reach across the plane between their centres, one is drawn before the other
-//! at every pixel, although it may be the nearer one at some. Each is then closer to the plane than
-//! its own radius. It is seen when the eye passes the plane, and the pair swaps at once over the
-//! whole overlap. Within one sheet the two have nearly the same depth, and nearly the same colour;
-//! where two sheets cut each other, a fringe as wide as a radius flickers along the cut.
+//! them. Each is ordered as a whole, by its centre. What goes wrong: take two surfels that overlap
+//! on the screen and both reach across the plane between their centres. One is drawn before the
+//! other at every pixel, although it may be the nearer one at some. Each of them is then closer to
+//! the plane than its own radius. You see the error when the eye passes the plane, because the pair
+//! swaps at once over the whole overlap. Within one sheet the two have nearly the same depth, and
+//! nearly the same colour. Where two sheets cut each other, a fringe as wide as a radius flickers
+//! along the cut.
 
 use super::point_tree::PointTree;
 use crate::error::{Error, Result};
@@ -56,13 +57,13 @@ pub struct BackToFront {
 }
 
 impl BackToFront {
-    /// Builds the tree. `exec` cannot change it.
+    /// Builds the tree. `exec` cannot change the result.
     #[must_use]
     pub fn new(surfels: &Surfels, exec: &Exec) -> Self {
         Self { tree: PointTree::new(surfels.position(), 1, exec) }
     }
 
-    /// Whether this can be the order of these surfels: there must be as many.
+    /// Checks that this can be the order of these surfels: there must be as many.
     ///
     /// # Errors
     /// [`Error::Invalid`] if there are not.
@@ -84,8 +85,8 @@ impl BackToFront {
         order
     }
 
-    /// The order of a view in parts that follow one another, each of a subtree of at most `most`
-    /// surfels or of a single one: what threads walk apart.
+    /// The order of a view in consecutive parts, each a subtree of at most `most` surfels or a
+    /// single surfel, so that threads can walk the parts separately.
     pub(crate) fn parts(&self, camera: &Camera, most: usize) -> Vec<Part> {
         let mut parts = Vec::new();
         self.divide(0..self.tree.entries().len(), eye(camera), most.max(1), &mut parts);
@@ -140,12 +141,12 @@ impl BackToFront {
     }
 }
 
-/// Surfels that follow one another in the order of a view, see [`BackToFront::parts`].
+/// Consecutive surfels of the order of a view, see [`BackToFront::parts`].
 #[derive(Clone, Debug)]
 pub(crate) struct Part {
-    /// Where they are in the tree.
+    /// Their places in the tree.
     places: Range<usize>,
-    /// What the order is decided by.
+    /// The eye coordinates that decide the order.
     eye: [f64; 3],
 }
 

@@ -1,14 +1,14 @@
-//! Points split in halves, and those again: the tree behind the search of neighbours and behind the
+//! Split points into halves again and again: the tree behind the neighbour search and behind the
 //! order from back to front.
 //!
-//! A node is a range of points, and it is split in the place where it lies. Its axis is the widest:
-//! that of the largest extent (largest minus smallest coordinate, in f64), of equal ones the first.
-//! Its own point is that of rank `len / 2`, counted from 0, in the order of (coordinate along the
-//! axis, index); those before it are the low half, those after it the high half. `Decided:`
-//! coordinates compare as numbers, so that -0 and +0 are a tie.
+//! A node is a range of points, and it is split in place. Its axis is the widest: the axis of the
+//! largest extent (largest minus smallest coordinate, in f64), among equal ones the first. Its own
+//! point is the point of rank `len / 2`, counted from 0, in the order of (coordinate along the
+//! axis, index). The points before it are the low half, the points after it the high half.
+//! `Decided:` coordinates compare as numbers, so that -0 and +0 are a tie.
 //!
 //! So the tree is a function of the points and their indices, and its depth is the logarithm of
-//! their number whatever they are, coincident ones included.
+//! their number whatever they are, coincident points included.
 
 use crate::frame::Exec;
 use glam::Vec3;
@@ -21,7 +21,7 @@ const JOB: usize = 1 << 13;
 #[derive(Debug)]
 pub(crate) struct PointTree {
     entries: Vec<Entry>,
-    /// For the middle of a range that was split, its axis.
+    /// The axis of each split range, stored at the middle of the range.
     axis: Vec<u8>,
 }
 
@@ -36,14 +36,14 @@ pub(crate) struct Entry {
 type HalfOfTree<'a> = (&'a mut [Entry], &'a mut [u8]);
 
 impl PointTree {
-    /// Of fewer than 2^32 finite points. Ranges of at most `leaf` points, at least 1, are not
-    /// split: their order has no meaning.
+    /// Makes the tree of fewer than 2^32 finite points. Ranges of at most `leaf` points, at least
+    /// 1, are not split: their order has no meaning.
     pub(crate) fn new(points: &[Vec3], leaf: usize, exec: &Exec) -> Self {
         let mut entries: Vec<_> =
             points.iter().zip(0..).map(|(&point, id)| Entry { point, id }).collect();
         let mut axis = vec![0; points.len()];
         let mut parts: Vec<HalfOfTree<'_>> = vec![(&mut entries, &mut axis)];
-        // The first is the longest: a low half is never shorter than its high half.
+        // The first part is the longest, because a low half is never shorter than its high half.
         while parts[0].0.len() > JOB {
             parts = exec.ordered(parts, halve).into_iter().flatten().collect();
         }
@@ -82,8 +82,8 @@ fn halve<'a>((entries, axes): HalfOfTree<'a>) -> [HalfOfTree<'a>; 2] {
     [(low, low_axes), (&mut high[1..], &mut high_axes[1..])]
 }
 
-/// Puts the point of rank `len / 2` of a range that is not empty where it belongs, those before it
-/// before it, and those after it after it; the rank and the axis.
+/// Partitions a range, which must not be empty: the point of rank `len / 2` moves to its place,
+/// points before it go before it, and points after it go after it. Returns the rank and the axis.
 pub(super) fn divide(entries: &mut [Entry]) -> (usize, usize) {
     let axis = widest(entries.iter().map(|entry| entry.point));
     let middle = entries.len() / 2;
@@ -94,7 +94,7 @@ pub(super) fn divide(entries: &mut [Entry]) -> (usize, usize) {
     (middle, axis)
 }
 
-/// The axis of the largest extent of some points, the first of equal ones.
+/// The axis of the largest extent of some points, the first among equal ones.
 pub(crate) fn widest(points: impl Iterator<Item = Vec3>) -> usize {
     let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
     for point in points {

@@ -1,8 +1,10 @@
-//! What a frame saw: the state that deferred splatting carries from frame to frame \[GBP04, 4.3\].
+//! Remember what a frame saw: the state that deferred splatting carries from frame to frame
+//! \[GBP04, 4.3\].
 //!
-//! A flag stands for m consecutive surfels of one object, the last of an object for as many as are
-//! left. It is a bit: m = 64 and 2^12 objects of 2^20 surfels take 8 MiB. Of an object the flags beyond
-//! the last that is set take no memory: of what is far away or not seen they would be most.
+//! A flag stands for m consecutive surfels of one object; the last flag of an object stands for as
+//! many as are left. A flag is one bit: m = 64 and 2^12 objects of 2^20 surfels take 8 MiB. Flags
+//! beyond the last set flag of an object take no memory, because in objects that are far away or
+//! not seen they would be most of the flags.
 
 use crate::error::{Error, Result};
 use crate::scene::objects::Ids;
@@ -11,20 +13,21 @@ use std::ops::Range;
 /// Which groups of m consecutive surfels of each object a frame has selected, and how many surfels.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Seen {
-    /// m.
+    /// m: the number of surfels of a flag.
     group: u32,
     /// How many surfels each object has.
     counts: Vec<u32>,
-    /// The first word of each object, and the end of the last.
+    /// The index of the first word of each object, and the end of the last.
     starts: Vec<usize>,
-    /// A bit a group; the groups of an object begin with a word, and its last word is not 0.
+    /// One bit for each group. The groups of an object begin with a new word, and its last word is
+    /// not 0.
     words: Vec<u64>,
     /// How many surfels of each object were selected.
     selected: Vec<u32>,
 }
 
 impl Seen {
-    /// Nothing, in groups of `group` surfels.
+    /// Starts with nothing seen, in groups of `group` surfels.
     #[must_use]
     pub fn nothing(ids: &Ids, group: u32) -> Self {
         let counts: Vec<_> = (0..ids.order().len() as u32).map(|object| ids.all(object)).collect();
@@ -32,8 +35,7 @@ impl Seen {
         Self { group, counts, starts, words: Vec::new(), selected }
     }
 
-    /// The groups of these surfels, ascending and each there once: what the frame that selected them
-    /// saw.
+    /// What the frame that selected these surfels saw; the ids must ascend, each once.
     #[must_use]
     pub fn of(ids: &Ids, group: u32, selected: &[u64]) -> Self {
         let mut seen = Self::nothing(ids, group);
@@ -54,9 +56,9 @@ impl Seen {
         seen
     }
 
-    /// What was seen, as it was told: how many surfels of each object were selected, how many words of
-    /// flags there are of each, and the words. None if it cannot be so: no flag of a group that does not
-    /// exist, no word of 0 at the end, no more surfels than there are.
+    /// Restores a saved state: how many surfels of each object were selected, how many words of
+    /// flags each object has, and the words. Returns none if the state is impossible: a flag of a
+    /// group that does not exist, a word of 0 at the end, or more surfels than there are.
     #[must_use]
     pub fn restored(
         ids: &Ids,
@@ -89,7 +91,7 @@ impl Seen {
         sound.then_some(Self { words, selected, ..seen })
     }
 
-    /// Room for so many words of each object, none of whose flags is set.
+    /// Makes room for this many words for each object, with no flag set.
     fn allocate(&mut self, lengths: &[usize]) {
         for (object, length) in lengths.iter().enumerate() {
             self.starts[object + 1] = self.starts[object] + length;
@@ -97,19 +99,21 @@ impl Seen {
         self.words = vec![0; self.starts[lengths.len()]];
     }
 
-    /// How many surfels each object has, with and without ids: flags go by the place of a surfel among all.
+    /// How many surfels each object has, with and without ids, because a flag counts all surfels of
+    /// an object.
     #[must_use]
     pub fn counts(&self) -> &[u32] {
         &self.counts
     }
 
-    /// The flags of an object, a bit a group, the lowest first, up to the last word that is not 0.
+    /// The flags of an object, one bit for each group, the lowest first, up to the last word that
+    /// is not 0.
     #[must_use]
     pub fn words(&self, object: u32) -> &[u64] {
         &self.words[self.starts[object as usize]..self.starts[object as usize + 1]]
     }
 
-    /// m.
+    /// m: the number of surfels of a flag.
     #[must_use]
     pub fn group(&self) -> u32 {
         self.group
@@ -129,8 +133,8 @@ impl Seen {
         word.is_some_and(|word| word >> (flag % 64) & 1 != 0)
     }
 
-    /// The surfels of all groups that were seen, of those that have ids: in ascending ids, objects and
-    /// ranges of their surfels, none of which ends where the next begins.
+    /// The surfels of all groups that were seen, as far as they have ids. In ascending ids, it
+    /// gives objects and ranges of their surfels; no range ends where the next begins.
     #[must_use]
     pub fn ranges(&self, ids: &Ids) -> Vec<(u32, Range<u32>)> {
         let mut all: Vec<(u32, Range<u32>)> = Vec::new();
@@ -143,6 +147,7 @@ impl Seen {
                     let to = count.min(from.saturating_add(self.group));
                     bits &= bits - 1;
                     match all[begin..].last_mut() {
+                        // These surfels have no ids in this view.
                         _ if from >= to => {}
                         Some((_, last)) if last.end == from => last.end = to,
                         _ => all.push((object, from..to)),
@@ -160,10 +165,10 @@ impl Seen {
         ranges.flat_map(|(object, range)| range.map(move |i| ids.id(object, i))).collect()
     }
 
-    /// Whether this can be what a frame of such objects saw, in such groups.
+    /// Checks that this can be what a frame of these objects saw, in groups of this size.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if it is of other objects, or of other groups.
+    /// [`Error::Invalid`] if the state belongs to other objects, or has other groups.
     pub fn check(&self, ids: &Ids, group: u32) -> Result<()> {
         if self.group != group {
             let (found, wanted) = (self.group, group);
@@ -221,12 +226,12 @@ mod tests {
 
     #[test]
     fn flags_take_the_memory_of_the_paper() {
-        // The last surfel of each is selected.
+        // The last surfel of each object is selected.
         let ids = Ids::new(vec![(1 << 20) - 1; 1 << 12], |_| String::new()).unwrap();
         let last: Vec<u64> = (0..1 << 12).map(|object| ids.id(object, (1 << 20) - 2)).collect();
         let seen = Seen::of(&ids, 64, &last);
         assert_eq!(seen.words.len() * 8, 8 << 20);
-        // The first: a word each.
+        // The first surfel of each object is selected: one word for each.
         let first: Vec<u64> = (0..1 << 12).map(|object| ids.id(object, 0)).collect();
         assert_eq!(Seen::of(&ids, 64, &first).words.len(), 1 << 12);
         assert_eq!(Seen::nothing(&ids, 64).words.len(), 0);

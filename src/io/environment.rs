@@ -1,4 +1,4 @@
-//! Environment maps from EXR files.
+//! Read environment maps from EXR files.
 
 use super::exr;
 use crate::error::{Error, Result};
@@ -8,26 +8,27 @@ use crate::memory;
 use crate::scene::environment::{Environment, Map};
 use std::path::Path;
 
-/// Reads the latitude-longitude map at `path`: the channels `R`, `G` and `B` of a flat EXR, `HALF`
-/// or `FLOAT`, as [`exr::read`] takes it, on the threads of `exec`; other channels are passed over.
-/// [`crate::scene::environment::map`] tells its orientation.
+/// Reads the latitude-longitude map at `path` on the threads of `exec`. The map is the channels
+/// `R`, `G` and `B` of a flat EXR, `HALF` or `FLOAT`, as [`exr::read`] accepts it. Other channels
+/// are ignored. For the orientation, see [`crate::scene::environment::map`].
 ///
 /// # Errors
-/// Those of [`exr::read`]; [`Error::Format`] if a channel is absent or holds integers, or as
+/// The errors of [`exr::read`]; [`Error::Format`] if a channel is absent or holds integers, or as
 /// [`Map::new`].
 pub fn read(path: &Path, exec: &Exec) -> Result<Environment> {
     let pixels = rgb(path, exec, "an environment map", Map::check_size)?;
     Map::new(pixels).map(Environment::Map).map_err(|error| Error::format(path, error.to_string()))
 }
 
-/// The channels `R`, `G` and `B` of the EXR file at `path`, in which they are `what`, if its size may be.
+/// Reads the channels `R`, `G` and `B` of the EXR file at `path`, if `check_size` accepts its size;
+/// `what` names the picture in errors.
 pub(super) fn rgb(
     path: &Path,
     exec: &Exec,
     what: &str,
     check_size: fn(u32, u32) -> Result<()>,
 ) -> Result<Plane<[f32; 3]>> {
-    // Before anything large is read.
+    // Check the size before anything large is read.
     let header = exr::read_header(path)?;
     check_size(header.width, header.height)
         .map_err(|error| Error::format(path, error.to_string()))?;

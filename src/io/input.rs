@@ -1,4 +1,4 @@
-//! Files that are read: regular ones, whose length is known before anything is read.
+//! Open regular files, whose length is known before anything is read.
 
 use crate::error::Error;
 use crate::memory;
@@ -6,12 +6,12 @@ use std::fs::{self, File};
 use std::io::{self, Read};
 use std::path::Path;
 
-/// The file at `path`, at its start, and its length in bytes.
+/// Opens the file at `path`; returns it and its length in bytes.
 ///
 /// # Errors
 /// If it cannot be opened, or is a directory, a pipe or a device.
 pub(super) fn open(path: &Path) -> io::Result<(File, u64)> {
-    // Asked before opening, which waits where a pipe has no writer.
+    // Ask before opening, because opening a pipe without a writer would wait.
     if let Some(what) = no_file(path) {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
     }
@@ -20,7 +20,7 @@ pub(super) fn open(path: &Path) -> io::Result<(File, u64)> {
     Ok((file, length))
 }
 
-/// All bytes of the file at `path`, as many as it has when it is opened.
+/// Reads the file at `path`: as many bytes as it has when it is opened.
 ///
 /// # Errors
 /// As [`open`], and if it cannot be read.
@@ -29,7 +29,7 @@ pub(super) fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     rest(file, length)
 }
 
-/// What is wrong of a text that should be TOML, and in which line.
+/// Describes why a text is not TOML, and in which line.
 pub(super) fn no_toml(path: &Path, text: &str, error: &toml::de::Error) -> Error {
     let line = error.span().map(|span| line(text, span.start));
     let what = error.message().trim().replace('\n', " ");
@@ -39,15 +39,16 @@ pub(super) fn no_toml(path: &Path, text: &str, error: &toml::de::Error) -> Error
     }
 }
 
-/// The line of a byte of a text, counted from 1.
+/// The line of a byte of the text, counted from 1.
 pub(super) fn line(text: &str, at: usize) -> usize {
     1 + text[..at].matches('\n').count()
 }
 
-/// All bytes of a file from where it stands, at most `length`, even if it grows meanwhile.
+/// Reads the rest of a file from its current position, at most `length` bytes, even if it grows
+/// meanwhile.
 ///
 /// # Errors
-/// If there may not be so much memory, or the file cannot be read.
+/// If the process may not hold so many bytes, or the file cannot be read.
 pub(super) fn rest(file: File, length: u64) -> io::Result<Vec<u8>> {
     memory::try_ask(length, || "the file".to_owned())
         .map_err(|what| io::Error::new(io::ErrorKind::OutOfMemory, what))?;
@@ -58,7 +59,7 @@ pub(super) fn rest(file: File, length: u64) -> io::Result<Vec<u8>> {
     Ok(bytes)
 }
 
-/// Why what is at `path` cannot be read as a file, if something is there.
+/// Why the thing at `path` cannot be read as a file; `None` for a file or if nothing is there.
 pub(super) fn no_file(path: &Path) -> Option<&'static str> {
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => Some("this is a directory; give a file"),

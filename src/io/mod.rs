@@ -1,20 +1,31 @@
-//! Files: everything that touches the disk. Only this module, `cli` and `main` know of them.
+//! Read and write every file format of the crate. Only this module, `cli` and `main` touch the
+//! disk.
 //!
-//! - [`client`]: planes that somebody else drew, and the TOML file that describes them.
-//! - [`environment`]: environment maps from EXR files.
-//! - [`hierarchy`]: surfel approximations of a whole scene, in and out.
-//! - `input`: the files that are read.
-//! - [`exr`]: every plane of a frame, exactly; reading guards against lying files.
-//! - [`npy`]: arrays of `NumPy` as planes.
-//! - [`obj`]: meshes and points as text, in.
-//! - [`ply`]: point clouds and meshes, in and out.
-//! - `png`: an 8-bit preview; needs the feature `cli`.
-//! - [`provenance`]: the text that a picture carries.
-//! - [`replace`]: output files that are whole or not there.
-//! - [`scene_file`]: scenes as TOML: models, lights, camera, settings.
-//! - [`state`]: what a frame saw.
-//! - [`srgb`]: the transfer function between stored colours and linear light.
-//! - [`texture`]: textures of models.
+//! Read a scene and its parts:
+//!
+//! - [`scene_file`]: read scenes from TOML: models, lights, camera, settings. Start here to get a
+//!   picture from a name.
+//! - [`ply`]: read and write point clouds and meshes.
+//! - [`obj`]: read meshes and points as text.
+//! - [`texture`]: read textures of models.
+//! - [`environment`]: read environment maps from EXR files.
+//! - [`hierarchy`]: write and read surfel approximations of a whole scene.
+//!
+//! Store pictures and compare them:
+//!
+//! - [`exr`]: write and read every plane of a frame, exactly; reading guards against files that
+//!   lie.
+//! - `png`: write an 8-bit preview; needs the feature `cli`.
+//! - [`npy`]: read arrays of `NumPy` as planes.
+//! - [`client`]: read another renderer's planes, and the TOML file that describes them.
+//! - [`provenance`]: write the text that a picture carries.
+//! - [`state`]: store the surfels that a frame saw, to resume a sequence.
+//!
+//! Shared by all:
+//!
+//! - `input`: open files to read.
+//! - [`replace`]: write files that are complete or absent.
+//! - [`srgb`]: convert between stored colours and linear light.
 
 pub mod client;
 pub mod environment;
@@ -33,5 +44,5 @@ pub mod srgb;
 pub mod state;
 pub mod texture;
 
-/// A result or the reason why not, without the file's name.
+/// A result, or the reason for the failure without the file's name.
 type Reason<T> = Result<T, String>;

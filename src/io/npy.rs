@@ -1,4 +1,4 @@
-//! NPY files in: an array of `NumPy` as a plane of a picture.
+//! Read an array from an NPY file of `NumPy` as a plane of a picture.
 //!
 //! Format: [NEP 1](https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html),
 //! versions 1.0 to 3.0.
@@ -12,15 +12,19 @@ use std::fs::File;
 use std::io::{Read, Take};
 use std::path::Path;
 
-/// A header is a line of some hundred bytes; `NumPy` itself reads no longer one without being told.
+/// A header is a line of some hundred bytes; `NumPy` itself rejects longer ones by default.
 const LONGEST_HEADER: u64 = 10_000;
 
 /// Reads the array of the NPY file at `path` as the plane called `name`.
 ///
-/// An array has the shape (h, w) or (h, w, 1), the channel `name`, or (h, w, 3), the channels
-/// `name.X`, `name.Y` and `name.Z`. A name that is `RGB` or ends in `.RGB` means a colour: `RGB` has
-/// the channels `R`, `G` and `B` of the picture itself, `attributes.RGB` has `attributes.R` and so
-/// on. Rows go down from the top, in C order. Types, all little-endian:
+/// The shape of the array decides the channels:
+///
+/// - (h, w) or (h, w, 1): the channel `name`.
+/// - (h, w, 3): the channels `name.X`, `name.Y` and `name.Z`.
+/// - (h, w, 3) with a name that is `RGB` or ends in `.RGB`: a colour. `RGB` gives the channels `R`,
+///   `G` and `B` of the picture itself, `attributes.RGB` gives `attributes.R` and so on.
+///
+/// Rows go down from the top, in C order. Types, all little-endian:
 ///
 /// | type | value |
 /// |---|---|
@@ -29,15 +33,15 @@ const LONGEST_HEADER: u64 = 10_000;
 /// | `uint8`, `uint16`, `uint32` | an index |
 /// | `int32` | an index by its bits, so that -1 is [`crate::frame::NO_ID`] |
 ///
-/// Memory: the array as it is in the file, and the planes. What a header promises is held against
-/// the length of the file before anything of that size is allocated.
+/// Memory holds the array as it is in the file, and the planes. The reader compares the header with
+/// the length of the file before it allocates anything of that size.
 ///
 /// # Errors
 /// [`Error::Io`] if the file cannot be read. [`Error::Format`] if it is no NPY file, has another
-/// type, order (Fortran) or shape, is empty, or is not as long as its shape says.
+/// type, order (Fortran) or shape, is empty, or its length does not match its shape.
 pub fn read(path: &Path, name: &str) -> Result<Image> {
     let (file, length) = input::open(path).map_err(|source| Error::io(path, source))?;
-    // The length is taken once: no more is read, even if the file grows meanwhile.
+    // The length is taken once, so that nothing more is read if the file grows meanwhile.
     let mut file = file.take(length);
     let text = header_text(&mut file).map_err(|what| Error::format(path, what))?;
     let array = Array::parse(&text)
@@ -54,7 +58,7 @@ pub fn read(path: &Path, name: &str) -> Result<Image> {
     Ok(array.image(&bytes, name))
 }
 
-/// The dictionary at the start of a file, and the file where the array starts.
+/// Reads the dictionary at the start of a file; the array follows.
 fn header_text(file: &mut Take<File>) -> Reason<String> {
     let early = |_| "byte 0: not an NPY file, or cut; write it again with numpy.save".to_owned();
     let mut start = [0; 8];
@@ -90,23 +94,23 @@ enum Dtype {
     F64,
     U8,
     U16,
-    /// And `int32`, by its bits.
+    /// Also `int32`, by its bits.
     U32,
 }
 
-/// What a header says.
+/// The contents of a header.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 struct Array {
     element: Dtype,
     height: u32,
     width: u32,
-    /// 1 or 3.
+    /// Numbers a pixel: 1 or 3.
     components: usize,
 }
 
 impl Array {
-    /// The dictionary: `{'descr': '<f4', 'fortran_order': False, 'shape': (3, 4), }`, the keys in
-    /// any order.
+    /// Parses the dictionary: `{'descr': '<f4', 'fortran_order': False, 'shape': (3, 4), }`, with
+    /// the keys in any order.
     fn parse(text: &str) -> Reason<Self> {
         let dictionary = text.trim().strip_prefix('{').and_then(|t| t.strip_suffix('}'));
         let dictionary = dictionary.ok_or("header: no dictionary; write it with numpy.save")?;
@@ -145,7 +149,7 @@ impl Array {
         Ok(Self { element, height, width, components })
     }
 
-    /// The bytes of the array.
+    /// How many bytes the array has.
     fn bytes(&self) -> u64 {
         let size = match self.element {
             Dtype::F32 | Dtype::U32 => 4,
@@ -157,7 +161,7 @@ impl Array {
         pixels.saturating_mul(size * self.components as u64)
     }
 
-    /// Whether just this many bytes are left for the array.
+    /// Checks that exactly as many bytes follow.
     fn fits(&self, rest: u64) -> Reason<()> {
         let (Self { width, height, .. }, bytes) = (self, self.bytes());
         if bytes == rest {
@@ -169,7 +173,7 @@ impl Array {
         ))
     }
 
-    /// The planes of an array of the right length.
+    /// Converts the bytes, which have the right length, to planes.
     fn image(&self, bytes: &[u8], name: &str) -> Image {
         let names = self.names(name);
         let each = |component: usize| {
@@ -212,7 +216,7 @@ fn elements<T, const N: usize>(bytes: &[u8], of: impl Fn([u8; N]) -> T) -> Vec<T
     bytes.as_chunks().0.iter().map(|&element| of(element)).collect()
 }
 
-/// The text of a value in a dictionary without nesting but for parentheses.
+/// The text of a value in a dictionary that nests only parentheses.
 fn value<'a>(dictionary: &'a str, key: &str) -> Reason<&'a str> {
     let quoted = [format!("'{key}'"), format!("\"{key}\"")];
     let start = quoted.iter().find_map(|quoted| {

@@ -1,4 +1,4 @@
-//! The text that a picture carries: what it is a picture of, and by which settings.
+//! Describe a picture in a text that its file carries: the scene, and the settings.
 
 use crate::io::scene_file::OutputSettings;
 use crate::method::Method;
@@ -8,11 +8,11 @@ use crate::setting::{Fields, Word};
 
 /// The text as TOML, for the attribute [`super::exr::ATTRIBUTE`].
 ///
-/// Equal for equal pictures: nothing in it depends on the time, the machine, the directory or the
-/// way the picture was computed. Floats are the shortest decimals that give the same `f32`. The
-/// scene is identified by [`Scene::sha256`], its groups by [`crate::scene::Groups::sha256`],
-/// the camera by all its numbers. `bins_in_world_units` are `d_min`, `d_max` and n of \[ZP06, eq.
-/// 6\].
+/// Equal pictures have equal texts: nothing depends on the time, the machine, the directory or the
+/// way the picture was computed. Floats are the shortest decimals that give the same `f32`.
+/// [`Scene::sha256`] identifies the scene, [`crate::scene::Groups::sha256`] its groups, and the
+/// camera is described by all its numbers. `bins_in_world_units` are `d_min`, `d_max` and n of
+/// \[ZP06, eq. 6\].
 #[must_use]
 pub fn text(
     scene: &Scene,
@@ -49,7 +49,7 @@ pub fn text(
     )
 }
 
-/// Formats that are not those of `f32`, as TOML.
+/// The formats that differ from `f32`, as TOML.
 fn formats(formats: Formats) -> String {
     if formats.keep_all() {
         return String::new();

@@ -1,4 +1,4 @@
-//! Output files that are whole or not there: written beside their place, then renamed into it.
+//! Write output files that are complete or absent: write beside the final place, then rename.
 
 use crate::error::{Error, Result};
 use std::fs::{self, File, Permissions};
@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::{NamedTempFile, TempPath};
 
-/// Writes a file so that nobody ever sees half of it: [`Pending::write`], then [`Pending::put`].
+/// Writes a file so that no reader ever sees half of it: [`Pending::write`], then [`Pending::put`].
 ///
 /// # Errors
-/// As these.
+/// The errors of these two.
 pub fn write_atomically(
     path: &Path,
     write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
@@ -18,29 +18,29 @@ pub fn write_atomically(
     Pending::write(path, write)?.put()
 }
 
-/// A file that is written, beside its place. It is removed unless it is put there.
+/// A complete file that waits beside its place. It is removed unless [`Pending::put`] is called.
 #[derive(Debug)]
 pub struct Pending {
     partial: Partial,
-    /// As the caller named the place.
+    /// The place as the caller named it.
     path: PathBuf,
-    /// The place itself, where no symbolic link leads on.
+    /// The place itself, after following symbolic links.
     place: PathBuf,
 }
 
 impl Pending {
-    /// Writes the bytes that are to be at `path` to a file of another name in the same directory.
+    /// Writes the bytes for `path` to a file of another name in the same directory.
     ///
-    /// Nobody else can have that file: it is created exclusively, under a random name that does not
-    /// grow with the name of `path`. It is removed if `write` fails or panics, and by
-    /// [`remove_partial_files`]. A file at `path` stays as it is; its permissions are those of the
-    /// file that will replace it. Where `path` is a symbolic link, the file that it leads to is
+    /// No other process can have that file, because it is created exclusively, under a random name.
+    /// The name does not grow with the name of `path`. The file is removed if `write` fails or
+    /// panics, and by [`remove_partial_files`]. A file that is already at `path` stays as it is;
+    /// the new file gets its permissions. If `path` is a symbolic link, the file behind the link is
     /// replaced.
     ///
     /// # Errors
-    /// [`Error::Io`] on `path` if it names no file, or something that is not a regular file, or a
-    /// file that may only be read, if its directory does not exist or cannot be written to, or if
-    /// `write` fails.
+    /// [`Error::Io`] on `path` if it names no file, something that is not a regular file, or a
+    /// read-only file; if its directory does not exist or cannot be written to; or if `write`
+    /// fails.
     pub fn write(
         path: &Path,
         write: impl FnOnce(&mut BufWriter<File>) -> io::Result<()>,
@@ -58,11 +58,11 @@ impl Pending {
             return refuse("this names no file; give the name of the file to write");
         };
         let replaced = fs::metadata(&place).ok();
-        // A rename would put a file in the place of a device such as /dev/null.
+        // A rename would replace a device such as /dev/null by a file.
         if replaced.as_ref().is_some_and(|at| !at.is_file()) {
             return refuse("this is there and is no regular file; give another name");
         }
-        // WASI has no permissions; there every file counts as one that may only be read.
+        // WASI has no permissions and reports every file as read-only.
         let permissions = replaced.map(|at| at.permissions()).filter(|_| cfg!(any(unix, windows)));
         if permissions.as_ref().is_some_and(Permissions::readonly) {
             return refuse("this is there and may only be read; give another name");
@@ -77,7 +77,7 @@ impl Pending {
         Ok(Self { partial, path: path.to_owned(), place })
     }
 
-    /// Puts the file in its place, where it replaces the one that is there.
+    /// Puts the file in its place, and replaces a file that is already there.
     ///
     /// # Errors
     /// [`Error::Io`] if it cannot be renamed.
@@ -86,10 +86,10 @@ impl Pending {
     }
 }
 
-/// Where a file is to be: at `path`, or where symbolic links lead from there.
+/// The final place of a file: `path`, or where symbolic links lead from there.
 fn place(path: &Path) -> io::Result<PathBuf> {
     let mut place = path.to_owned();
-    // As many as Linux follows.
+    // Linux follows as many links.
     for _ in 0..40 {
         if !fs::symlink_metadata(&place).is_ok_and(|at| at.is_symlink()) {
             if place.parent().is_some_and(|folder| folder.as_os_str().is_empty()) {
@@ -103,28 +103,28 @@ fn place(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("a circle of symbolic links"))
 }
 
-/// The partial files of this process. Files are created, renamed and removed while this is held.
+/// The partial files of this process. Hold the lock to create, rename or remove a file.
 static PARTIAL_FILES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn partial_files() -> MutexGuard<'static, Vec<PathBuf>> {
-    // A list of paths is whole whoever panicked.
+    // The list of paths is valid even after a panic.
     PARTIAL_FILES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes the partial files of this process, for a program that is about to end early, such as in
-/// answer to a signal. As long as the returned guard is held, no other partial file is made, and
+/// Removes the partial files of this process. Call it when the program is about to end early, for
+/// example after a signal. While the returned guard is held, no other partial file is created, and
 /// none is put in its place.
 #[must_use = "others may write again when it goes"]
 pub fn remove_partial_files() -> impl Sized {
     let mut files = partial_files();
     for path in files.drain(..) {
-        // There is nobody to tell.
+        // Ignore the error, because the program is about to end.
         let _ = fs::remove_file(path);
     }
     files
 }
 
-/// A file beside its place.
+/// A file beside its final place, removed on drop.
 #[derive(Debug)]
 struct Partial(Option<TempPath>);
 
@@ -157,13 +157,13 @@ impl Drop for Partial {
     fn drop(&mut self) {
         if let Some(path) = self.0.take() {
             partial_files().retain(|file| file != &*path);
-            // The path is removed as it goes.
+            // Dropping the path removes the file.
         }
     }
 }
 
-/// What a new file may, before the process takes its mask from it: a temporary one would be its
-/// owner's alone.
+/// The permissions of a new file, before the mask of the process applies. Without them a temporary
+/// file would be readable by its owner only.
 fn of_new_files() -> Option<Permissions> {
     #[cfg(unix)]
     {

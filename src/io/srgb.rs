@@ -1,8 +1,9 @@
-//! The transfer function of sRGB (IEC 61966-2-1) between stored colours and linear light.
+//! Convert between stored colours and linear light by the transfer function of sRGB (IEC
+//! 61966-2-1).
 
 use crate::number::elementary;
 
-/// The linear value of a stored one, both in [0, 1].
+/// The linear value of a stored value, both in [0, 1].
 ///
 /// `c / 12.92` if `c <= 0.04045`, else `((c + 0.055) / 1.055)^2.4`, in f64.
 #[must_use]
@@ -10,7 +11,7 @@ pub fn to_linear(c: f64) -> f64 {
     if c <= 0.04045 { c / 12.92 } else { elementary::pow((c + 0.055) / 1.055, 2.4) }
 }
 
-/// The stored value of a linear one, the inverse of [`to_linear`].
+/// The stored value of a linear value, the inverse of [`to_linear`].
 ///
 /// `12.92 x` if `x <= 0.0031308`, else `1.055 x^(1/2.4) - 0.055`, in f64.
 #[must_use]

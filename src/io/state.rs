@@ -1,6 +1,7 @@
-//! What a frame saw as a file, so that the next frame can be drawn without those before it.
+//! Store what a frame saw in a file, so that you can draw the next frame without the frames before
+//! it.
 //!
-//! Little-endian, one after the other:
+//! The file is little-endian, without gaps:
 //!
 //! ```text
 //!   "splatref state 2\n"
@@ -24,16 +25,16 @@ use std::path::Path;
 const MAGIC: &[u8] = b"splatref state 2\n";
 const DIGITS: usize = 64;
 
-/// What a frame saw, with its number.
+/// The surfels that a frame saw, and the number of the frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct State {
-    /// The frame that saw.
+    /// The number of the frame.
     pub frame: u32,
-    /// What it saw.
+    /// The surfels that it saw.
     pub seen: Seen,
 }
 
-/// Writes a state of a scene to a file beside `path`.
+/// Writes the state of a scene to a file beside `path`, for [`Pending::put`].
 ///
 /// # Errors
 /// As [`Pending::write`].
@@ -57,11 +58,11 @@ pub fn pending(path: &Path, state: &State, scene: &str) -> Result<Pending> {
     })
 }
 
-/// Reads a state of a scene, whose surfels have these ids.
+/// Reads the state of a scene whose surfels have these ids.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read; [`Error::Format`] if it is no state, or one of another
-/// scene.
+/// [`Error::Io`] if the file cannot be read; [`Error::Format`] if it is no state, or belongs to
+/// another scene.
 pub fn read(path: &Path, scene: &str, ids: &Ids) -> Result<State> {
     let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
     parse(&bytes, scene, ids).map_err(|what| Error::format(path, what))
@@ -95,7 +96,7 @@ fn parse(bytes: &[u8], scene: &str, ids: &Ids) -> std::result::Result<State, Str
     Ok(State { frame, seen })
 }
 
-/// Bytes that are read from the front.
+/// Bytes, read from the front.
 struct Numbers<'a>(&'a [u8]);
 
 impl Numbers<'_> {

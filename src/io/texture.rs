@@ -1,18 +1,22 @@
-//! Textures from PNG and EXR files, and which one a model has.
+//! Read textures from PNG and EXR files, and find the texture of a model.
 //!
-//! | file | | |
+//! | file | contents | colours |
 //! |---|---|---|
 //! | `.png` | 8 or 16 bits, grey, a palette or colours | **sRGB**, decoded in `f64` and rounded once ([`super::srgb`]) |
 //! | `.exr` | the channels `R`, `G`, `B`, `HALF` or `FLOAT` | linear, kept |
 //!
-//! Opacity is passed over, and so is what a PNG says of its gamma. Reading PNG needs the feature `cli`.
+//! Opacity is ignored, and so is the gamma that a PNG declares. Reading PNG needs the feature
+//! `cli`.
 //!
-//! A model has the texture that is chosen for it; else the one that its file names, beside that file: PLY in a line `comment
-//! TextureFile`, OBJ by its materials. A file that names several, or one for some of its polygons only, is refused, unless one
-//! is chosen. A texture that a file names is not looked for if the file has no coordinates.
+//! # Which texture a model has
 //!
-//! What has the texture's colour, and how it is filtered, tell [`crate::source::derive`] and
-//! [`crate::source::candidates`]. It takes the place of all colours of the file.
+//! You can choose a texture for a model. Otherwise the model has the texture that its file names,
+//! beside that file: PLY in a line `comment TextureFile`, OBJ by its materials. If a file names
+//! several textures, or a texture for only some of its polygons, you must choose one. If a file has
+//! no texture coordinates, the texture that it names is not looked for.
+//!
+//! The texture replaces all colours of the file. [`crate::source::derive`] and
+//! [`crate::source::candidates`] say what gets the texture's colour, and how it is filtered.
 
 use super::environment::rgb;
 use crate::error::{Error, Result};
@@ -23,8 +27,8 @@ use std::path::{Path, PathBuf};
 /// Reads the texture at `path`.
 ///
 /// # Errors
-/// [`Error::Io`] if it cannot be read; [`Error::Format`] if its name is none of a PNG or an EXR, as the readers of
-/// those, if a channel is absent, or as [`Texture::new`].
+/// [`Error::Io`] if it cannot be read. [`Error::Format`] if the name ends neither in `.png` nor in
+/// `.exr`, as the readers of these formats, if a channel is absent, or as [`Texture::new`].
 pub fn read(path: &Path, exec: &Exec) -> Result<Texture> {
     let extension = path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase());
     let texels = match extension.as_deref() {
@@ -45,12 +49,12 @@ fn png(path: &Path) -> Result<Plane<[f32; 3]>> {
     Err(Error::format(path, "reading PNG needs the feature `cli`; give an EXR"))
 }
 
-/// Gives the cloud of the file `model` its texture, if it has one: the one at `chosen`, or that of the file. Of the
-/// texture come so many levels of prefiltered colours.
+/// Gives the cloud of the file `model` its texture: the texture at `chosen`, or else the one that
+/// the file names, if any. `levels` is the number of levels of prefiltered colours to make from it.
 ///
 /// # Errors
-/// As [`read`], and [`Error::Format`] of `model` if the texture that it names is not there, if it names several, or if a
-/// texture is chosen for a file without coordinates.
+/// As [`read`]. [`Error::Format`] for `model` if the texture that it names is missing, if it names
+/// several, or if a texture is chosen for a file without coordinates.
 pub fn paint(
     cloud: &mut Cloud,
     model: &Path,
@@ -83,7 +87,7 @@ pub fn paint(
     Ok(())
 }
 
-/// The texture that a model names.
+/// Reads the texture that a model names.
 fn named(model: &Path, name: &str, exec: &Exec) -> Result<Texture> {
     let path: PathBuf = model.parent().unwrap_or(Path::new("")).join(name);
     read(&path, exec).map_err(|error| match error {

@@ -1,15 +1,16 @@
-//! The only home of exp, pow, sin ... in the crate; what it lacks nobody needs yet.
+//! exp, ln, pow, sin, cos, tan, atan2 and J0 with the same bits on every machine.
 //!
-//! std leaves the bits of these functions to the platform, so clippy's `disallowed-methods` rejects
-//! them everywhere.
+//! This is the only home of such functions in the crate, because std leaves their bits to the
+//! platform. Clippy's `disallowed-methods` rejects the functions of std everywhere. A function that
+//! no formula needs is not here.
 //!
 //! - **f64**: the functions of the crate `libm` 0.2.16 (pinned), which give the same bits on every
-//!   target: `exp`, `log`, `pow`, `sin`, `cos`, `tan`, `atan2` and `j0`, ports of FreeBSD's msun. Other
-//!   libraries, newer versions of musl among them, differ in the last digit here and there.
+//!   target: `exp`, `log`, `pow`, `sin`, `cos`, `tan`, `atan2` and `j0`, ports of FreeBSD's msun.
+//!   Other libraries, newer versions of musl among them, differ in the last digit here and there.
 //! - **f32**: the definition is *the correctly rounded value*. It is computed in f64 and rounded
-//!   once: [`exp_f32`] by the polynomial below, which is checked over every `f32` in its range by
-//!   an ignored test against a correctly rounded oracle; the others through `libm`, or to the bits
-//!   of `libm` by another way ([`powers_f32`]).
+//!   once. [`exp_f32`] uses the polynomial below, which an ignored test checks over every `f32` in
+//!   its range against a correctly rounded oracle. The others go through `libm`, or get the bits of
+//!   `libm` in another way ([`powers_f32`]).
 
 use super::lanes::{LANES, any, each, mask};
 
@@ -31,16 +32,19 @@ pub fn pow(x: f64, y: f64) -> f64 {
     libm::pow(x, y)
 }
 
-/// The bits of [`pow`], rounded to `f32` once, of numbers that are not negative (nor -0).
+/// The bits of [`pow`], rounded to `f32` once, for bases that are not negative (nor -0).
 ///
 /// `y` is written in base 2, and x^y is the product, in f64, of the powers x^(2^j) whose bit is 1:
-/// squares of x, and square roots down to x^(2^-24). Let u be 2^-53, w the integer part of y. Where
-/// nothing underflows, the product is off by a relative error of (w + 72) u to first order: the
-/// squares and their products are rounded fewer than w times, counted with what a square doubles;
-/// each of at most 24 roots is off by 2 u or less, and its multiplication adds u. [`pow`] is off by
-/// less than an ulp, 2 u. So its value is in the interval of (w + 128) 2 u about the product, and
-/// if both ends round to one `f32`, so does that value. Where they do not, [`pow`] is called: for w
-/// = 32 that is about one number in a million.
+/// squares of x, and square roots down to x^(2^-24). Let u be 2^-53 and w the integer part of y.
+/// Where nothing underflows, the product has a relative error of (w + 72) u to first order:
+///
+/// - The squares and their products are rounded fewer than w times, counted with the errors that a
+///   square doubles.
+/// - Each of at most 24 roots is off by 2 u or less, and its multiplication adds u.
+///
+/// [`pow`] is off by less than an ulp, 2 u. So its value is in the interval of (w + 128) 2 u about
+/// the product, and if both ends round to one `f32`, so does that value. Where they do not, this
+/// function calls [`pow`]: for w = 32 that is about one number in a million.
 ///
 /// An underflow of a factor means that x < 1 and that x^y, the product and the value of [`pow`] are
 /// all beyond 2^-1000: they round to 0. An overflow likewise means that they round to infinity. A
@@ -51,6 +55,7 @@ pub fn pow(x: f64, y: f64) -> f64 {
 pub fn powers_f32(x: &[f32; LANES], y: f32) -> [f32; LANES] {
     let whole = y.floor();
     let parts = (y - whole) * 16_777_216.0;
+    // Other exponents need more squares or roots than the bound covers.
     if !(0.0..=65_536.0).contains(&whole) || parts.floor() != parts {
         return x.map(|x| pow_f32(x, y));
     }
@@ -68,7 +73,7 @@ pub fn powers_f32(x: &[f32; LANES], y: f32) -> [f32; LANES] {
     low
 }
 
-/// x^(whole + parts/2^24), nearly.
+/// Approximates x^(whole + parts/2^24).
 #[inline(always)]
 fn product(x: &[f32; LANES], mut whole: u32, mut parts: u32) -> [f64; LANES] {
     let mut product = [1.0; LANES];
@@ -118,8 +123,8 @@ pub fn tan(x: f64) -> f64 {
     libm::tan(x)
 }
 
-/// The angle of the point (x, y) from the x axis, in [-pi, pi] radians in f64; 0 or +-pi, with the
-/// sign of y, where y is 0.
+/// The angle of the point (x, y) from the x axis, in [-pi, pi] radians in f64. Where y is 0 the
+/// angle is 0 or +-pi, with the sign of y.
 #[must_use]
 pub fn atan2(y: f64, x: f64) -> f64 {
     libm::atan2(y, x)
@@ -131,8 +136,8 @@ pub fn bessel_j0(x: f64) -> f64 {
     libm::j0(x)
 }
 
-/// The polynomial of degree 10 with the least greatest relative error from e^r, 2.1e-16, for
-/// |r| <= ln(2)/2: coefficients of 1, r, r^2 ... by the Remez exchange in 40 digits, rounded.
+/// The polynomial of degree 10 whose greatest relative error from e^r is the least, 2.1e-16, for
+/// |r| <= ln(2)/2. Coefficients of 1, r, r^2 ..., by the Remez exchange in 40 digits, rounded.
 pub const EXP: [f64; 11] = [
     1.0,
     f64::from_bits(0x3FF0_0000_0000_001D),
@@ -147,20 +152,25 @@ pub const EXP: [f64; 11] = [
     f64::from_bits(0x3E92_727A_87DC_A817),
 ];
 
-/// The upper part of ln 2, of 32 significant bits, so that n times it is exact.
+/// The upper part of ln 2. It has 32 significant bits, so that n times it is exact.
 pub const LN2_HIGH: f64 = f64::from_bits(0x3FE6_2E42_FEE0_0000);
 /// The rest of ln 2.
 pub const LN2_LOW: f64 = f64::from_bits(0x3DEA_39EF_3579_3C76);
-/// 1.5 * 2^52: adding it rounds to an integer, which the low bits of the sum then hold.
+/// 1.5 * 2^52: adding it rounds to an integer, and the low bits of the sum then hold that integer.
 const ROUND: f64 = 6_755_399_441_055_744.0;
 
 /// e^x for `f32`, correctly rounded; branch-free, so that a loop over it vectorizes.
 ///
-/// In f64: n = x log2(e) rounded to an integer, ties to even (by adding and subtracting 1.5 2^52);
-/// r = (x - n [`LN2_HIGH`]) - n [`LN2_LOW`];
-/// the polynomial [`EXP`] in r, by Estrin's scheme as written (a third of the latency of
-/// Horner's rule); times 2^n; rounded to `f32` once. Below -104 the result is 0, above 89 +inf; NaN
-/// stays NaN.
+/// In f64, in this order:
+///
+/// 1. n = x log2(e) rounded to an integer, ties to even (by adding and subtracting 1.5 2^52);
+/// 2. r = (x - n [`LN2_HIGH`]) - n [`LN2_LOW`];
+/// 3. the polynomial [`EXP`] in r, by Estrin's scheme as written (a third of the latency of
+///    Horner's rule);
+/// 4. times 2^n;
+/// 5. rounded to `f32` once.
+///
+/// Below -104 the result is 0, above 89 +inf; NaN stays NaN.
 #[inline(always)]
 #[must_use]
 pub fn exp_f32(x: f32) -> f32 {
@@ -171,9 +181,9 @@ pub fn exp_f32(x: f32) -> f32 {
 
 /// [`exp_f32`] for x in [-104, 89]; any number for another x.
 ///
-/// `FUSED`: a product that is added to something is not rounded before. A machine that does both in
-/// one instruction is faster so; any other is far slower. The bits are the same, as both are correctly
-/// rounded: a test asks every `f32`.
+/// With `FUSED`, a product that is added to something is not rounded first. That is faster on a
+/// machine that does both in one instruction, and far slower on any other. The bits are the same,
+/// because both results are correctly rounded: a test checks every `f32`.
 #[expect(clippy::disallowed_methods, reason = "the callers fuse only where the hardware does")]
 #[inline(always)]
 #[must_use]
@@ -210,8 +220,8 @@ mod tests {
         }
     );
 
-    /// Every `step`-th float of [-110, 100], and how many of them are not correctly rounded, with
-    /// products rounded or not.
+    /// How many of every `step`-th float of [-110, 100] are not correctly rounded, with products
+    /// rounded or not.
     fn misrounded(step: usize) -> usize {
         let negative = (0_u32..=110.0_f32.to_bits()).step_by(step).map(|b| -f32::from_bits(b));
         let positive = (0_u32..=100.0_f32.to_bits()).step_by(step).map(f32::from_bits);
@@ -272,7 +282,8 @@ mod tests {
         })
     }
 
-    /// Whole, halves, many digits, more roots than there are, more than there may be, none.
+    /// Whole numbers, halves, many digits, too many roots for a float, too many roots for the
+    /// function, none.
     const EXPONENTS: [f32; 18] = [
         1.0, 2.0, 3.0, 5.0, 10.0, 32.0, 100.0, 1_000.5, 64.5, 0.0, 65_536.0, 0.5, 10.1, 0.25, 0.1,
         1.0e-3, 1.0e-40, 70_000.0,
@@ -309,8 +320,8 @@ mod tests {
 
     #[test]
     fn a_power_that_the_product_cannot_tell_is_left_to_pow() {
-        // Large exponents multiply the error: all floats near 1, whose powers are not 0 or
-        // infinite.
+        // Large exponents multiply the error. All these floats are near 1, so their powers are not
+        // 0 or infinite.
         let mut misled = 0;
         for y in (0_u16..40).map(|i| 65_536.0 - 0.25 * f32::from(i * i)) {
             let whole = (y as u32, ((y - y.floor()) * 16_777_216.0) as u32);
@@ -325,7 +336,7 @@ mod tests {
         assert!(misled > 0, "the interval is never needed");
     }
 
-    /// The proof of [`powers_f32`] in numbers: against the correctly rounded power.
+    /// Checks the error bounds of [`powers_f32`] against the correctly rounded power.
     #[test]
     fn powers_and_pow_are_as_close_as_they_claim() {
         for y in EXPONENTS {
@@ -339,7 +350,8 @@ mod tests {
                 for (x, found) in x.into_iter().zip(product(&x, whole as u32, parts as u32)) {
                     let exact = core_math::pow(x.into(), y.into());
                     if exact.is_normal() {
-                        // Half an ulp is lost in `exact`, less in the difference of close numbers.
+                        // `exact` has lost half an ulp; the difference of close numbers has lost
+                        // less.
                         let error = (found / exact - 1.0).abs();
                         assert!(error <= claimed + 2.0 * f64::EPSILON, "{x} ^ {y}: {error}");
                         let ulps = pow(x.into(), y.into()).ulps_to(exact);

@@ -1,14 +1,15 @@
-//! Lanes: [`LANES`] values side by side, of as many pixels, cells or surfels; never partial sums.
+//! Lanes: [`LANES`] values side by side, one for each pixel, cell or surfel; never partial sums.
 //!
-//! A kernel is written in straight loops over lanes. The compiler makes single vector instructions
-//! of such a loop, of the width of the function that the loop is inlined into: so everything here
-//! is inlined, and `vectorized` compiles each kernel for several widths. Lanes are read into local
-//! arrays, changed there and written back, because a loop that writes to memory that it may read
-//! again stays a loop. In every lane the operations are those of the definition, in its order.
+//! Write a kernel as straight loops over lanes, and the compiler turns each loop into vector
+//! instructions. Their width is the width of the function that the loop is inlined into. So
+//! everything here is inlined, and `vectorized` compiles each kernel for several widths. Read lanes
+//! into local arrays, change them there and write them back, because a loop that writes to memory
+//! that it may read again does not vectorize. In every lane the operations are those of the
+//! definition, in its order.
 //!
-//! Nothing forces a closure to be inlined. One that a kernel itself makes is compiled for the
-//! kernel's vectors anyway; one that an inlined function makes is not, and once it is long enough to
-//! stay a function its loops are scalar. So such closures are short, or are functions.
+//! Nothing forces a closure to be inlined. A closure that the kernel itself makes is compiled for
+//! the kernel's vectors anyway. A closure that an inlined function makes is not: once it is long
+//! enough to stay a function, its loops are scalar. So such closures are short, or are functions.
 
 #![expect(
     clippy::needless_range_loop,
@@ -17,23 +18,22 @@
 
 use super::{Real, Vector3};
 
-/// Values that are treated side by side: 16 numbers of 32 bits are one register of AVX-512.
+/// How many values are treated side by side: 16 numbers of 32 bits are one register of AVX-512.
 pub const LANES: usize = 16;
 
 /// One number for each lane.
 pub(crate) type Lanes<R = f32> = [R; LANES];
 
-/// A choice of lanes: all bits in a lane that is chosen, none in another.
+/// A choice of lanes: all bits set in a chosen lane, none in another.
 pub(crate) type Mask = [u32; LANES];
 
-/// Compiles a function for every width of vectors: AVX-512, AVX2 with FMA, and what every target
-/// has. Which of them runs is decided when the program runs; the bits are the same.
+/// Compiles a function for every vector width: AVX-512, AVX2 with FMA, and what every target has.
+/// The running program chooses among them; the bits are the same.
 ///
-/// In the function `target_cfg_f!(target_feature = "fma")` tells whether this version multiplies and
-/// adds in one instruction.
+/// In the function, `target_cfg_f!(target_feature = "fma")` tells whether this version multiplies
+/// and adds in one instruction.
 ///
-/// Written with parentheses, `vectorized!(fn kernel() {})`, which rustfmt formats; braces it leaves
-/// alone.
+/// Write it with parentheses, `vectorized!(fn kernel() {})`, because rustfmt leaves braces alone.
 macro_rules! vectorized {
     ($($item:tt)+) => {
         #[multiversion::multiversion(
@@ -44,6 +44,7 @@ macro_rules! vectorized {
 }
 pub(crate) use vectorized;
 
+<<<<<<< HEAD
 /// [`vectorized`] for AVX2 with FMA and for what every target has: for kernels in `f64` that are long to compile
 /// and that AVX-512 makes no faster.
 macro_rules! vectorized_avx2 {
@@ -55,6 +56,9 @@ macro_rules! vectorized_avx2 {
 pub(crate) use vectorized_avx2;
 
 /// A value for each lane.
+=======
+/// Makes a value for each lane.
+>>>>>>> main
 #[inline(always)]
 pub(crate) fn each<T: Copy + Default>(value: impl Fn(usize) -> T) -> [T; LANES] {
     let mut lanes = [T::default(); LANES];
@@ -68,19 +72,20 @@ pub(crate) fn each<T: Copy + Default>(value: impl Fn(usize) -> T) -> [T; LANES] 
 
 /// The lanes in which a condition holds.
 ///
-/// Integers, not `bool`: a select of integers by a comparison of floats would not become a vector.
+/// The mask holds integers, not `bool`, because a select of integers by a comparison of floats
+/// would not vectorize.
 #[inline(always)]
 pub(crate) fn mask(holds: impl Fn(usize) -> bool) -> Mask {
     each(|i| u32::from(holds(i)).wrapping_neg())
 }
 
-/// Whether a lane is chosen; all lanes are asked, so that they are asked at once.
+/// Whether a lane is chosen. It reads all lanes, so that they are read at once.
 #[inline(always)]
 pub(crate) fn any(mask: &Mask) -> bool {
     mask.iter().fold(0, |any, lane| any | lane) != 0
 }
 
-/// Whether one of these is above 0; all are asked, so that they are asked at once.
+/// Whether one of these is above 0. It reads all of them, so that they are read at once.
 #[inline(always)]
 pub(crate) fn any_above_0(values: &[f32]) -> bool {
     let mut found = false;
@@ -92,14 +97,14 @@ pub(crate) fn any_above_0(values: &[f32]) -> bool {
 
 /// The numbers of `chosen` where a lane is chosen, of `others` elsewhere.
 ///
-/// By bits: of a choice by a condition LLVM makes a choice of what to load, lane by lane, and no
-/// vector.
+/// It selects bits, because LLVM turns a choice by a condition into a choice of what to load, lane
+/// by lane, and not into a vector.
 #[inline(always)]
 pub(crate) fn select(mask: &Mask, chosen: &Lanes, others: &Lanes) -> Lanes {
     each(|i| f32::from_bits((chosen[i].to_bits() & mask[i]) | (others[i].to_bits() & !mask[i])))
 }
 
-/// [`select`] of integers.
+/// [`select`] for integers.
 #[inline(always)]
 pub(crate) fn select_u32(
     mask: &Mask,
@@ -111,7 +116,7 @@ pub(crate) fn select_u32(
 
 // -- Rows in memory
 
-/// The values of a row from an index on.
+/// Reads the values of a row from an index on.
 #[inline(always)]
 pub(crate) fn load<T: Copy + Default>(row: &[T], at: usize) -> [T; LANES] {
     let mut lanes = [T::default(); LANES];
@@ -125,7 +130,7 @@ pub(crate) fn store<T: Copy>(row: &mut [T], at: usize, lanes: &[T; LANES]) {
     row[at..at + LANES].copy_from_slice(lanes);
 }
 
-/// Overwrites a row by the first lanes, as many as the row has: a whole copy is one instruction.
+/// Overwrites a row with the first lanes, as many as the row has: a whole copy is one instruction.
 #[inline(always)]
 pub(crate) fn store_first<T: Copy>(row: &mut [T], lanes: &[T; LANES]) {
     if row.len() == LANES {
@@ -135,7 +140,7 @@ pub(crate) fn store_first<T: Copy>(row: &mut [T], lanes: &[T; LANES]) {
     }
 }
 
-/// Every second of twice [`LANES`] values of a row from an index on: the even and the odd ones.
+/// Reads twice [`LANES`] values of a row from an index on, and separates the even and the odd ones.
 #[inline(always)]
 pub(crate) fn load_halves<T: Copy + Default>(row: &[T], at: usize) -> [[T; LANES]; 2] {
     let mut pairs = [T::default(); 2 * LANES];
@@ -176,7 +181,7 @@ pub(crate) fn put_vector<R: Real>(lanes: &mut [Lanes<R>; 3], i: usize, v: Vector
     (lanes[0][i], lanes[1][i], lanes[2][i]) = (v.x, v.y, v.z);
 }
 
-/// The components of all lanes, one after the other, of values that have several.
+/// Turns values with several components into lanes, one component after the other.
 #[inline(always)]
 pub(crate) fn transposed<R: Copy, const N: usize>(values: &[[R; N]; LANES]) -> [Lanes<R>; N] {
     let mut lanes = [[values[0][0]; LANES]; N];

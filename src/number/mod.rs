@@ -1,14 +1,20 @@
-//! Numbers: one formula, several arithmetics.
+//! Evaluate one formula in several arithmetics.
 //!
-//! Every formula of a splat or a fragment is written once, generic over [`Real`]. With `f32` it is
-//! the executable specification, the bits that a GPU gets from the same IEEE operations in the same
-//! order; with `f64` it is the truth of the same problem.
+//! Every formula of a splat or a fragment is written once, generic over [`Real`]:
 //!
-//! - [`real`]: the trait, its comparisons, and the numbers with two outcomes, [`Exact`].
+//! - In `f32` it is the executable specification: the bits that a GPU gets from the same IEEE
+//!   operations in the same order.
+//! - In `f64` it is the truth of the same problem.
+//! - In [`Ball`] it tells how far an honest `f32` result may lie from that truth.
+//!
+//! What is where:
+//!
+//! - [`real`]: the trait, its comparisons, and [`Exact`], the numbers whose comparisons have two
+//!   outcomes.
 //! - [`ball`]: a number with a radius, whose comparisons have three outcomes.
-//! - [`truth`]: what comparisons and integer parts of numbers are.
+//! - [`truth`]: the outcome of a comparison, and the integer part of a number.
 //! - [`vector`]: two- and three-component vectors whose order of operations is written out.
-//! - [`lanes`]: values side by side, and kernels for every width of vectors.
+//! - [`lanes`]: values side by side, and kernels compiled for every vector width.
 //! - [`elementary`]: the only home of exp, pow, sin ... in the crate.
 //! - [`random`]: random values as functions of a seed and an index.
 

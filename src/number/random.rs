@@ -1,7 +1,8 @@
 //! Random values as functions of a seed and an index.
 //!
-//! There is no state: value `i` of a stream is computed from `(seed, i)` alone, so it does not
-//! depend on who asks first, and a stream can be entered anywhere. The definition is stable.
+//! There is no state: value `i` of a stream is computed from `(seed, i)` alone. So it does not
+//! depend on which caller asks first, and you can enter a stream anywhere. The definition is
+//! stable.
 //!
 //! [`bits`] is output number `i` of `SplitMix64` (Steele, Lea, Flood: *Fast Splittable Pseudorandom
 //! Number Generators*, OOPSLA 2014) started with `seed`; all arithmetic is modulo 2^64:
@@ -38,7 +39,7 @@ pub fn unit(seed: u64, index: u64) -> f32 {
 #[must_use]
 pub fn below(seed: u64, index: u64, count: u64) -> u64 {
     let product = u128::from(bits(seed, index)) * u128::from(count);
-    // Less than 2^64.
+    // The shifted product is less than 2^64.
     (product >> 64) as u64
 }
 
@@ -48,9 +49,9 @@ mod tests {
 
     #[test]
     fn the_streams_are_those_of_splitmix64() {
-        // The outputs of Vigna's splitmix64.c (https://prng.di.unimi.it/splitmix64.c) as they are
-        // published for seed 0 and, at
-        // https://rosettacode.org/wiki/Pseudo-random_numbers/Splitmix64, for seed 1234567.
+        // The outputs of Vigna's splitmix64.c (https://prng.di.unimi.it/splitmix64.c): published
+        // there for seed 0 and, at https://rosettacode.org/wiki/Pseudo-random_numbers/Splitmix64,
+        // for seed 1234567.
         let zero = [0xE220_A839_7B1D_CDAF, 0x6E78_9E6A_A1B9_65F4, 0x06C4_5D18_8009_454F];
         assert_eq!([0, 1, 2].map(|i| bits(0, i)), zero);
         let rosetta = [

@@ -1,4 +1,4 @@
-//! The number that every formula is generic over.
+//! The number type that every formula is generic over.
 
 use super::elementary;
 use super::lanes::LANES;
@@ -6,13 +6,13 @@ use super::{Pixel, Truth};
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// A number that the formulas of the crate can be evaluated in.
+/// A number type that can evaluate the formulas of the crate.
 ///
-/// An operation rounds once, to nearest, ties to even, and is never fused with another.
-/// Comparisons give a [`Truth`], not a `bool`. So a formula over any `Real` has no control flow
-/// that depends on a value; what has is over [`Exact`] numbers. A comparison with NaN is false.
-/// There are no `min` and `max`: their treatment of zeros and NaN is not portable,
-/// [`Real::at_least`] and [`Real::at_most`] are.
+/// An operation rounds once, to nearest, ties to even, and is never fused with another. Comparisons
+/// give a [`Truth`], not a `bool`. So a formula over any `Real` has no control flow that depends on
+/// a value; code with such control flow is generic over [`Exact`] numbers. A comparison with NaN is
+/// false. There are no `min` and `max`, because their treatment of zeros and NaN is not portable;
+/// use [`Real::at_least`] and [`Real::at_most`].
 pub trait Real:
     Copy
     + Debug
@@ -25,9 +25,9 @@ pub trait Real:
     + Sync
     + 'static
 {
-    /// What a comparison of two numbers gives.
+    /// The outcome of a comparison of two numbers.
     type Truth: Truth;
-    /// What the integer part of a number is.
+    /// The integer part of a number.
     type Pixel: Pixel;
 
     /// 0.
@@ -37,7 +37,7 @@ pub trait Real:
     /// Positive infinity: the depth of an empty pixel.
     const INFINITY: Self;
 
-    /// Exact: every input and every constant of the crate is an `f32`.
+    /// Converts exactly: every input and every constant of the crate is an `f32`.
     fn from_f32(value: f32) -> Self;
     /// The number nearest to an integer, ties to even: exact up to 2^24 in `f32`, 2^53 in `f64`.
     fn from_i64(value: i64) -> Self;
@@ -51,7 +51,8 @@ pub trait Real:
     fn floor(self) -> Self;
     /// The square root, correctly rounded.
     fn sqrt(self) -> Self;
-    /// The square root of a sum of squares. A ball has forgotten that such a sum is not negative.
+    /// The square root of a sum of squares. A ball needs this method because it does not remember
+    /// that such a sum is not negative.
     #[inline(always)]
     #[must_use]
     fn root_of_squares(self) -> Self {
@@ -75,12 +76,12 @@ pub trait Real:
     fn gt(self, other: Self) -> Self::Truth;
     /// `self >= other`.
     fn ge(self, other: Self) -> Self::Truth;
-    /// `yes` if the truth is yes, else `no`. A number that stands for an interval gives the hull of
-    /// both where the truth is undecided.
+    /// `yes` if the truth is yes, else `no`. Where the truth is undecided, a number that stands for
+    /// an interval gives the hull of both.
     #[must_use]
     fn select(truth: Self::Truth, yes: Self, no: Self) -> Self;
-    /// `self`, or `low` if `self < low`. No comparison of intervals is undecided here: the bound is
-    /// continuous.
+    /// `self`, or `low` if `self < low`. For intervals the result is never undecided, because the
+    /// bound is continuous.
     #[must_use]
     fn at_least(self, low: Self) -> Self;
     /// `self`, or `high` if `self > high`; continuous as well.
@@ -88,16 +89,16 @@ pub trait Real:
     fn at_most(self, high: Self) -> Self;
     /// `self.at_least(low).at_most(high)` in one step.
     ///
-    /// The same number. One step, since a midpoint and a radius cannot hold the lopsided interval
-    /// that the first of two bounds leaves.
+    /// The number is the same. It is one step because a midpoint and a radius cannot hold the
+    /// lopsided interval that the first of two bounds leaves.
     #[must_use]
     fn clamped(self, low: Self, high: Self) -> Self;
 }
 
-/// A number whose comparisons have two outcomes: what code with control flow is generic over.
+/// A number whose comparisons have two outcomes; code with control flow is generic over it.
 ///
-/// `f32` and `f64`, whose operators of [`PartialOrd`] are the comparisons of [`Real`]. The methods
-/// are those that no number with three outcomes needs.
+/// `f32` and `f64` implement it; their operators of [`PartialOrd`] are the comparisons of [`Real`].
+/// No number with three outcomes needs the methods of this trait.
 pub trait Exact: Real<Truth = bool, Pixel = u32> + PartialOrd {
     /// The integer part, towards 0; the nearest `i64` if out of range, 0 for NaN.
     fn to_i64(self) -> i64;
@@ -112,13 +113,13 @@ pub trait Exact: Real<Truth = bool, Pixel = u32> + PartialOrd {
     /// How far apart two numbers are in the ascending list of all numbers: the difference of their
     /// ranks, 1 for neighbours.
     ///
-    /// The rank of a number >= 0 is its bits as an integer, that of -x the negative of x's; so both
-    /// zeros have rank 0, and +inf is one after the largest number. The difference is exact as an
-    /// integer and then rounded to `f32`; +inf if either is NaN.
+    /// The rank of a number >= 0 is its bits as an integer, and the rank of -x is the negative of
+    /// x's rank. So both zeros have rank 0, and +inf is one after the largest number. The
+    /// difference is exact as an integer and then rounded to `f32`; +inf if either number is NaN.
     fn ulps_to(self, other: Self) -> f32;
 }
 
-/// The comparisons of a number that has operators for them.
+/// The comparisons of a number type that has comparison operators.
 macro_rules! compared_by_operators {
     () => {
         type Truth = bool;
@@ -185,7 +186,7 @@ impl Real for f32 {
     #[inline(always)]
     fn to_pixel(self) -> u32 {
         // A float-to-integer conversion that saturates does not vectorize. Adding 2^23 rounds to an
-        // integer, which the mantissa of the sum then holds.
+        // integer, and the mantissa of the sum then holds that integer.
         let shifted = self + 8_388_608.0;
         let above = shifted - 8_388_608.0 > self;
         let shifted = if above { shifted - 1.0 } else { shifted };
@@ -310,7 +311,7 @@ impl Exact for f64 {
     }
 }
 
-/// The position of a float in the ordered list of all floats; both zeros are 0.
+/// The position of a float in the ordered list of all floats; both zeros are at 0.
 pub(crate) fn ordered_f32(value: f32) -> i64 {
     let magnitude = i64::from(value.to_bits() & 0x7FFF_FFFF);
     if value.is_sign_negative() { -magnitude } else { magnitude }
@@ -352,7 +353,7 @@ mod tests {
 
     #[test]
     fn an_integer_becomes_the_nearest_number_and_ties_go_to_even() {
-        // 2^24 and 2^53 are where the spacing of the two types becomes 2.
+        // The spacing of the two types becomes 2 at 2^24 and 2^53.
         for (sign, odd) in [(1, 16_777_217_i64), (-1, 16_777_217), (1, 33_554_434 + 1)] {
             let single = <f32 as Real>::from_i64(sign * odd);
             let neighbours = [f32::next_down(single), f32::next_up(single)];
@@ -366,7 +367,8 @@ mod tests {
         let wide = 1_i64 << 53;
         assert_eq!(f64::from_i64(wide + 1), wide as f64, "down to even");
         assert_eq!(f64::from_i64(wide + 3), (wide + 4) as f64, "up to even");
-        // Once, not by way of f64: 2^60 + 2^36 + 1 is above the tie that f64 would make of it.
+        // Rounded once, not by way of f64: 2^60 + 2^36 + 1 is above the tie that f64 would make of
+        // it.
         assert_eq!(
             <f32 as Real>::from_i64((1 << 60) + (1 << 36) + 1),
             f32::next_up((1_i64 << 60) as f32)
@@ -379,7 +381,7 @@ mod tests {
     fn floor_and_angle_are_those_of_their_type() {
         assert_eq!([-0.25_f32, -1.0, 2.75, 1e30].map(Real::floor), [-1.0, -1.0, 2.0, 1e30]);
         assert_eq!((-0.25_f64).floor(), -1.0);
-        // Around the circle, against angles that are known.
+        // Around the circle, against known angles.
         let eighth = std::f64::consts::FRAC_PI_4;
         for (i, (y, x)) in
             [(0.0, 1.0), (1.0, 1.0), (1.0, 0.0), (1.0, -1.0), (0.0, -1.0)].into_iter().enumerate()

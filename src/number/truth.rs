@@ -1,15 +1,15 @@
-//! What comparisons and integer parts of numbers are.
+//! The outcome of a comparison, and the integer part of a number.
 
 use std::fmt::Debug;
 use std::ops::{BitAnd, BitOr, Not};
 
 /// The outcome of a comparison.
 ///
-/// A number that is exact answers with a `bool`. A number that stands for all values in an interval
-/// has a third answer, "undecided", where some of these values say yes and others no: `&`, `|` and
-/// `!` are then the operators of Kleene's logic. Only a `bool` can steer an `if`. A value that
-/// depends on any other truth goes through [`Real::select`](super::Real::select); a decision about
-/// a fragment or a cell is handed to the caller.
+/// An exact number answers with a `bool`. A number that stands for all values in an interval has a
+/// third answer, "undecided", where some of these values say yes and others no. Then `&`, `|` and
+/// `!` are the operators of Kleene's logic. Only a `bool` can steer an `if`. A value that depends
+/// on any other truth goes through [`Real::select`](super::Real::select); a decision about a
+/// fragment or a cell goes to the caller.
 pub trait Truth:
     Copy
     + Debug
@@ -39,12 +39,12 @@ impl Truth for bool {
     }
 }
 
-/// The integer part of a coordinate: one column or row, or the least and the greatest that the
-/// coordinate may lie in.
+/// The integer part of a coordinate: one column or row, or the least and the greatest column or row
+/// that the coordinate may lie in.
 pub trait Pixel: Copy + Debug + Send + Sync + 'static {
-    /// The least.
+    /// The least column or row.
     fn least(self) -> u32;
-    /// The greatest.
+    /// The greatest column or row.
     fn greatest(self) -> u32;
 }
 

@@ -1,6 +1,6 @@
 //! Small vectors over [`Real`] with a written-out order of operations.
 //!
-//! glam serves the public interface (positions, matrices); the arithmetic that defines pictures is
+//! glam serves the public interface (positions, matrices). The arithmetic that defines pictures is
 //! spelled out here, so that its bits are part of the specification.
 
 use super::Real;
@@ -33,7 +33,7 @@ impl<R> Vector2<R> {
         Self { x, y }
     }
 
-    /// Each component in another number.
+    /// Converts each component to another number.
     #[inline(always)]
     #[must_use]
     pub fn map<S>(self, f: impl Fn(R) -> S) -> Vector2<S> {
@@ -48,7 +48,7 @@ impl<R> Vector3<R> {
         Self { x, y, z }
     }
 
-    /// Each component in another number.
+    /// Converts each component to another number.
     #[inline(always)]
     #[must_use]
     pub fn map<S>(self, f: impl Fn(R) -> S) -> Vector3<S> {
@@ -106,7 +106,8 @@ impl<R: Real> Vector3<R> {
     }
 }
 
-/// A component of a unit vector. No closure, which would stay a function where numbers are balls.
+/// A component of a unit vector. It is not a closure, because a closure would not be inlined where
+/// numbers are balls.
 #[inline(always)]
 fn part<R: Real>(some: R::Truth, component: R, length: R) -> R {
     R::select(some, component / length, R::ZERO)

@@ -1,20 +1,20 @@
-//! What bounds a whole scene, surfels and primitives.
+//! The box and the sphere around a whole scene, surfels and primitives.
 
 use super::{Primitives, Scene, Surfels};
 use glam::{DVec3, Vec3};
 
 impl Scene {
-    /// The corners of the smallest axis-parallel box around all positions: of surfels, and of
-    /// vertices that a primitive uses. Both are the origin if the scene is empty.
+    /// The corners of the smallest axis-parallel box around all positions: the surfels' positions,
+    /// and the vertices that a primitive uses. Both corners are the origin if the scene is empty.
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
         corners(&self.surfels, &self.primitives)
     }
 
-    /// A sphere around everything: that of the surfels, see [`super::Surfels::bounding_sphere`], if
-    /// there is nothing else. Otherwise the middle of [`Scene::bounds`], and the largest distance
-    /// from there to a surfel plus its reach or to a used vertex plus its radius; in f64. Of a scene
-    /// of objects [`super::Objects::bounding_sphere`].
+    /// A sphere around everything, in f64. If there are only surfels, it is their sphere, see
+    /// [`super::Surfels::bounding_sphere`]. Otherwise it has the middle of [`Scene::bounds`] as its
+    /// centre; its radius is the largest distance from there to a surfel plus its reach or to a
+    /// used vertex plus its radius. A scene of objects uses [`super::Objects::bounding_sphere`].
     #[must_use]
     pub fn bounding_sphere(&self) -> (DVec3, f64) {
         match &self.objects {

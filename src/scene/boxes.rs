@@ -1,10 +1,11 @@
-//! Boxes around neighbouring surfels: what a view asks before it looks at each of them.
+//! Boxes around neighbouring surfels: a view tests a box before it looks at each surfel.
 
 use super::Surfels;
 use glam::Vec3;
 use std::ops::Range;
 
-/// Axis-parallel boxes around the positions of each [`Boxes::SURFELS`] consecutive surfels, and of all.
+/// Axis-parallel boxes around the positions of each [`Boxes::SURFELS`] consecutive surfels, and of
+/// all.
 #[derive(Clone, Debug)]
 pub struct Boxes {
     each: Vec<[Vec3; 2]>,
@@ -15,7 +16,7 @@ impl Boxes {
     /// How many surfels share a box.
     pub const SURFELS: usize = 1024;
 
-    /// The boxes of surfels.
+    /// Computes the boxes of surfels.
     #[must_use]
     pub fn new(surfels: &Surfels) -> Self {
         let of = |points: &[Vec3]| {
@@ -29,13 +30,13 @@ impl Boxes {
         Self { each, all }
     }
 
-    /// The box around all, the least and the greatest corner.
+    /// The least and the greatest corner of the box around all surfels.
     #[must_use]
     pub fn all(&self) -> [Vec3; 2] {
         self.all
     }
 
-    /// The parts of a range of surfels that have a box of their own, each with its box.
+    /// Splits a range of surfels at the borders of boxes, and gives each part with its box.
     pub fn parts(&self, range: Range<usize>) -> impl Iterator<Item = (Range<usize>, [Vec3; 2])> {
         let Range { start, end } = range;
         let chunks = start / Self::SURFELS..end.div_ceil(Self::SURFELS);

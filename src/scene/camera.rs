@@ -23,8 +23,8 @@
 //!   unit a = a (1 / |a|)                            each component times one quotient
 //! ```
 //!
-//! and the quotient or product of a vector and a number is taken component by component. The fields
-//! of [`Camera`] are rounded to `f32` at the end, once.
+//! and the quotient or product of a vector and a number is computed component by component. The
+//! fields of [`Camera`] are rounded to `f32` at the end, once.
 
 pub mod motion;
 
@@ -32,7 +32,7 @@ use crate::error::{Error, Result};
 use glam::{DMat3, DMat4, DVec3, Mat4};
 pub use motion::CameraMotion;
 
-/// How depth shrinks what is seen.
+/// How depth affects the size of what is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Projection {
     /// Through a centre: `fx` and `fy` are focal lengths in pixels.
@@ -41,7 +41,7 @@ pub enum Projection {
     Orthographic,
 }
 
-/// The opening of a camera, in the terms a person gives it.
+/// The opening of a camera, in the terms in which people give it.
 ///
 /// The lens gives the scale, [`Camera::fx`] and [`Camera::fy`] alike, for a picture of `height`
 /// pixels; computed in f64 and rounded to `f32` once:
@@ -63,7 +63,7 @@ pub enum Lens {
     Orthographic(f64),
 }
 
-/// Where a camera stands and looks.
+/// Where a camera stands, and where it looks.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// The centre of projection, in world units.
@@ -74,7 +74,7 @@ pub struct Pose {
     pub up: DVec3,
 }
 
-/// A camera: numbers are `f32`, so that every number type is given the same problem.
+/// A camera. Its numbers are `f32`, so that every number type gets the same problem.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Width of the picture in pixels.
@@ -93,7 +93,8 @@ pub struct Camera {
     pub cx: f32,
     /// Row of the principal point in pixels.
     pub cy: f32,
-    /// Near plane: what is not farther than this depth is not seen. > 0 for perspective cameras.
+    /// Depth of the near plane: anything not farther than this is not seen. > 0 for perspective
+    /// cameras.
     pub near: f32,
 }
 
@@ -101,12 +102,12 @@ pub struct Camera {
 pub const MAX_EXTENT: u32 = 65_536;
 /// The largest number of pixels of a picture: 2^28, a square of 16,384.
 pub const MAX_PIXELS: u64 = 1 << 28;
-/// The farthest that a coordinate of the eye may be from 0, and the eye from the target; matrices
-/// are `f32`.
+/// How far a coordinate of the eye may be from 0, and the eye from the target; there is a limit
+/// because matrices are `f32`.
 pub const MAX_DISTANCE: f64 = 1e38;
 
 impl Camera {
-    /// A camera at `pose`, the principal point in the middle of the picture.
+    /// Places a camera at `pose`, with the principal point in the middle of the picture.
     ///
     /// The near plane is at 1/1024 of the distance from eye to target. In f64, in the terms of the
     /// [module](self#arithmetic):
@@ -120,19 +121,24 @@ impl Camera {
     ///   near = distance / 1024      cx = width / 2      cy = height / 2      fx, fy: see Lens
     /// ```
     ///
-    /// The rows of the view matrix are those of r, v and b, and (0, 0, 0, 1). The row of a is
+    /// The view matrix has one row for each of r, v and b, and the row (0, 0, 0, 1). The row of a
+    /// is
     ///
     /// ```text
     ///   a.x + 0    a.y + 0    a.z + 0    ((a.x (-eye.x) + a.y (-eye.y)) + a.z (-eye.z)) + 0
     /// ```
     ///
-    /// (+ 0 turns a -0 into +0, and is nothing else).
+    /// (+ 0 turns a -0 into +0, and changes nothing else).
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the picture has no pixels or more than [`MAX_EXTENT`] a side or
-    /// [`MAX_PIXELS`] in all, if the lens is out of range, if eye and target coincide or are farther
-    /// away than [`MAX_DISTANCE`], if up is 0 or all but parallel to the view, not |u x b| > 1e-6 |u|,
-    /// or if anything is not finite.
+    /// [`Error::Invalid`] in any of these cases:
+    ///
+    /// - The picture has no pixels, more than [`MAX_EXTENT`] a side or more than [`MAX_PIXELS`] in
+    ///   all.
+    /// - The lens is out of range.
+    /// - Eye and target coincide, or are farther away than [`MAX_DISTANCE`].
+    /// - up is 0 or almost parallel to the view, not |u x b| > 1e-6 |u|.
+    /// - Anything is not finite.
     pub fn new(width: u32, height: u32, pose: Pose, lens: Lens) -> Result<Self> {
         Self::check_size(width, height)?;
         let (projection, scale) = scale(height, lens)?;
@@ -153,10 +159,10 @@ impl Camera {
         Ok(camera)
     }
 
-    /// A camera that sees a sphere around the scene, from the direction `from`, +y up.
+    /// Places a camera so that it sees a sphere around the scene, from the direction `from`, +y up.
     ///
-    /// The sphere touches the nearer pair of picture edges, with a margin of 5 %. `lens` must be
-    /// [`Lens::FieldOfView`] or [`Lens::Focal`] for a perspective camera; the height of
+    /// The sphere touches the nearer pair of picture edges, with a margin of 5 %. For a perspective
+    /// camera `lens` must be [`Lens::FieldOfView`] or [`Lens::Focal`]; the height of
     /// [`Lens::Orthographic`] is kept. In f64, in the terms of the [module](self#arithmetic), with
     /// the scale of the lens as rounded to `f32`:
     ///
@@ -168,7 +174,7 @@ impl Camera {
     ///   up = -z if from.x and from.z are 0, else +y             -z is (-0, -0, -1)
     /// ```
     ///
-    /// Then [`Camera::new`] of this eye, with the target `center`.
+    /// Then [`Camera::new`] with this eye and the target `center`.
     ///
     /// # Errors
     /// As [`Camera::new`].
@@ -182,10 +188,10 @@ impl Camera {
         Self::check_size(width, height)?;
         let (projection, scale) = scale(height, lens)?;
         let half_extent = f64::from(if width < height { width } else { height }) / 2.0;
-        // A single point has no extent: any distance frames it.
+        // A single point has no extent, so any distance frames it.
         let radius = if radius > 0.0 { radius * 1.05 } else { 1.0 };
         let distance = match projection {
-            // sin of the half opening angle of the cone that the nearer edges leave
+            // The sine of half the opening angle of the cone that fits between the nearer edges.
             Projection::Perspective => {
                 let tangent = half_extent / f64::from(scale);
                 radius * (1.0 + tangent * tangent).sqrt() / tangent
@@ -197,7 +203,7 @@ impl Camera {
         Self::new(width, height, Pose { eye, target: center, up }, lens)
     }
 
-    /// Whether a picture can have this size.
+    /// Checks that a picture may have this size.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`Camera::new`].
@@ -212,7 +218,7 @@ impl Camera {
         Ok(())
     }
 
-    /// Whether a pixel is in the picture.
+    /// Checks that a pixel is in the picture.
     ///
     /// # Errors
     /// [`Error::Usage`] if it is not.
@@ -225,7 +231,8 @@ impl Camera {
         }
     }
 
-    /// Whether a picture can be made with these numbers; for cameras that were filled in by hand.
+    /// Checks that these numbers can make a picture; for cameras whose fields were filled in by
+    /// hand.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`Camera::new`].
@@ -252,9 +259,9 @@ impl Camera {
     }
 
     /// The position of the camera in world space, in f64: the last column of the inverse of the
-    /// view matrix, whose last row is (0, 0, 0, 1).
+    /// view matrix. The last row of the view matrix is (0, 0, 0, 1).
     ///
-    /// With V(i,j) the element of row i and column j, counted from 0, from `f32`:
+    /// V(i,j) is the element of row i and column j, counted from 0, converted from `f32`:
     ///
     /// ```text
     ///   a = V12 V23 - V13 V22      b = V02 V23 - V03 V22      c = V02 V13 - V03 V12
@@ -271,8 +278,8 @@ impl Camera {
     }
 }
 
-/// Right, up and back of a pose, as columns, and the distance from eye to target: r, v, b and
-/// distance of [`Camera::new`], whose errors are these.
+/// The axes right, up and back of a pose, as columns, and the distance from eye to target: r, v, b
+/// and distance of [`Camera::new`]. This function also reports the errors of [`Camera::new`].
 fn axes(pose: Pose) -> Result<(DMat3, f64)> {
     let invalid = |what: &str| Err(Error::Invalid(format!("camera: {what}")));
     let Pose { eye, target, up } = pose;
@@ -283,17 +290,18 @@ fn axes(pose: Pose) -> Result<(DMat3, f64)> {
     if distance == 0.0 {
         return invalid("eye and target are the same point: move one of them");
     }
-    // The square of such a length is beyond f64, and a position beyond f32.
+    // The square of a longer distance is beyond f64, and such a position is beyond f32.
     if distance > MAX_DISTANCE || eye.abs().max_element() > MAX_DISTANCE {
         let what = format!("eye or target is farther away than {MAX_DISTANCE:e}");
         return invalid(&format!("{what}, about the most that f32 holds"));
     }
     let back = (eye - target) / distance;
-    // Only the direction of up counts, and the square of its length must be in f64.
+    // Only the direction of up counts, and the square of its length must fit in f64.
     let largest = up.abs().max_element();
     let up = if (1e-100..=1e100).contains(&largest) { up } else { up / largest };
     let right = up.cross(back);
-    // An up of 0 is NaN by now. An angle below 1e-6 between up and the view leaves no digits for `right`.
+    // An up of 0 is NaN by now. An angle below 1e-6 between up and the view leaves no digits for
+    // `right`.
     if !(right.length() > 1e-6 * up.length()) {
         return invalid("up is zero or parallel to the line of sight: choose another --up");
     }
@@ -302,7 +310,7 @@ fn axes(pose: Pose) -> Result<(DMat3, f64)> {
     Ok((DMat3::from_cols(right, up, back), distance))
 }
 
-/// Projection and pixels per unit of a lens.
+/// The projection of a lens, and its pixels per unit.
 fn scale(height: u32, lens: Lens) -> Result<(Projection, f32)> {
     let height = f64::from(height);
     let (projection, scale) = match lens {
@@ -317,6 +325,7 @@ fn scale(height: u32, lens: Lens) -> Result<(Projection, f32)> {
         Lens::Focal(pixels) => (Projection::Perspective, pixels),
         Lens::Orthographic(units) => (Projection::Orthographic, height / units),
     };
+    // The rounding to f32 may turn a tiny scale into 0, or a huge one into infinity.
     if !(scale > 0.0 && (scale as f32).is_finite() && scale as f32 > 0.0) {
         let what = "camera: the focal length or orthographic height must be finite and > 0";
         return Err(Error::Invalid(what.into()));

@@ -1,21 +1,22 @@
-//! Points as a file holds them: nothing derived, nothing checked but the lengths of the arrays.
+//! Points as a file holds them: nothing derived, nothing checked except the lengths of the arrays.
 
 use super::{Coordinates, Groups, Mipmap, Paint};
 use glam::{DVec3, Vec3};
 
-/// A number of each point under a name, as `roughness`: what somebody shades with.
+/// A named number for each point, such as `roughness`, for your own shading.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Property {
-    /// What it is called in the file.
+    /// The name in the file.
     pub name: String,
-    /// In the order of the points.
+    /// The values in the order of the points.
     pub values: Vec<f32>,
 }
 
 /// Points, with whatever else their file gave.
 ///
-/// Every array that is there has the length of `position`. Values are unchecked: NaN, zero normals
-/// and negative radii are dropped and counted when [`super::Surfels`] are made of them.
+/// Every array that is present has the length of `position`. Values are unchecked: NaN, zero
+/// normals and negative radii are dropped and counted when [`super::Surfels`] are made from the
+/// points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Cloud {
     /// Positions in world units.
@@ -30,19 +31,20 @@ pub struct Cloud {
     pub opacity: Option<Vec<f32>>,
     /// Half axes of elliptical surfels, in world units.
     pub tangents: Option<Vec<[Vec3; 2]>>,
-    /// Prefiltered linear RGB; of use only where there are colours.
+    /// Prefiltered linear RGB; used only where there are colours.
     pub mipmap: Option<Mipmap>,
     /// Tangents of tubes, of any length.
     pub tangent: Option<Vec<Vec3>>,
     /// Groups of the points.
     pub groups: Option<Groups>,
-    /// Further numbers of the points, of which splatting knows nothing but their names.
+    /// Further numbers of the points; splatting knows only their names.
     pub properties: Vec<Property>,
     /// Where points or corners are in a texture.
     pub coordinates: Option<Coordinates>,
-    /// The names of the textures that the file gives, in the order of their first use; an empty one is of polygons without.
+    /// The names of the textures that the file gives, in the order of their first use; an empty
+    /// name stands for polygons without a texture.
     pub textures: Vec<String>,
-    /// The texture, once it is read; without one there are no colours of textures.
+    /// The texture, once it is read; without it, points get no colours from textures.
     pub paint: Option<Paint>,
     /// Triangles as indices into `position`; polygons of files have been cut into fans.
     pub triangles: Vec<[u32; 3]>,
@@ -51,10 +53,11 @@ pub struct Cloud {
 }
 
 impl Cloud {
-    /// The points of these indices, in this order, without triangles and edges, and without the names of textures.
+    /// The points with these indices, in this order, without triangles and edges, and without the
+    /// names of textures.
     ///
     /// # Panics
-    /// If there is no point of an index, or an array is shorter than `position`.
+    /// If an index has no point, or an array is shorter than `position`.
     #[must_use]
     pub fn some(&self, indices: &[u32]) -> Self {
         Self {
@@ -81,8 +84,8 @@ impl Cloud {
         }
     }
 
-    /// Keeps the points marked in `keep`, one for each, in their order, with the triangles and
-    /// edges all of whose corners are kept.
+    /// Keeps the points marked in `keep`, which has one mark per point, in their order. Keeps the
+    /// triangles and edges whose corners are all kept.
     pub(crate) fn retain(&mut self, keep: &[bool]) {
         // The new index of each point that stays.
         let mut kept = 0;
@@ -135,7 +138,7 @@ fn marked<'a, T: 'a>(values: impl IntoIterator<Item = &'a mut Vec<T>>, keep: &[b
     }
 }
 
-/// Gives corners their new index; what lost one is dropped.
+/// Gives corners their new index, and drops primitives that lost a corner.
 fn corners<const N: usize>(all: &mut Vec<[u32; N]>, index: &[Option<u32>]) {
     all.retain_mut(|corners| {
         let mut found = true;
@@ -149,8 +152,8 @@ fn corners<const N: usize>(all: &mut Vec<[u32; N]>, index: &[Option<u32>]) {
     });
 }
 
-/// Two perpendicular half axes of a disc of a normal n and a radius r, in f64, with n and r as they
-/// are, in `f32`:
+/// Two perpendicular half axes of a disc with normal n and radius r, in f64; n and r are used as
+/// they are, in `f32`:
 ///
 /// ```text
 ///   a    = the coordinate axis, of components 0 and 1, along which n is shortest:

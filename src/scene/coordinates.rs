@@ -2,21 +2,23 @@
 
 use glam::Vec2;
 
-/// Texture coordinates (u, v), see [`super::texture`] for what they mean. Values are unchecked: what has one
-/// that is not finite is dropped and counted when it is to have the texture's colour.
+/// Texture coordinates (u, v), see [`super::texture`] for what they mean. Values are unchecked: a
+/// point with a coordinate that is not finite is dropped and counted when it should get the
+/// texture's colour.
 ///
-/// `Decided:` those of corners stay with the corners, and no point is divided in two where a texture has a seam: the
-/// number of points, their normals and radii are the same with a texture and without.
+/// `Decided:` coordinates of corners stay with the corners, and no point is split in two at a seam
+/// of the texture. So the number of points, their normals and their radii are the same with a
+/// texture and without.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Coordinates {
-    /// One of each point.
+    /// One coordinate pair for each point.
     Points(Vec<Vec2>),
-    /// One of each corner of each triangle.
+    /// One coordinate pair for each corner of each triangle.
     Corners(Vec<[Vec2; 3]>),
 }
 
 impl Coordinates {
-    /// Those of the corners of a triangle.
+    /// The coordinates of the corners of a triangle.
     ///
     /// # Panics
     /// If there is no such triangle or point.
@@ -39,7 +41,7 @@ impl Coordinates {
         [all.iter().any(|at| outside(at.x)), all.iter().any(|at| outside(at.y))]
     }
 
-    /// How many there are of points, and of triangles.
+    /// How many pairs there are for points, and how many triples for triangles.
     pub(crate) fn lengths(&self) -> [Option<usize>; 2] {
         match self {
             Self::Points(points) => [Some(points.len()), None],

@@ -1,4 +1,4 @@
-//! Which points of a cloud can be no surfels.
+//! Find the points of a cloud that cannot be surfels.
 
 use super::surfels::Dropped;
 use crate::frame::Exec;
@@ -6,10 +6,10 @@ use crate::scene::Mipmap;
 use crate::scene::light::is_color;
 use glam::Vec3;
 
-/// So many points are looked at by one job.
+/// How many points one job looks at.
 pub(super) const CHUNK: usize = 1 << 14;
 
-/// What is known of points besides their normals, in arrays of one length.
+/// The attributes of points except their normals, in arrays of one length.
 pub(super) struct Points<'a> {
     pub(super) position: &'a [Vec3],
     pub(super) radius: &'a [f32],
@@ -20,7 +20,7 @@ pub(super) struct Points<'a> {
 }
 
 impl Points<'_> {
-    /// Which points are kept, and how many are not; normals become unit vectors.
+    /// Marks the points that are kept and counts the others; makes the normals unit vectors.
     pub(super) fn keep(&self, normal: &mut [Vec3], exec: &Exec) -> (Vec<bool>, Dropped) {
         let mut keep = vec![true; normal.len()];
         let chunks = keep.chunks_mut(CHUNK).zip(normal.chunks_mut(CHUNK)).enumerate();
@@ -39,7 +39,7 @@ impl Points<'_> {
         (keep, dropped)
     }
 
-    /// The first reason to drop point `i`, of all that are counted.
+    /// The first reason to drop point `i`, as the counter to increase.
     fn reason<'d>(
         &self,
         i: usize,
@@ -65,11 +65,11 @@ impl Points<'_> {
     }
 }
 
-/// Makes a normal a unit vector; false if it has no direction.
+/// Makes a normal a unit vector; false if the normal has no direction.
 pub(super) fn unit(normal: &mut Vec3) -> bool {
     let n = normal.as_dvec3();
     let length = n.length();
-    // 2^-80: what is shorter is the rounding error of a sum that cancelled.
+    // A normal shorter than 2^-80 is the rounding error of a sum that cancelled.
     if !(length >= 1.0 / 1_208_925_819_614_629_174_706_176.0 && length.is_finite()) {
         return false;
     }
@@ -79,7 +79,8 @@ pub(super) fn unit(normal: &mut Vec3) -> bool {
     true
 }
 
-/// Whether two half axes are finite and span a plane, by the f64 area of their parallelogram.
+/// Whether two half axes are finite and span a plane, judged by the f64 area of their
+/// parallelogram.
 fn spans_a_plane([u, v]: [Vec3; 2]) -> bool {
     u.is_finite() && v.is_finite() && u.as_dvec3().cross(v.as_dvec3()).length_squared() > 0.0
 }

@@ -1,16 +1,16 @@
-//! Which surfels share a depth-image: groups as a file gives them, or as
-//! [`crate::index::grouping`] makes them.
+//! Which surfels share a depth-image: groups from a file, or groups that [`crate::index::grouping`]
+//! makes.
 
 use crate::error::{Error, Result};
 use crate::scene::Surfels;
 
-/// The most groups that a scene may need; a GPU of the paper's time had 16 texture units.
+/// The most groups that a scene may need; a GPU at the time of the paper had 16 texture units.
 pub const MAX_GROUPS: usize = 64;
 
-/// Whether there can be so many groups.
+/// Checks that there may be this many groups.
 ///
 /// # Errors
-/// [`Error::Invalid`] if there cannot.
+/// [`Error::Invalid`] if not.
 pub fn check_count(groups: usize) -> Result<()> {
     if (1..=MAX_GROUPS).contains(&groups) {
         Ok(())
@@ -21,14 +21,14 @@ pub fn check_count(groups: usize) -> Result<()> {
 
 /// The groups of a scene's surfels.
 ///
-/// Every surfel is in one group of its own; an extension may have added it to others.
+/// Every surfel has one group of its own; an extension may have added the surfel to other groups.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Groups {
     /// The group of each surfel, below `scale.len()`.
     own: Vec<u8>,
     /// Surfels that were added to further groups: (surfel, group), ascending, without doubles.
     added: Vec<(u32, u8)>,
-    /// For each group, what the radii of its surfels are multiplied by: 1 unless enlarged.
+    /// The factor on the radii of each group's surfels: 1 unless enlarged.
     scale: Vec<f32>,
 }
 
@@ -52,7 +52,7 @@ impl Groups {
         &self.added
     }
 
-    /// For each group, what the radii of its surfels are multiplied by.
+    /// The factor on the radii of each group's surfels.
     #[must_use]
     pub fn scale(&self) -> &[f32] {
         &self.scale
@@ -60,7 +60,7 @@ impl Groups {
 }
 
 impl Groups {
-    /// Groups that somebody else has made: the group of each surfel, further ones as (surfel,
+    /// Takes groups that were made elsewhere: the group of each surfel, further ones as (surfel,
     /// group) in any order, and the scale of each group.
     ///
     /// # Errors
@@ -90,7 +90,7 @@ impl Groups {
         Ok(Self { own, added, scale })
     }
 
-    /// The groups of the surfels that are marked, in order; a group may be left without any.
+    /// Keeps the groups of the marked surfels, in order; a group may become empty.
     pub(crate) fn retain(self, keep: &[bool]) -> Self {
         if keep.iter().all(|&keep| keep) {
             return self;
@@ -108,7 +108,7 @@ impl Groups {
         Self { own: own.collect(), added: added.collect(), scale: self.scale }
     }
 
-    /// The groups of some surfels, in the order of the indices; a group may be left without any.
+    /// The groups of some surfels, in the order of the indices; a group may become empty.
     pub(crate) fn some(&self, indices: &[u32]) -> Self {
         let own = indices.iter().map(|&i| self.own[i as usize]).collect();
         let added = (0..)
@@ -117,7 +117,7 @@ impl Groups {
         Self { own, added: added.collect(), scale: self.scale.clone() }
     }
 
-    /// Whether they can be groups of these surfels: there must be as many.
+    /// Checks that the groups can belong to these surfels: there must be as many of both.
     ///
     /// # Errors
     /// [`Error::Invalid`] if there are not.
@@ -130,7 +130,7 @@ impl Groups {
         }
     }
 
-    /// The groups that a surfel is in: its own, then those it was added to.
+    /// The groups that contain a surfel: its own group, then the groups that it was added to.
     pub fn of(&self, surfel: u32) -> impl Iterator<Item = u8> + '_ {
         let first = self.added.partition_point(|&(added, _)| added < surfel);
         let added = self.added[first..].iter().take_while(move |(added, _)| *added == surfel);

@@ -1,4 +1,5 @@
-//! The identity of a scene: one hash over everything a picture depends on but camera and settings.
+//! Identify a scene by one hash over everything that a picture depends on, except camera and
+//! settings.
 
 use super::indexed::Indexed;
 use super::{Environment, Light, Mipmap, Objects, Phong, Primitives, Scene, Surfels};
@@ -12,7 +13,7 @@ use sha2::{Digest, Sha256};
 impl Scene {
     /// SHA-256 in lower-case hexadecimal; the name is not part of it.
     ///
-    /// Of the bytes, numbers in little-endian order and `f32` by their bits:
+    /// The hash covers these bytes, numbers in little-endian order and `f32` by their bits:
     ///
     /// ```text
     ///   "splatref scene 1\n"
@@ -44,8 +45,8 @@ impl Scene {
     ///     those of each geometry, u64 count of levels, and the colours surfel by surfel (3 f32 each)
     /// ```
     ///
-    /// A scene of objects has no surfels and no primitives but those of its geometries, whether it is
-    /// [flat](mod@crate::source::flatten) or not.
+    /// A scene of objects has no surfels and no primitives except the ones of its geometries,
+    /// whether it is [flat](mod@crate::source::flatten) or not.
     #[must_use]
     pub fn sha256(&self) -> String {
         let mut hash = Hasher(Sha256::new());
@@ -102,9 +103,9 @@ impl Scene {
 impl Groups {
     /// SHA-256 in lower-case hexadecimal.
     ///
-    /// Of the bytes `"splatref groups 1\n"`, the u64 count of groups and the scale of each (f32),
-    /// the u64 count of surfels and the own group of each (a byte), the u64 count of additions,
-    /// each a u32 surfel and a byte, ascending; numbers in little-endian order.
+    /// The hash covers the bytes `"splatref groups 1\n"`, the u64 count of groups and the scale of
+    /// each (f32), the u64 count of surfels and the own group of each (a byte), the u64 count of
+    /// additions, each a u32 surfel and a byte, ascending; numbers in little-endian order.
     #[must_use]
     pub fn sha256(&self) -> String {
         let mut hash = Hasher(Sha256::new());
@@ -122,7 +123,7 @@ impl Groups {
     }
 }
 
-/// Numbers into bytes into a hash.
+/// Feeds numbers, as bytes, into a hash.
 struct Hasher(Sha256);
 
 impl Hasher {
@@ -159,7 +160,8 @@ impl Hasher {
     fn objects(&mut self, objects: &Objects) {
         self.count(objects.geometries().len());
         match objects.source() {
-            // What is read of them depends on the view.
+            // What is read of the geometries depends on the view, so the hash of their source
+            // stands for them.
             Some(source) => self.0.update(source),
             None => objects.geometries().iter().for_each(|geometry| {
                 self.surfels(&geometry.surfels);
@@ -266,7 +268,7 @@ mod tests {
         bytes
     }
 
-    /// By the crate that `sha256sum` checks.
+    /// Hashes with the crate that `sha256sum` checks.
     fn hash(bytes: &[u8]) -> String {
         Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect()
     }
@@ -297,7 +299,7 @@ mod tests {
             color: None,
             ..Vertices::default()
         };
-        // Vertices without a primitive are none, so that nothing is hashed for them.
+        // Vertices without a primitive do not count, so nothing is hashed for them.
         with.primitives.tubes = Polylines::new(vertices.clone(), vec![]).unwrap().0;
         assert_eq!(with.sha256(), bare.sha256());
         let mut all = vec![bare.sha256()];
@@ -316,7 +318,7 @@ mod tests {
         all.dedup();
         assert_eq!(all.len(), count, "all different");
 
-        // The bytes of the scene so far, then those of the ribbon.
+        // The bytes of the scene so far, then the bytes of the ribbon.
         let mut bytes = documented();
         bytes.push(3);
         let counts = |bytes: &mut Vec<u8>, count: u64| bytes.extend(count.to_le_bytes());
@@ -346,7 +348,7 @@ mod tests {
         let mut cloud = cloud();
         leveled(&mut cloud, 2, Vec3::X);
         let mut bytes = documented();
-        // The colour, in the place of its absence.
+        // The colour, in the place of the byte that says there is none.
         let at = 17 + 8 + 7 * 4;
         bytes.splice(at..=at, [1].into_iter().chain([0; 12]));
         bytes.push(5);

@@ -1,4 +1,4 @@
-//! Triangles and polylines: vertices with attributes, and what joins them.
+//! Triangles and polylines: vertices with attributes, and the primitives that join them.
 
 use super::cloud::Property;
 use super::degenerate::unit;
@@ -6,20 +6,20 @@ use super::light::is_color;
 use crate::error::{Error, Result};
 use glam::Vec3;
 
-/// Vertices as a structure of arrays, unchecked: what [`Indexed::new`] takes.
+/// Unchecked vertices as a structure of arrays: the input of [`Indexed::new`].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Vertices {
     /// Positions in world units.
     pub position: Vec<Vec3>,
-    /// The normal of a triangle's or a ribbon's surface, the tangent of a tube; of any length.
+    /// The normal of a triangle's or a ribbon's surface, or the tangent of a tube; any length.
     pub direction: Vec<Vec3>,
-    /// Half the width of a ribbon, the radius of a tube, or how far the surface of a triangle's
-    /// vertex reaches, each in world units and at least 0.
+    /// Half the width of a ribbon, the radius of a tube, or how far the surface reaches at a
+    /// triangle's vertex; in world units and at least 0.
     pub radius: Vec<f32>,
     /// Linear RGB, not premultiplied.
     pub color: Option<Vec<Vec3>>,
-    /// Opacity in \[0, 1\]. Primitives are drawn opaque: this and the properties are for those who choose
-    /// [candidates](mod@crate::source::candidates) among what is seen of triangles.
+    /// Opacity in \[0, 1\]. Primitives are drawn opaque. The opacity and the properties are for
+    /// choosing [candidates](mod@crate::source::candidates) among the visible parts of triangles.
     pub opacity: Option<Vec<f32>>,
     /// Further numbers of the vertices.
     pub properties: Vec<Property>,
@@ -27,10 +27,18 @@ pub struct Vertices {
 
 /// Primitives of `N` corners over checked vertices; there may be none.
 ///
-/// Guarantees, kept by construction: arrays of one length, and for every vertex that a primitive
-/// uses: position finite; direction of length 1 within 2^-20; radius finite and >= 0; colour in
-/// [0, [`super::light::MAX_RADIANCE`]] and not -0; opacity in [0, 1]; properties finite. Corners may coincide: such a segment is a point, such a triangle covers nothing. Edges
-/// may have any number of triangles.
+/// The constructor guarantees arrays of one length. For every vertex that a primitive uses, it
+/// guarantees:
+///
+/// - a finite position;
+/// - a direction of length 1 within 2^-20;
+/// - a finite radius >= 0;
+/// - a colour in [0, [`super::light::MAX_RADIANCE`]] and not -0;
+/// - an opacity in [0, 1];
+/// - finite properties.
+///
+/// Corners may coincide: such a segment is a point, and such a triangle covers nothing. An edge may
+/// belong to any number of triangles.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Indexed<const N: usize> {
     vertices: Vertices,
@@ -40,7 +48,7 @@ pub struct Indexed<const N: usize> {
 /// Line segments between vertices, one pixel wide until they are reconstructed \[MKC08, section
 /// 4\].
 pub type Polylines = Indexed<2>;
-/// Triangles between vertices; counter-clockwise corners are seen from the front.
+/// Triangles between vertices; the front is the side from which the corners run counter-clockwise.
 pub type Triangles = Indexed<3>;
 
 impl<const N: usize> Default for Indexed<N> {
@@ -50,11 +58,11 @@ impl<const N: usize> Default for Indexed<N> {
 }
 
 impl<const N: usize> Indexed<N> {
-    /// Checks vertices and corners; primitives with a vertex that is degenerate are dropped, and
-    /// their number is returned.
+    /// Checks vertices and corners. Drops primitives with a degenerate vertex, and returns how many
+    /// were dropped.
     ///
     /// A direction is made a unit vector as the normal of a surfel is, see [`super::Surfels::new`].
-    /// Vertices are kept, even those that no primitive uses.
+    /// Vertices are kept, even the ones that no primitive uses.
     ///
     /// # Errors
     /// [`Error::Invalid`] if an array has the wrong length, if a corner is no vertex, or if there
@@ -93,7 +101,7 @@ impl<const N: usize> Indexed<N> {
                     && sound(vertices.opacity.as_deref(), &vertices.properties, i)
             })
             .collect();
-        // -0 becomes 0.
+        // Adding 0 turns -0 into 0.
         vertices.color.iter_mut().flatten().for_each(|color| *color += Vec3::ZERO);
         let before = corners.len();
         corners.retain(|corners| corners.iter().all(|&corner| drawable[corner as usize]));
@@ -113,7 +121,7 @@ impl<const N: usize> Indexed<N> {
         self.corners.is_empty()
     }
 
-    /// The vertices; one that no primitive uses may hold anything.
+    /// The vertices; a vertex that no primitive uses may hold anything.
     #[must_use]
     pub fn vertices(&self) -> &Vertices {
         &self.vertices
@@ -125,8 +133,7 @@ impl<const N: usize> Indexed<N> {
         &self.corners
     }
 
-    /// Changes the vertices, not how many there are, and checks them again as [`Indexed::new`]
-    /// does.
+    /// Changes the vertices, but not their number, and checks them again as [`Indexed::new`] does.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`Indexed::new`].
@@ -143,14 +150,14 @@ impl<const N: usize> Indexed<N> {
         corners.map(|&i| (vertices.position[i as usize], vertices.radius[i as usize]))
     }
 
-    /// The parts again, to be changed or joined.
+    /// Takes the parts out, to be changed or joined.
     #[must_use]
     pub fn into_parts(self) -> (Vertices, Vec<[u32; N]>) {
         (self.vertices, self.corners)
     }
 }
 
-/// Whether a point's opacity is in [0, 1] and its properties are finite, if it has some.
+/// Whether a point's opacity is in [0, 1] and its properties are finite, if it has any.
 pub(crate) fn sound(opacity: Option<&[f32]>, properties: &[Property], point: usize) -> bool {
     opacity.is_none_or(|all| (0.0..=1.0).contains(&all[point]))
         && properties.iter().all(|one| one.values[point].is_finite())
@@ -167,7 +174,7 @@ pub struct Counts {
     pub tubes: usize,
 }
 
-/// What a scene has beside surfels \[MKC08, sections 4 and 5\].
+/// The primitives of a scene beside its surfels \[MKC08, sections 4 and 5\].
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Primitives {
     /// Polygons.
@@ -199,7 +206,7 @@ impl Primitives {
         Counts { triangles: triangles.len(), ribbons: ribbons.len(), tubes: tubes.len() }
     }
 
-    /// [`Indexed::map`] of each kind; how many were dropped in all.
+    /// [`Indexed::map`] for each kind; returns how many primitives were dropped in all.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`Indexed::new`].
@@ -215,7 +222,7 @@ impl Primitives {
         self.triangles.used().chain(self.ribbons.used()).chain(self.tubes.used())
     }
 
-    /// Whether vertices of a kind that is there have colours.
+    /// Whether vertices of some kind that is present have colours.
     #[must_use]
     pub fn colored(&self) -> bool {
         fn colored<const N: usize>(of: &Indexed<N>) -> bool {

@@ -1,4 +1,4 @@
-//! Lights and the material that answers them.
+//! Lights, and the material that reflects them.
 
 use crate::error::{Error, Result};
 use glam::Vec3;
@@ -29,8 +29,8 @@ pub enum Light {
     },
 }
 
-/// The largest component of a colour, of a light's, a surface's or an environment's, so that no sum
-/// of products of colours leaves `f32`.
+/// The largest component of a light's, a surface's or an environment's colour, so that no sum of
+/// products of colours leaves `f32`.
 pub const MAX_RADIANCE: f32 = 65_536.0;
 
 /// Whether every component of a colour is in [0, [`MAX_RADIANCE`]].
@@ -39,17 +39,17 @@ pub(crate) fn is_color(color: Vec3) -> bool {
 }
 
 impl Light {
-    /// The headlight of pictures that name no light: white, from the upper left, along (-1/2, 3/4, 1)
-    /// in view space.
+    /// The headlight of pictures that name no light: white, from the upper left, along (-1/2,
+    /// 3/4, 1) in view space.
     pub const DEFAULT: Self =
         Self::Headlight { towards: Vec3::new(-0.5, 0.75, 1.0), color: Vec3::ONE };
 
-    /// Whether the light can be shaded with.
+    /// Checks that the light can be used for shading.
     ///
     /// # Errors
     /// [`Error::Invalid`] if a number is not finite, if the square of a direction's length is not a
-    /// normal `f32` (such a direction has lost its digits), or if a colour is not in
-    /// [0, [`MAX_RADIANCE`]].
+    /// normal `f32`, or if a colour is not in [0, [`MAX_RADIANCE`]]. (A direction with such a
+    /// length has lost its digits.)
     pub fn check(&self) -> Result<()> {
         let color = match *self {
             Self::Directional { towards, color } | Self::Headlight { towards, color } => {
@@ -104,7 +104,7 @@ impl Default for Phong {
 }
 
 impl Phong {
-    /// Whether the numbers are in range.
+    /// Checks that the numbers are in range.
     ///
     /// # Errors
     /// [`Error::Invalid`] if a weight or a component of the colour is not in [0, 1], or if the

@@ -3,24 +3,25 @@
 use crate::error::{Error, Result};
 use glam::Vec3;
 
-/// The most levels beside the surfels' own colours: the last is of 2^16 radii.
+/// The most levels beside the surfels' own colours: the last covers 2^16 radii.
 pub const MOST_LEVELS: usize = 16;
 
-/// Further colours of every surfel: that of level k, from 1 to L, is what the surface has on the
-/// average within 2^k of the surfel's radii. Level 0 is the surfel's own colour and is not here.
+/// Further colours of every surfel. The colour of level k, from 1 to L, is the average colour of
+/// the surface within 2^k of the surfel's radii. Level 0 is the surfel's own colour and is not
+/// stored here.
 ///
-/// Linear RGB. [`crate::index::mipmap`] makes them, of a texture [`crate::source::derive`], and files may give them; the method `deferred`
-/// draws them, and no other looks at them.
+/// Linear RGB. [`crate::index::mipmap`] makes these colours, and [`crate::source::derive`] makes
+/// them from a texture; files may also give them. Only the method `deferred` draws them.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Mipmap {
     levels: usize,
-    /// Surfel by surfel, of each the levels from 1 on.
+    /// Surfel by surfel, each with its levels from 1 on.
     colors: Vec<Vec3>,
 }
 
 impl Mipmap {
-    /// Colours surfel by surfel, of each the levels from 1 to `levels`. They are not judged: surfels
-    /// with colours that cannot be are dropped by [`super::Surfels::new`].
+    /// Takes colours surfel by surfel, each with its levels from 1 to `levels`. The colours are not
+    /// checked here: [`super::Surfels::new`] drops surfels whose colours are impossible.
     ///
     /// # Errors
     /// [`Error::Invalid`] if there are not 1 to [`MOST_LEVELS`] levels, or if the last surfel does
@@ -35,7 +36,7 @@ impl Mipmap {
         Ok(Self { levels, colors })
     }
 
-    /// Of no surfel yet.
+    /// A mipmap without any surfel.
     pub(crate) fn empty(levels: usize) -> Self {
         Self { levels, colors: Vec::new() }
     }
@@ -46,7 +47,7 @@ impl Mipmap {
         self.levels
     }
 
-    /// How many surfels have them.
+    /// How many surfels the mipmap has colours for.
     #[must_use]
     pub fn len(&self) -> usize {
         self.colors.len() / self.levels
@@ -58,13 +59,13 @@ impl Mipmap {
         self.colors.is_empty()
     }
 
-    /// All colours, surfel by surfel, of each the levels from 1 on.
+    /// All colours, surfel by surfel, each with its levels from 1 on.
     #[must_use]
     pub fn colors(&self) -> &[Vec3] {
         &self.colors
     }
 
-    /// The colours, to be changed; their number stays a multiple of the levels.
+    /// The colours, writable; their number must stay a multiple of the levels.
     pub(crate) fn colors_mut(&mut self) -> &mut Vec<Vec3> {
         &mut self.colors
     }
@@ -75,21 +76,22 @@ impl Mipmap {
         &self.colors[surfel * self.levels..][..self.levels]
     }
 
-    /// Appends a surfel. If it has fewer levels its last one stands for the others, and if it has
-    /// none its colour does: it is drawn as it would be without them.
+    /// Appends a surfel. If it has fewer levels, its last level stands for the others. If it has
+    /// none, its colour stands for all: it is then drawn as it would be without prefiltered
+    /// colours.
     pub(crate) fn push(&mut self, own: Option<&[Vec3]>, color: Vec3) {
         let own = own.unwrap_or_default();
         let last = own.last().copied().unwrap_or(color);
         self.colors.extend((0..self.levels).map(|k| own.get(k).copied().unwrap_or(last)));
     }
 
-    /// Those of some surfels, in the order of the indices.
+    /// The colours of some surfels, in the order of the indices.
     pub(crate) fn some(&self, indices: &[usize]) -> Self {
         let colors = indices.iter().flat_map(|&i| self.of(i)).copied().collect();
         Self { levels: self.levels, colors }
     }
 
-    /// Those of the surfels that are marked, in order.
+    /// Keeps the colours of the marked surfels, in order.
     pub(crate) fn retain(self, keep: &[bool]) -> Self {
         if keep.iter().all(|&keep| keep) {
             return self;
@@ -100,10 +102,10 @@ impl Mipmap {
     }
 }
 
-/// Whether there can be so many levels.
+/// Checks that there may be this many levels.
 ///
 /// # Errors
-/// [`Error::Invalid`] if there cannot.
+/// [`Error::Invalid`] if not.
 pub fn check_levels(levels: usize) -> Result<()> {
     if (1..=MOST_LEVELS).contains(&levels) {
         return Ok(());

@@ -1,13 +1,13 @@
-//! What is given: surfels and primitives, cameras, lights, and what surrounds them.
+//! Describe a scene: surfels and primitives, objects, cameras, lights and an environment.
 //!
-//! - [`bounds`]: what bounds a scene.
+//! - [`bounds`]: the box and the sphere around a scene.
 //! - [`cloud`]: points as a file holds them, nothing derived, nothing checked.
-//! - [`objects`]: geometries that many objects share, and their motion.
+//! - [`objects`]: geometries that many objects share, and the motion of the objects.
 //! - [`surfels`]: the checked structure of arrays that every method takes.
-//! - [`boxes`]: what bounds neighbouring surfels.
+//! - [`boxes`]: boxes around neighbouring surfels.
 //! - [`camera`]: perspective and orthographic cameras.
 //! - [`coordinates`]: where points are in a texture.
-//! - `degenerate`: which points can be no surfels.
+//! - `degenerate`: which points cannot be surfels.
 //! - [`environment`]: the light that surrounds a scene.
 //! - [`groups`]: which surfels share a depth-image.
 //! - [`hash`]: the identity of a scene.
@@ -15,8 +15,8 @@
 //! - [`light`]: lights and the Phong material.
 //! - [`mipmap`]: prefiltered colours of surfels.
 //! - [`sides`]: how large surfels are drawn as point primitives.
-//! - [`texture`]: textures, and means of them.
-//! - [`transform`]: moving, turning and scaling a model.
+//! - [`texture`]: textures, and their mean colours over ellipses.
+//! - [`transform`]: move, turn and scale a model.
 
 pub mod bounds;
 pub mod boxes;
@@ -52,38 +52,39 @@ pub use surfels::{Dropped, Surfels};
 pub use texture::{Paint, Texture};
 pub use transform::Similarity;
 
-/// A picture to be made: surfels, what lights them, and what lies behind them.
+/// Everything that a picture shows: surfels, the lights on them, and what lies behind them.
 ///
-/// The camera is not part of it: one scene has many pictures.
+/// The camera is not part of the scene, because one scene has many pictures.
 #[derive(Clone, Debug)]
 pub struct Scene {
-    /// What the scene is called in reports: a file name or a procedural shape.
+    /// The name of the scene in reports: a file name or a procedural shape.
     pub name: String,
     /// The surfels, in the order that every sum and every tie follows.
     pub surfels: Surfels,
-    /// What there is beside them.
+    /// Triangles, ribbons and tubes beside the surfels.
     pub primitives: Primitives,
-    /// The lights; with none the resolved colour is shown unlit.
+    /// The lights; without any, the resolved colour is shown unlit.
     pub lights: Vec<Light>,
-    /// How the surface answers the lights.
+    /// How the surface reflects the lights.
     pub material: Phong,
-    /// What surrounds the surfels; black if absent.
+    /// The environment around the surfels; black if absent.
     pub environment: Option<Environment>,
-    /// What the scene is made of, if it is made of objects. Surfels and primitives are then those of
-    /// the objects in their places, or none until [`crate::source::flatten()`] puts them there.
+    /// The objects, if the scene is made of objects. Surfels and primitives then belong to the
+    /// objects in their places, or there are none until [`crate::source::flatten()`] puts them
+    /// there.
     pub objects: Option<Objects>,
-    /// How large surfels are drawn as point primitives, if somebody chose that for the view.
+    /// How large surfels are drawn as point primitives, if the view chose sizes.
     pub sides: Option<Sides>,
 }
 
 impl Scene {
-    /// Surfels under one headlight, of the default material, before nothing.
+    /// Makes a scene of surfels under one headlight, with the default material and no environment.
     #[must_use]
     pub fn lit(name: &str, surfels: Surfels) -> Self {
         Self { lights: vec![Light::DEFAULT], ..Self::unlit(name, surfels) }
     }
 
-    /// Surfels that show their own colours.
+    /// Makes a scene of surfels that show their own colours.
     #[must_use]
     pub fn unlit(name: &str, surfels: Surfels) -> Self {
         Self {

@@ -4,8 +4,8 @@ use crate::error::{Error, Result};
 
 /// The side of the square of each surfel, in pixels: one for each run of surfels.
 ///
-/// Whoever chooses a prefix of an order for a view chooses the size of its surfels too; other surfels have
-/// none, and are drawn as large as they are.
+/// A view that chooses a prefix of an order also chooses the size of its surfels. Other surfels
+/// have no size here, and are drawn with their own size.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Sides {
     /// The first surfel of each run, ascending from 0 on.
@@ -13,11 +13,11 @@ pub struct Sides {
 }
 
 impl Sides {
-    /// Runs by their first surfel: each ends where the next begins.
+    /// Makes sides from runs, each given by its first surfel: a run ends where the next begins.
     ///
     /// # Errors
-    /// [`Error::Invalid`] unless the first run begins with surfel 0 and each later one after the last, or if a
-    /// side is not greater than 0 and finite.
+    /// [`Error::Invalid`] unless the first run begins with surfel 0 and each later run begins after
+    /// the one before, or if a side is not greater than 0 and finite.
     pub fn new(runs: Vec<(u32, Option<f32>)>) -> Result<Self> {
         let ascend = runs.is_sorted_by(|a, b| a.0 < b.0);
         if runs.first().is_none_or(|run| run.0 != 0) || !ascend {
@@ -30,7 +30,7 @@ impl Sides {
         }
     }
 
-    /// That of a surfel, if it has one.
+    /// The side of a surfel's square, if it has one.
     #[must_use]
     pub fn of(&self, surfel: u32) -> Option<f32> {
         let after = self.runs.partition_point(|run| run.0 <= surfel);

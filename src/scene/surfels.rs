@@ -14,14 +14,21 @@ use crate::scene::light::is_color;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
-/// Surfels as a structure of arrays, each of one length.
+/// Surfels as a structure of arrays of one length.
 ///
-/// Guarantees, kept by construction: at least one surfel, but for [`Surfels::none`]; positions
-/// finite; normals of length 1 within 2^-20; radii finite and > 0; colours in
-/// [0, [`crate::scene::light::MAX_RADIANCE`]], prefiltered ones too, and opacities in [0, 1], none of
-/// them -0; prefiltered colours only where there are colours; tangents finite and not parallel.
-/// (Whether they are perpendicular to each other and to the normal is the business of whoever gives
-/// them.) An array that the scene does not need is not allocated.
+/// The constructor guarantees:
+///
+/// - at least one surfel, except in [`Surfels::none`];
+/// - finite positions;
+/// - normals of length 1 within 2^-20;
+/// - finite radii > 0;
+/// - colours in [0, [`crate::scene::light::MAX_RADIANCE`]], prefiltered ones too, and opacities in
+///   [0, 1], none of them -0;
+/// - prefiltered colours only where there are colours;
+/// - finite tangents that are not parallel. (Whether they are perpendicular to each other and to
+///   the normal is up to the source of the scene.)
+///
+/// An array that the scene does not need is not allocated.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Surfels {
     position: Vec<Vec3>,
@@ -36,7 +43,8 @@ pub struct Surfels {
     bounding_sphere: (DVec3, f64),
 }
 
-/// How many surfels of a cloud were dropped, each counted once, under the first reason that held.
+/// How many surfels of a cloud were dropped; each is counted once, under the first reason that
+/// applies.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Dropped {
     /// A position that is NaN or infinite.
@@ -45,12 +53,13 @@ pub struct Dropped {
     pub normal: u64,
     /// A radius that is not finite or not > 0.
     pub radius: u64,
-    /// Colour, prefiltered or not, outside [0, [`crate::scene::light::MAX_RADIANCE`]], opacity outside [0, 1], tangents not finite or parallel.
+    /// Colour, prefiltered or not, outside [0, [`crate::scene::light::MAX_RADIANCE`]], opacity
+    /// outside [0, 1], tangents not finite or parallel.
     pub attribute: u64,
 }
 
 impl Dropped {
-    /// All of them.
+    /// The sum of all counts.
     #[must_use]
     pub fn total(&self) -> u64 {
         self.position + self.normal + self.radius + self.attribute
@@ -67,14 +76,16 @@ impl std::ops::AddAssign for Dropped {
 }
 
 impl Surfels {
-    /// Checks a complete cloud, drops what is degenerate, and counts it.
+    /// Checks a complete cloud, drops degenerate points, and counts them.
     ///
-    /// A normal whose length is within 2^-20 of 1 is kept as it is; any other is divided by its
-    /// length, sqrt((x x + y y) + z z), in f64, component by component, and rounded once. Triangles, edges and the tangents of tubes are ignored.
+    /// A normal whose length is within 2^-20 of 1 is kept as it is. Any other normal is divided by
+    /// its length, sqrt((x x + y y) + z z), in f64, component by component, and rounded once.
+    /// Triangles, edges and the tangents of tubes are ignored.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if normals or radii are missing, if an array has the wrong length, if there
-    /// are prefiltered colours without colours, if nothing is left, or if there are more than 2^32 - 2 surfels.
+    /// [`Error::Invalid`] if normals or radii are missing, if an array has the wrong length, or if
+    /// there are prefiltered colours without colours. Also if nothing is left, or if there are more
+    /// than 2^32 - 2 surfels.
     pub fn new(cloud: Cloud) -> Result<(Self, Dropped)> {
         Self::new_with(cloud, &Exec::sequential())
     }
@@ -94,11 +105,11 @@ impl Surfels {
         Ok((surfels, dropped))
     }
 
-    /// As [`Surfels::new_with`], for a part of a scene that has other primitives too: [`Surfels::none`]
+    /// [`Surfels::new_with`] for a part of a scene that has other primitives too: [`Surfels::none`]
     /// if nothing is left.
     ///
     /// # Errors
-    /// [`Error::Invalid`] as [`Surfels::new`], but for that.
+    /// [`Error::Invalid`] as [`Surfels::new`], except if nothing is left.
     pub fn new_or_none(cloud: Cloud, exec: &Exec) -> Result<(Self, Dropped)> {
         let n = cloud.position.len();
         let Cloud { position, normal, radius, color, opacity, tangents, mipmap, groups, .. } =
@@ -133,7 +144,7 @@ impl Surfels {
             position: retain(position, &keep),
             normal: retain(normal, &keep),
             radius,
-            // -0 becomes 0.
+            // Adding 0 turns -0 into 0.
             color: color.map(|c| retain(c, &keep).into_iter().map(|c| c + Vec3::ZERO).collect()),
             opacity: opacity.map(|o| retain(o, &keep).into_iter().map(|o| o + 0.0).collect()),
             tangents: tangents.map(|t| retain(t, &keep)),
@@ -149,8 +160,8 @@ impl Surfels {
         Ok((surfels, dropped))
     }
 
-    /// No surfels at all, for a scene that consists of other primitives. Their median radius is 0,
-    /// and what bounds them is the origin.
+    /// No surfels at all, for a scene that consists of other primitives. The median radius is 0,
+    /// and the bounds are the origin.
     #[must_use]
     pub fn none() -> Self {
         Self {
@@ -167,8 +178,8 @@ impl Surfels {
         }
     }
 
-    /// The surfels of ascending indices; one that is none is left out. Median radius and bounding sphere
-    /// stay those of all.
+    /// Picks the surfels with these ascending indices; an index without a surfel is left out.
+    /// Median radius and bounding sphere stay the ones of all surfels.
     #[must_use]
     pub fn some(&self, indices: &[u64], exec: &Exec) -> Self {
         let indices = indices.iter().map(|&i| i as usize).filter(|&i| i < self.len());
@@ -177,21 +188,21 @@ impl Surfels {
         self.picked(&indices, mipmap, exec)
     }
 
-    /// All surfels in another order, without their mipmaps and groups. Median radius and bounding sphere
-    /// stay as they are.
+    /// All surfels in another order, without their mipmaps and groups. Median radius and bounding
+    /// sphere stay as they are.
     pub(crate) fn reordered(&self, order: impl Iterator<Item = u32>, exec: &Exec) -> Self {
         let order: Vec<usize> = order.map(|surfel| surfel as usize).collect();
         self.picked(&order, None, exec)
     }
 
-    /// What [`Self::reordered`] takes in bytes, what it works with included.
+    /// How many bytes [`Self::reordered`] takes, temporary memory included.
     pub(crate) fn bytes_reordered(&self) -> u64 {
         let of = |there: bool, bytes| if there { bytes } else { 0 };
         let more = of(self.color.is_some(), 12) + of(self.opacity.is_some(), 4);
         self.len() as u64 * (8 + 28 + more + of(self.tangents.is_some(), 24))
     }
 
-    /// The surfels of these indices, which exist.
+    /// Picks the surfels with these indices, which must exist.
     fn picked(&self, indices: &[usize], mipmap: Option<Mipmap>, exec: &Exec) -> Self {
         fn of<T: Copy + Send + Sync>(values: &[T], indices: &[usize], exec: &Exec) -> Vec<T> {
             let mut some = Vec::with_capacity(indices.len());
@@ -210,15 +221,15 @@ impl Surfels {
         arrays.into_surfels(self.median_radius, self.bounding_sphere)
     }
 
-    /// With a colour for all, if they have none.
+    /// Gives all surfels this colour, if they have none.
     pub(crate) fn colored(mut self, color: Vec3) -> Self {
         let count = self.len();
         self.color.get_or_insert_with(|| vec![color + Vec3::ZERO; count]);
         self
     }
 
-    /// Whether two indices are those of surfels of the same place and shape, by all bits: what is drawn
-    /// of one is drawn of the other.
+    /// Whether two surfels have the same place and shape, by all bits: everything drawn for one is
+    /// then drawn for the other.
     pub(crate) fn are_equal(&self, a: u32, b: u32) -> bool {
         let [a, b] = [a, b].map(|i| i as usize);
         a < self.len()
@@ -229,13 +240,13 @@ impl Surfels {
             && self.tangents.as_ref().is_none_or(|tangents| tangents[a] == tangents[b])
     }
 
-    /// How many there are: less than 2^32 - 1.
+    /// How many surfels there are: less than 2^32 - 1.
     #[must_use]
     pub fn len(&self) -> usize {
         self.position.len()
     }
 
-    /// Whether these are [`Surfels::none`].
+    /// Whether this is [`Surfels::none`].
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.position.is_empty()
@@ -253,7 +264,7 @@ impl Surfels {
         &self.normal
     }
 
-    /// Radii in world units. An ellipse is drawn by its tangents; its radius enters the median
+    /// Radii in world units. An ellipse is drawn by its tangents; its radius is used for the median
     /// only.
     #[must_use]
     pub fn radius(&self) -> &[f32] {
@@ -272,7 +283,7 @@ impl Surfels {
         self.opacity.as_deref()
     }
 
-    /// The opacity of the surfel of index `i`: 1 if no opacities are given.
+    /// The opacity of surfel `i`: 1 if there are no opacities.
     #[inline(always)]
     pub(crate) fn opacity_of(&self, i: usize) -> f32 {
         self.opacity().map_or(1.0, |opacity| opacity[i])
@@ -290,7 +301,7 @@ impl Surfels {
         self.mipmap.as_ref()
     }
 
-    /// The same surfels with other prefiltered colours, or without.
+    /// Replaces the prefiltered colours, or removes them.
     ///
     /// # Errors
     /// [`Error::Invalid`] if there are more or fewer than surfels, if surfels have no colours, or if a
@@ -308,12 +319,12 @@ impl Surfels {
         Ok(Self { mipmap, ..self })
     }
 
-    /// The same surfels in these colours, one for each, without prefiltered ones.
+    /// Replaces the colours, one for each surfel, and removes the prefiltered ones.
     pub(crate) fn recolored(self, colors: Vec<Vec3>) -> Self {
         Self { color: Some(colors), mipmap: None, ..self }
     }
 
-    /// Groups, if the scene brought them along.
+    /// Groups, if the scene came with groups.
     #[must_use]
     pub fn groups(&self) -> Option<&Groups> {
         self.groups.as_ref()
@@ -332,9 +343,9 @@ impl Surfels {
         self.position.iter().fold((first, first), |(low, high), p| (low.min(*p), high.max(*p)))
     }
 
-    /// A sphere around all discs: the middle of [`Surfels::bounds`], (low + high) / 2, and the largest
-    /// distance from there to a surfel, sqrt((x x + y y) + z z), plus its reach, the radius or
-    /// sqrt(U . U + V . V) of an ellipse; in f64.
+    /// A sphere around all discs, in f64. Its middle is the middle of [`Surfels::bounds`], (low +
+    /// high) / 2. Its radius is the largest distance from there to a surfel, sqrt((x x + y y) + z
+    /// z), plus the surfel's reach: the radius or, for an ellipse, sqrt(U . U + V . V).
     #[must_use]
     pub fn bounding_sphere(&self) -> (DVec3, f64) {
         self.bounding_sphere
@@ -354,7 +365,7 @@ impl Surfels {
         self.reach_of(0..self.len(), center)
     }
 
-    /// [`Surfels::reach`] of some of them.
+    /// [`Surfels::reach`] for a range of surfels.
     fn reach_of(&self, surfels: Range<usize>, center: DVec3) -> f64 {
         let mut most = 0.0;
         for i in surfels {
@@ -371,7 +382,7 @@ impl Surfels {
         most
     }
 
-    /// The surfels back as a cloud, to be written to a file.
+    /// Turns the surfels back into a cloud, to be written to a file.
     #[must_use]
     pub fn into_cloud(self) -> Cloud {
         Cloud {
@@ -388,13 +399,13 @@ impl Surfels {
     }
 }
 
-/// The element of rank (n - 1) / 2; there is at least one.
+/// The element of rank (n - 1) / 2; there must be at least one element.
 fn lower_median(mut values: Vec<f32>) -> f32 {
     let middle = (values.len() - 1) / 2;
     *values.select_nth_unstable_by(middle, f32::total_cmp).1
 }
 
-/// Every array as long as the positions.
+/// Checks that every array is as long as the positions.
 fn check_lengths(
     n: usize,
     normals: usize,
@@ -420,7 +431,8 @@ fn check_lengths(
     Ok(())
 }
 
-/// Prefiltered colours of every surfel, if there are any, and colours too.
+/// Checks that prefiltered colours, if there are any, exist for every surfel, and that there are
+/// colours too.
 pub(crate) fn check_mipmap(n: usize, colored: bool, mipmap: &Option<Mipmap>) -> Result<()> {
     let Some(mipmap) = mipmap else { return Ok(()) };
     if mipmap.len() != n {
@@ -433,7 +445,7 @@ pub(crate) fn check_mipmap(n: usize, colored: bool, mipmap: &Option<Mipmap>) -> 
     Err(Error::Invalid("the points have prefiltered colours, but no colours of their own".into()))
 }
 
-/// The elements marked in `keep`, in order; without a copy if all are.
+/// Keeps the elements marked in `keep`, in order; without a copy if all are marked.
 fn retain<T>(values: Vec<T>, keep: &[bool]) -> Vec<T> {
     if keep.iter().all(|&k| k) {
         return values;

@@ -1,4 +1,5 @@
-//! Textures of meshes, and what surfels see of them: means over ellipses \[GBP04, 4.4; BJFM19, 3.1\].
+//! Textures of meshes, and their mean colours over the ellipses of surfels \[GBP04, 4.4; BJFM19,
+//! 3.1\].
 //!
 //! ```text
 //!    v = 1 ┌───┬───┬ ─ ─ ┐      texel (i, j): column i, row j from the top
@@ -9,22 +10,25 @@
 //!        u = 0          u = 1
 //! ```
 //!
-//! `Decided:` v grows upwards, as in OBJ files and in what writes PLY files with textures.
+//! `Decided:` v grows upwards, as in OBJ files and in the programs that write PLY files with
+//! textures.
 //!
-//! A matrix of vectors in (u, v) becomes one of vectors in texels:
+//! A matrix of vectors in (u, v) becomes a matrix of vectors in texels:
 //!
 //! ```text
 //!   Mxx = Muu (W W)      Mxy = -(Muv (W H))      Myy = Mvv (H H)
 //! ```
 //!
-//! **Pyramid.** Level 0 are the texels. A cell (i, j) of level l is the mean of the texels in the columns
-//! from i 2^l to min((i + 1) 2^l, W) and the rows likewise: cells at the right and at the bottom are cut, so that
-//! textures of any size have exact means. It is made of the up to four cells of the level before, in the
-//! order of rows and columns, in f64: the sum of area times colour divided by the sum of the areas, from 0,
-//! rounded to `f32` once. The last level is one cell.
+//! **Pyramid.** Level 0 consists of the texels. A cell (i, j) of level l is the mean of the texels
+//! in the columns from i 2^l to min((i + 1) 2^l, W) and the rows likewise. Cells at the right and
+//! at the bottom are cut, so that textures of any size have exact means. A cell is computed from
+//! the up to four cells of the level before, in the order of rows and columns, in f64: the sum of
+//! area times colour divided by the sum of the areas, from 0, rounded to `f32` once. The last level
+//! is one cell.
 //!
-//! **Mean.** Of the colour around (x, y), weighted within an ellipse that is given by M, the matrix
-//! p p^T + q q^T of two conjugate half axes p and q, in texels. All in f64, each operation rounded in the order written:
+//! **Mean.** The mean colour around (x, y) is weighted within an ellipse. The ellipse is given by
+//! M, the matrix p p^T + q q^T of two conjugate half axes p and q, in texels. All in f64, each
+//! operation rounded in the order written:
 //!
 //! ```text
 //!   half  = (Mxx + Myy) / 2      diff = (Mxx - Myy) / 2      root = sqrt(diff diff + Mxy Mxy)
@@ -32,8 +36,9 @@
 //!   g     = 2^l                  V = M + g g I               det = Vxx Vyy - Vxy Vxy
 //! ```
 //!
-//! over all cells of level l with q < 1, row by row from the top, in a row from the left, where d is the
-//! difference of the cell's centre, that of its cut square, and (x, y), and a its area in texels:
+//! The sums go over all cells of level l with q < 1, row by row from the top, in a row from the
+//! left. d is the difference of the cell's centre, the centre of its cut square, and (x, y); a is
+//! the cell's area in texels:
 //!
 //! ```text
 //!   q      = ((Vyy / det) (dx dx) - (2 (Vxy / det)) (dx dy)) + (Vxx / det) (dy dy)
@@ -41,23 +46,28 @@
 //!   colour = (sum of colour w) / (sum of w), rounded to f32 once, plus 0
 //! ```
 //!
-//! Where det or the sum of w is not > 0 the colour is that of the last level's cell; where x, y or
-//! (Mxx + Mxy) + Myy is not finite it is NaN, of which no surfel is made. A texture of one colour gives that colour, bit for bit.
+//! Where det or the sum of w is not > 0, the colour is the colour of the last level's cell. Where
+//! x, y or (Mxx + Mxy) + Myy is not finite, the colour is NaN, and no surfel is made from it. A
+//! texture of one colour gives that colour, bit for bit.
 //!
-//! **Borders.** An axis that repeats has the texture again and again: cells of the tiles 16 before to 16 behind
-//! the one of (x, y) count, and there is x = (u - floor u) W, y = (r - floor r) H with r = 1 - v. Beside an axis that does not
-//! repeat there is nothing, which has no weight.
+//! **Borders.** An axis that repeats has the texture again and again: cells of the tiles 16 before
+//! to 16 behind the tile of (x, y) count. On such an axis x = (u - floor u) W, y = (r - floor r) H
+//! with r = 1 - v. Beside an axis that does not repeat there is nothing, which has no weight.
 //!
-//! # Decided
+//! # What the papers leave open, decided here
 //!
-//! - (1 - q)^2 is the weight of [`crate::index::mipmap`]: prefiltered colours are the same kind of mean whether
-//!   they are of a texture or of neighbours. g g I makes the mean of a point smooth: at level 0 it is
-//!   of the texels nearer than one texel. On a ramp it is up to a fifth of a texel beside the value of that point.
-//! - Where g is a quarter of the shorter half axis or less it widens the ellipse by less than 4 %. Of an ellipse more than 16
-//!   times as long as wide a cell may be more, down to 1/128 of the longer half axis: it is blurred across.
-//! - An axis repeats only if some coordinate lies outside \[0, 1\] ([`Coordinates::repeats`]): files do not say it
-//!   otherwise. An atlas must not bleed over its borders, and a wall of bricks must not end.
-//! - What lies beside the texture is left out, and the border is not drawn out: it is not on the surface.
+//! - (1 - q)^2 is the weight of [`crate::index::mipmap`], so prefiltered colours are the same kind
+//!   of mean whether they come from a texture or from neighbours. g g I makes the mean of a point
+//!   smooth: at level 0 it averages the texels nearer than one texel. On a ramp the mean differs
+//!   from the value of that point by up to a fifth of a texel.
+//! - Where g is a quarter of the shorter half axis or less, it widens the ellipse by less than 4 %.
+//!   In an ellipse more than 16 times as long as wide, a cell may be larger, down to 1/128 of the
+//!   longer half axis: the mean is then blurred across the ellipse.
+//! - An axis repeats only if some coordinate lies outside \[0, 1\] ([`Coordinates::repeats`]),
+//!   because files do not say otherwise. An atlas must not bleed over its borders, and a wall of
+//!   bricks must not end.
+//! - Whatever lies beside the texture is left out, and the border is not extended, because it is
+//!   not on the surface.
 
 use super::light::MAX_RADIANCE;
 use super::{Coordinates, camera::MAX_EXTENT};
@@ -69,10 +79,10 @@ use glam::{DVec2, DVec3, Vec3};
 use std::fmt;
 use std::sync::Arc;
 
-/// Repetitions to each side that count.
+/// How many repetitions to each side count.
 const REPEATS: i64 = 16;
 
-/// A picture of linear RGB with its pyramid; a copy shares it.
+/// A picture of linear RGB with its pyramid; copies share it.
 #[derive(Clone, PartialEq)]
 pub struct Texture(Arc<Vec<Plane<[f32; 3]>>>);
 
@@ -84,11 +94,11 @@ impl fmt::Debug for Texture {
 }
 
 impl Texture {
-    /// Of these texels.
+    /// Makes a texture from these texels, and computes its pyramid.
     ///
     /// # Errors
-    /// [`Error::Invalid`] as [`Texture::check_size`], if a component is not in [0, [`MAX_RADIANCE`]], the texel
-    /// is named, or if the process may not hold the pyramid.
+    /// [`Error::Invalid`] as [`Texture::check_size`], if a component is not in [0,
+    /// [`MAX_RADIANCE`]] (the error names the texel), or if the process may not hold the pyramid.
     pub fn new(mut texels: Plane<[f32; 3]>) -> Result<Self> {
         let (width, height) = (texels.width(), texels.height());
         Self::check_size(width, height)?;
@@ -100,11 +110,11 @@ impl Texture {
                 "texel ({x}, {y}) is [{r}, {g}, {b}]; clamp the texture to [0, {MAX_RADIANCE}]"
             )));
         }
-        // A third of the texels' bytes, and the cells of sides that are not halved.
+        // A third of the texels' bytes, and the cells along sides that are not halved.
         memory::ask(u64::from(width) * u64::from(height) * 4 + (1 << 20), || {
             format!("the pyramid of a texture of {width} x {height} pixels")
         })?;
-        // -0 becomes 0.
+        // Adding 0 turns -0 into 0.
         texels.values_mut().as_flattened_mut().iter_mut().for_each(|value| *value += 0.0);
         let mut levels = vec![texels];
         for level in 0.. {
@@ -117,7 +127,7 @@ impl Texture {
         Ok(Self(Arc::new(levels)))
     }
 
-    /// Whether a texture can have this size.
+    /// Checks that a texture may have this size.
     ///
     /// # Errors
     /// [`Error::Invalid`] if it has no pixel or a side of more than [`MAX_EXTENT`].
@@ -136,8 +146,8 @@ impl Texture {
         [self.0[0].width(), self.0[0].height()]
     }
 
-    /// The mean of the module at a place and within an ellipse, both in texels. The place is in the tile at the origin of
-    /// axes that repeat.
+    /// The mean of the module page, around a place and within an ellipse, both in texels. On axes
+    /// that repeat, the place is in the tile at the origin.
     fn mean(&self, at: DVec2, ellipse: Ellipse, repeats: [bool; 2]) -> Vec3 {
         if !(at.is_finite() && (ellipse.xx + ellipse.xy + ellipse.yy).is_finite()) {
             return Vec3::NAN;
@@ -157,10 +167,11 @@ impl Texture {
         let cells = &self.0[level];
         let reach = yy.sqrt();
         let [first, end] = axes[1].range(at.y - reach, at.y + reach);
+        // A degenerate ellipse has no cells, and takes the colour of the last level.
         for row in if det > 0.0 { first..end } else { 0..0 } {
             let (y, height) = axes[1].cell(row);
             let dy = y - at.y;
-            // Where q = 1 in this row: more cells are asked for than have weight.
+            // Where q = 1 in this row. The range includes a few cells that have no weight.
             let middle = at.x + (xy / yy) * dy;
             let rest = (det / yy) * (1.0 - (dy * dy) / yy).at_least(0.0);
             let [first, end] = axes[0].range(middle - rest.sqrt(), middle + rest.sqrt());
@@ -183,7 +194,7 @@ impl Texture {
     }
 }
 
-/// The level after one, of a picture of this size.
+/// The level after one, for a picture of this size.
 fn coarser(fine: &Plane<[f32; 3]>, level: u32, size: [u32; 2]) -> Plane<[f32; 3]> {
     let [columns, rows] =
         size.map(|texels| Axis { texels: texels.into(), side: 1 << level, repeats: false });
@@ -201,12 +212,12 @@ fn coarser(fine: &Plane<[f32; 3]>, level: u32, size: [u32; 2]) -> Plane<[f32; 3]
     })
 }
 
-/// One axis of a level: cells along so many texels. Cells of the tile at the origin count from 0, those of the
-/// one before it have numbers below 0.
+/// One axis of a level: cells along the texels. Cells of the tile at the origin count from 0; cells
+/// of the tile before it have numbers below 0.
 #[derive(Clone, Copy)]
 struct Axis {
     texels: i64,
-    /// Texels of a cell.
+    /// How many texels a cell has.
     side: i64,
     repeats: bool,
 }
@@ -216,24 +227,24 @@ impl Axis {
         (self.texels + self.side - 1) / self.side
     }
 
-    /// The centre of a cell and how long it is.
+    /// The centre of a cell, and its length.
     fn cell(self, cell: i64) -> (f64, f64) {
         let (tile, own) = (cell.div_euclid(self.cells()), cell.rem_euclid(self.cells()));
         let (start, end) = (own * self.side, self.texels.min((own + 1) * self.side));
         ((tile * self.texels) as f64 + (start + end) as f64 / 2.0, (end - start) as f64)
     }
 
-    /// Where the colour of a cell is.
+    /// The index of a cell's colour.
     fn index(self, cell: i64) -> u32 {
         cell.rem_euclid(self.cells()) as u32
     }
 
-    /// The first of the cells between two places, and the one after the last; one more to each side.
+    /// The first cell between two places, and the cell after the last; one more on each side.
     fn range(self, from: f64, to: f64) -> [i64; 2] {
         let tiles = if self.repeats { [-REPEATS, REPEATS + 1] } else { [0, 1] };
         let [low, high] = tiles.map(|tile| tile * self.texels);
         let cell = |place: f64| {
-            // Within the tiles, so that nothing overflows.
+            // Held within the tiles, so that nothing overflows.
             let place = place.clamped(low as f64, high as f64).floor() as i64;
             let (tile, own) = (place.div_euclid(self.texels), place.rem_euclid(self.texels));
             tile * self.cells() + own / self.side
@@ -257,12 +268,12 @@ impl Ellipse {
         Self { xx: p.x * p.x + q.x * q.x, xy: p.x * p.y + q.x * q.y, yy: p.y * p.y + q.y * q.y }
     }
 
-    /// The matrix times a number: half axes times its root.
+    /// Scales the matrix; the half axes are scaled by the root of the factor.
     pub(crate) fn times(self, s: f64) -> Self {
         Self { xx: self.xx * s, xy: self.xy * s, yy: self.yy * s }
     }
 
-    /// The level of the module.
+    /// The level l of the module page.
     fn level(self, last: usize) -> usize {
         let (half, diff) = ((self.xx + self.yy) / 2.0, (self.xx - self.yy) / 2.0);
         let root = (diff * diff + self.xy * self.xy).sqrt();
@@ -275,7 +286,7 @@ impl Ellipse {
     }
 }
 
-/// The texture of a mesh, and how it lies on it.
+/// The texture of a mesh, and how it lies on the mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Paint {
     texture: Texture,
@@ -284,14 +295,14 @@ pub struct Paint {
 }
 
 impl Paint {
-    /// A texture for all of the coordinates, and how many levels of
-    /// [prefiltered colours](super::Mipmap) are made of it: 0 to [`super::mipmap::MOST_LEVELS`].
+    /// Makes the paint: a texture for all of the coordinates, and how many levels of [prefiltered
+    /// colours](super::Mipmap) are made from it: 0 to [`super::mipmap::MOST_LEVELS`].
     #[must_use]
     pub fn new(texture: Texture, coordinates: &Coordinates, levels: usize) -> Self {
         Self { texture, repeats: coordinates.repeats(), levels }
     }
 
-    /// How many levels are made.
+    /// How many levels of prefiltered colours are made.
     #[must_use]
     pub fn levels(&self) -> usize {
         self.levels

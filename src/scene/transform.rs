@@ -1,4 +1,4 @@
-//! Moving, turning and scaling a model.
+//! Move, turn and scale a model.
 
 use super::degenerate::unit;
 use super::{Cloud, Vertices};
@@ -9,8 +9,8 @@ use glam::{DMat3, DVec3, Vec3};
 /// A similarity: a point p goes to `rotation (p scale) + translation`.
 ///
 /// Everything is computed in f64 and rounded to f32 once. Normals and tangents are turned, radii
-/// scaled, half axes both: with x, y, z the coordinates and m0, m1, m2 a row of the rotation, t that
-/// of the translation and s the scale, a component is
+/// are scaled, and half axes are both turned and scaled. With x, y, z the coordinates, m0, m1, m2 a
+/// row of the rotation, t the row's component of the translation and s the scale, a component is
 ///
 /// ```text
 ///   point      ((m0 (x s) + m1 (y s)) + m2 (z s)) + t
@@ -32,11 +32,11 @@ impl Similarity {
     pub const IDENTITY: Self =
         Self { rotation: DMat3::IDENTITY, scale: 1.0, translation: DVec3::ZERO };
 
-    /// Whether the matrix is a rotation and the numbers are in range.
+    /// Checks that the matrix is a rotation and the numbers are in range.
     ///
     /// # Errors
     /// [`Error::Invalid`] if the scale is not finite and > 0, if the translation is not finite, if
-    /// a component of R^T R differs from that of the unit matrix by more than 1e-6, or if R is a
+    /// a component of R^T R differs from the unit matrix by more than 1e-6, or if R is a
     /// reflection.
     pub fn check(&self) -> Result<()> {
         let invalid = |what: &str| Err(Error::Invalid(format!("transform: {what}")));
@@ -57,7 +57,7 @@ impl Similarity {
         Ok(())
     }
 
-    /// This similarity first and `next` after it, as one: with R, s and t of `next`
+    /// Combines this similarity, first, and `next` after it into one. With R, s and t of `next`:
     ///
     /// ```text
     ///   scale        s scale
@@ -65,8 +65,8 @@ impl Similarity {
     ///   translation  R (translation s) + t, the sums likewise
     /// ```
     ///
-    /// each operation rounded to f64. If `next` is [`Similarity::IDENTITY`] it is this one, bit for
-    /// bit.
+    /// each operation rounded to f64. If `next` is [`Similarity::IDENTITY`], the result is this
+    /// similarity, bit for bit.
     #[must_use]
     pub fn then(&self, next: &Self) -> Self {
         if *next == Self::IDENTITY {
@@ -103,7 +103,7 @@ impl Similarity {
         vertices.radius.iter_mut().for_each(|radius| self.enlarge(radius));
     }
 
-    /// Position and normal of a surfel of its kind, which stay those of a surfel.
+    /// Places the position and the normal of a surfel; they stay valid for a surfel.
     pub(crate) fn surfel(&self, position: Vec3, mut normal: Vec3) -> (Vec3, Vec3) {
         self.turn(&mut normal);
         unit(&mut normal);
@@ -134,14 +134,16 @@ impl Similarity {
     }
 }
 
-/// Whether something can be turned about this.
+/// Whether this is an axis that a model can be turned about.
 pub(crate) fn is_axis(axis: DVec3) -> bool {
     axis.length() > 0.0 && axis.is_finite()
 }
 
-/// The rotation about an axis of any length but 0, counter-clockwise when it points at the viewer.
+/// The rotation about an axis of any length but 0, counter-clockwise when the axis points at the
+/// viewer.
 ///
-/// With k the axis divided by its length, c and s of the angle: `c I + s [k]x + (1 - c) k k^T`.
+/// With k the axis divided by its length, and c and s the cosine and sine of the angle:
+/// `c I + s [k]x + (1 - c) k k^T`.
 #[must_use]
 pub fn rotation(axis: DVec3, degrees: f64) -> DMat3 {
     let k = axis.normalize();
@@ -165,7 +167,7 @@ mod tests {
             tangent: Some(vec![Vec3::Y]),
             ..Cloud::default()
         };
-        // x to y, y to z, z to x: exact, so that the answer is known to the bit.
+        // x to y, y to z, z to x: exact, so the answer is known to the bit.
         let rotation = DMat3::from_cols(DVec3::Y, DVec3::Z, DVec3::X);
         let moved = Similarity { rotation, scale: 2.0, translation: DVec3::new(10.0, 0.0, 0.0) };
         moved.check().unwrap();

@@ -1,4 +1,4 @@
-//! From attributes to light: deferred shading, pixel by pixel.
+//! Shade pixels: from attributes to light, pixel by pixel (deferred shading).
 //!
 //! - [`optics`]: reflection and refraction of an environment.
 //! - [`phong`]: the Phong reflection model.

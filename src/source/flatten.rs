@@ -1,4 +1,4 @@
-//! Scenes of objects as scenes of surfels.
+//! Turn a scene of objects into a scene of surfels.
 
 use super::merge::join;
 use crate::error::{Error, Result};
@@ -6,13 +6,13 @@ use crate::frame::Exec;
 use crate::memory;
 use crate::scene::Scene;
 
-/// The scene with all surfels and primitives of its objects in their places, for methods that draw
-/// surfels: those that are drawn in the order of their ids, the primitives in the order of the objects. A
-/// scene without objects is left as it is.
+/// The scene with all drawn surfels and primitives of its objects in their places, for methods that
+/// draw surfels. Surfels are in the order of their ids, primitives in the order of the objects. A
+/// scene without objects stays as it is.
 ///
 /// # Errors
-/// [`Error::Invalid`] if there are neither surfels nor primitives, if there are more than 2^32 - 2 of
-/// either, or if the process may not hold them.
+/// [`Error::Invalid`] if there are neither surfels nor primitives, if there are more than 2^32 - 2
+/// of either, or if the process may not hold them.
 pub fn flatten(scene: &Scene, exec: &Exec) -> Result<Scene> {
     let Some(objects) = &scene.objects else { return Ok(scene.clone()) };
     let total = objects.drawn_total();
@@ -30,5 +30,5 @@ pub fn flatten(scene: &Scene, exec: &Exec) -> Result<Scene> {
     Ok(Scene { surfels, primitives, sides, ..scene.clone() })
 }
 
-/// Bytes of a surfel with everything that it may have, twice while they are put together.
+/// Bytes of a surfel with every attribute, twice because the arrays are put together.
 const OF_A_SURFEL: u64 = 2 * 68;

@@ -1,4 +1,5 @@
-//! A mesh as polygons on one side of a plane and as surfels on the other \[MKC08, section 5.2\].
+//! Draw a mesh as polygons on one side of a plane and as surfels on the other \[MKC08, section
+//! 5.2\].
 
 use crate::error::{Error, Result};
 use crate::scene::Cloud;
@@ -31,7 +32,7 @@ impl HalfSpace {
         [self.normal.x, self.normal.y, self.normal.z, self.offset]
     }
 
-    /// Whether a point is in it; one that is NaN is not.
+    /// Whether a point is in the half space; NaN is not.
     #[must_use]
     pub fn contains(&self, point: Vec3) -> bool {
         let (p, n) = (point.as_dvec3(), self.normal);
@@ -39,24 +40,25 @@ impl HalfSpace {
     }
 }
 
-/// Divides a cloud with triangles, normals and radii: surfels first, then the mesh of polygons.
+/// Divides a cloud with triangles, normals and radii. The first result is the surfels, the second
+/// the mesh of polygons.
 ///
-/// - A triangle whose three corners are in the half space is a polygon; it keeps its place in the
+/// - A triangle whose three corners are in the half space becomes a polygon. Polygons keep their
 ///   order.
-/// - A vertex that no polygon uses is a surfel. So is one of no triangle at all.
-/// - A vertex of polygons has radius 0, so that it is not extended.
-/// - A boundary vertex, used by a polygon and by a triangle that is none, is both: a surfel, and a
-///   vertex of polygons that keeps the radius of its surfel. "The vertices of the boundary edges
-///   between the two parts have to be attributed with radii that are large enough to let the
-///   rasterized pixels of the boundary edges blend smoothly": with that radius a pixel of the
-///   boundary edge is a surfel as its neighbours beyond are.
+/// - A vertex that no polygon uses becomes a surfel, even if no triangle uses it.
+/// - A vertex of polygons gets the radius 0, so that it is not extended.
+/// - A boundary vertex, used by a polygon and by a triangle that is not a polygon, becomes both: a
+///   surfel, and a vertex of polygons that keeps the radius of its surfel. "The vertices of the
+///   boundary edges between the two parts have to be attributed with radii that are large enough to
+///   let the rasterized pixels of the boundary edges blend smoothly": with that radius a pixel of
+///   the boundary edge is a surfel, like its neighbours beyond.
 ///
-/// So every triangle is a polygon or has a surfel at each of its corners. Both parts keep the order
-/// of the vertices; the surfels have no triangles, and neither has edges or texture coordinates.
+/// So every triangle becomes a polygon or has a surfel at each corner. Both parts keep the order of
+/// the vertices. The surfels have no triangles, and neither part has edges or texture coordinates.
 ///
-/// `Decided:` a boundary vertex is a surfel too. Which pixels a polygon gives depends on the view:
-/// seen from where it covers no pixel's centre, or its back, the surfel is all that closes the
-/// surface beyond the boundary.
+/// `Decided:` a boundary vertex is a surfel too, because the view decides which pixels a polygon
+/// covers. In views where the polygon covers no pixel's centre, or shows its back, only the surfel
+/// closes the surface beyond the boundary.
 ///
 /// # Errors
 /// [`Error::Invalid`] as [`Cloud::check`].

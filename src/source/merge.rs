@@ -1,4 +1,4 @@
-//! Several models as one: their clouds, and their primitives.
+//! Join several models into one: their clouds, and their primitives.
 
 use crate::error::{Error, Result};
 use crate::scene::cloud::half_axes;
@@ -6,13 +6,13 @@ use crate::scene::indexed::Indexed;
 use crate::scene::{Cloud, Mipmap, Primitives, Property, Vertices};
 use glam::Vec3;
 
-/// Joins complete clouds, with normals and radii, in their order; triangles, edges, texture coordinates, the
-/// tangents of tubes and further properties are left out, and so are the groups of several, which know nothing of each
-/// other.
+/// Joins complete clouds, with normals and radii, in their order. The result has no triangles,
+/// edges, texture coordinates, tangents of tubes or further properties. Groups of several clouds
+/// are left out too, because their numbers mean different things.
 ///
-/// What only some of them have is filled in for the others: colour by `color`, opacity by 1, the
-/// half axes of a disc by [`half_axes`], prefiltered colours by the last that there is, or by the colour. A
-/// single cloud is left as it is: nothing is filled in.
+/// If only some clouds have an attribute, it is filled in for the others: colour by `color`,
+/// opacity by 1, the half axes of a disc by [`half_axes`], prefiltered colours by the last level
+/// that there is, or by the colour. A single cloud stays as it is; nothing is filled in.
 #[must_use]
 pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
     let colored = clouds.iter().any(|c| c.color.is_some());
@@ -20,7 +20,7 @@ pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
     let elliptic = clouds.iter().any(|c| c.tangents.is_some());
     let levels = clouds.iter().filter_map(|c| c.mipmap.as_ref()).map(Mipmap::levels).max();
     if clouds.len() == 1 {
-        // The usual case, without a copy.
+        // A single cloud is the usual case; do not copy it.
         let one = clouds.remove(0);
         let (tangent, coordinates) = (None, None);
         let (properties, triangles, edges) = (vec![], vec![], vec![]);
@@ -58,13 +58,13 @@ pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
     all
 }
 
-/// Joins primitives kind by kind, in their order. Where only some of a kind have colours, the
-/// others get `color`; where only some have opacities, the others get 1. `Decided:` nothing stands for a further property:
-/// nobody knows what 0 of it would mean.
+/// Joins primitives kind by kind, in their order. If only some of a kind have colours, the others
+/// get `color`. If only some have opacities, the others get 1. `Decided:` a missing further
+/// property is not filled in, because no one knows what 0 would mean for it.
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] as [`Indexed::new`], if there are too many, or if the vertices of some do not have the properties, in
-/// their order, that others have.
+/// [`crate::Error::Invalid`] as [`Indexed::new`], if there are too many primitives, or if not all
+/// vertices have the same properties in the same order.
 pub fn join(models: Vec<Primitives>, color: Vec3) -> Result<Primitives> {
     let (mut triangles, mut ribbons, mut tubes) = (Vec::new(), Vec::new(), Vec::new());
     for model in models {
@@ -79,7 +79,7 @@ pub fn join(models: Vec<Primitives>, color: Vec3) -> Result<Primitives> {
 fn join_kind<const N: usize>(mut parts: Vec<Indexed<N>>, color: Vec3) -> Result<Indexed<N>> {
     parts.retain(|part| !part.is_empty());
     if parts.len() == 1 {
-        // The usual case, without a copy.
+        // A single part is the usual case; do not copy it.
         return Ok(parts.remove(0));
     }
     let colored = parts.iter().any(|part| part.vertices().color.is_some());
@@ -93,7 +93,7 @@ fn join_kind<const N: usize>(mut parts: Vec<Indexed<N>>, color: Vec3) -> Result<
     let mut joined = Vec::new();
     for part in parts {
         let (vertices, corners) = part.into_parts();
-        // What does not fit is refused below, by the count of the vertices.
+        // An overflow is refused below, where the vertices are counted.
         let first = all.position.len() as u32;
         joined.extend(corners.into_iter().map(|corners| corners.map(|i| first.wrapping_add(i))));
         let n = vertices.position.len();
@@ -105,11 +105,11 @@ fn join_kind<const N: usize>(mut parts: Vec<Indexed<N>>, color: Vec3) -> Result<
         all.direction.extend(vertices.direction);
         all.radius.extend(vertices.radius);
     }
-    // Nothing is dropped: each part has been checked.
+    // This drops nothing, because each part has been checked.
     Ok(Indexed::new(all, joined)?.0)
 }
 
-/// The properties that the vertices of each part have, without values.
+/// The properties that the vertices of every part have, without values.
 fn of_all<const N: usize>(parts: &[Indexed<N>]) -> Result<Vec<Property>> {
     let names = |part: &Indexed<N>| {
         let all = part.vertices().properties.iter();
@@ -124,7 +124,7 @@ fn of_all<const N: usize>(parts: &[Indexed<N>]) -> Result<Vec<Property>> {
     Ok(first.into_iter().map(|name| Property { name, values: Vec::new() }).collect())
 }
 
-/// Appends the values, or `n` times the one that stands for them, if there is anything to fill.
+/// Appends the values, or `n` times `missing`, if there is an array to append to.
 fn append<T: Clone>(to: &mut Option<Vec<T>>, values: Option<Vec<T>>, n: usize, missing: T) {
     if let Some(to) = to {
         to.extend(values.unwrap_or_else(|| vec![missing; n]));

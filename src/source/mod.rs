@@ -1,16 +1,24 @@
-//! What makes a scene: derived attributes, procedural shapes, plants, several models as one,
-//! and places of many objects.
+//! Make scenes and complete what files lack: attributes, shapes, plants, orders of points,
+//! hierarchies.
 //!
-//! - [`mod@candidates`]: what of a mesh is seen from outside, as points.
-//! - [`mod@derive`]: from what a file gives to complete surfels.
-//! - [`mod@flatten`]: a scene of objects as a scene of surfels.
-//! - [`hierarchy`]: surfels of a whole scene, coarser from level to level.
-//! - [`hybrid`]: a mesh as polygons here and surfels there.
-//! - [`merge`]: several models as one.
-//! - [`plant`]: a tree of triangles, and the ribbons and tubes that stand for the tree.
-//! - [`procedural`]: shapes whose true picture is known.
-//! - [`sampler`]: points in an order of which every prefix is spread over all of them.
-//! - [`scatter`]: places of many objects.
+//! Complete and combine models:
+//!
+//! - [`mod@derive`]: complete the normals, radii and colours that a file lacks.
+//! - [`merge`]: join several models.
+//! - [`mod@flatten`]: turn a scene of objects into a scene of surfels.
+//! - [`hybrid`]: draw a mesh as polygons on one side of a plane and as surfels on the other.
+//! - [`scatter`]: place many objects at random.
+//!
+//! Make surfels from a mesh:
+//!
+//! - [`mod@candidates`]: turn the visible surface of a mesh into points.
+//! - [`sampler`]: order points so that every prefix covers the surface.
+//! - [`hierarchy`]: approximate a whole scene, coarser from level to level.
+//!
+//! Make test scenes:
+//!
+//! - [`procedural`]: make shapes whose true picture is known.
+//! - [`plant`]: grow a tree of triangles, with ribbons and tubes that approximate it.
 
 pub mod candidates;
 pub mod derive;

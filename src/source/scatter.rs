@@ -1,7 +1,7 @@
-//! Places of many objects, by chance.
+//! Place many objects at random.
 //!
-//! Place i of a [`Scatter`], counted from 0, is computed in f64, each operation rounded, from the
-//! numbers `u_j` = [`random::unit`] of the seed and 5 i + j:
+//! The place i of a [`Scatter`], counted from 0, is computed in f64. Each operation is rounded. The
+//! numbers `u_j` are [`random::unit`] of the seed and 5 i + j:
 //!
 //! ```text
 //!   translation  low + u_0 (high - low) in x, likewise u_1 in y and u_2 in z
@@ -14,30 +14,30 @@ use crate::number::random;
 use crate::scene::{Similarity, transform};
 use glam::{DMat3, DVec3};
 
-/// Places by chance, see the [module](self).
+/// Random places, see the [module](self).
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Scatter {
-    /// How many.
+    /// The number of places.
     pub count: u32,
-    /// Of the random numbers.
+    /// The random seed.
     pub seed: u64,
-    /// One corner of the box in which they are.
+    /// The corner with the least coordinates of the box around the places.
     pub low: DVec3,
-    /// The other.
+    /// The opposite corner.
     pub high: DVec3,
     /// The least and the greatest scale.
     pub scale: [f64; 2],
-    /// About which each is turned, by any angle; none: they are not turned.
+    /// The axis of a rotation by a random angle; `None` for no rotation.
     pub axis: Option<DVec3>,
 }
 
 impl Scatter {
-    /// Whether these are places.
+    /// Checks that these numbers describe places.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if there are none, if a corner is not finite or a coordinate of `low` above
-    /// that of `high`, if the scales are not 0 < a <= b and finite, or if the axis is 0 or not
-    /// finite.
+    /// [`Error::Invalid`] if the count is 0, if a corner is not finite or a coordinate of `low` is
+    /// greater than in `high`, if the scales are not 0 < a <= b and finite, or if the axis is 0 or
+    /// not finite.
     pub fn check(&self) -> Result<()> {
         let Self { count, low, high, scale: [a, b], axis, .. } = *self;
         let invalid = |what: &str| Err(Error::Invalid(format!("scatter: {what}")));
@@ -56,7 +56,7 @@ impl Scatter {
         Ok(())
     }
 
-    /// Place `i`.
+    /// The place `i`.
     #[must_use]
     pub fn place(&self, i: u32) -> Similarity {
         let unit = |j: u64| f64::from(random::unit(self.seed, 5 * u64::from(i) + j));

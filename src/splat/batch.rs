@@ -1,4 +1,4 @@
-//! Projection of many surfels: the visible ones as splats, the others counted.
+//! Project many surfels: the visible ones become splats, the others are counted.
 
 use super::disc_lanes::DiscLanes;
 use super::{Disc, Fate, Footprint, Outline, Projector, Splat, project};
@@ -8,7 +8,7 @@ use crate::number::{Exact, Real, Vector2, Vector3};
 use crate::scene::Surfels;
 use std::ops::Range;
 
-/// What became of the surfels of a scene: how many met each [`Fate`].
+/// How many surfels of a scene met each [`Fate`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Tally {
     /// See [`Fate::Visible`].
@@ -49,7 +49,7 @@ impl Tally {
     }
 }
 
-/// The surfel of index `i`, in the numbers of the arithmetic.
+/// The surfel with index `i`, in the numbers of the arithmetic.
 #[must_use]
 pub fn disc<R: Real>(surfels: &Surfels, i: usize) -> Disc<R> {
     Disc {
@@ -79,7 +79,7 @@ pub fn splats<R: Exact>(
     tally
 }
 
-/// As [`splats`], to the same bits; affine outlines in lanes.
+/// [`splats`] with the same bits, but affine outlines are computed in lanes.
 pub fn splats_f32(
     projector: &Projector<f32>,
     surfels: &Surfels,
@@ -93,8 +93,8 @@ pub fn splats_f32(
     tally.plus(&splats(projector, surfels, rest..range.end, draw))
 }
 
-/// How many of `count` surfels are projected in lanes, the first ones: those that fill all, if the outline is
-/// affine.
+/// How many of the first of `count` surfels are projected in lanes: as many as fill whole lanes, if
+/// the outline is affine.
 pub(crate) fn in_full_lanes(outline: Outline, count: usize) -> usize {
     match outline {
         Outline::Affine => count - count % LANES,
@@ -105,16 +105,16 @@ pub(crate) fn in_full_lanes(outline: Outline, count: usize) -> usize {
 /// A surfel that is projected once.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Enlarged {
-    /// Its index.
+    /// The index of the surfel.
     pub(crate) surfel: u32,
-    /// What its radius, or tangents, are multiplied by.
+    /// The factor on its radius, or on its tangents.
     pub(crate) scale: f32,
-    /// As how many it counts in a [`Tally`].
+    /// How often it counts in a [`Tally`].
     pub(crate) times: u32,
 }
 
-/// Calls `draw` for each visible splat of a list, with its place in the list. Affine outlines in lanes, to
-/// the same bits.
+/// Calls `draw` for each visible splat of a list, with its place in the list. Affine outlines are
+/// computed in lanes, to the same bits.
 pub(crate) fn enlarged_f32(
     projector: &Projector<f32>,
     surfels: &Surfels,
@@ -144,7 +144,7 @@ pub(crate) fn enlarged<R: Real>(surfels: &Surfels, surfel: u32, scale: f32) -> D
     }
 }
 
-/// Calls `draw` for the visible ones of affine splats, whose number is a multiple of [`LANES`].
+/// Calls `draw` for the visible affine splats of a range, whose length is a multiple of [`LANES`].
 fn in_lanes(
     projector: &Projector<f32>,
     surfels: &Surfels,
@@ -174,7 +174,7 @@ vectorized!(
                 let Enlarged { surfel, scale, .. } = item(first + i);
                 (surfel as usize, scale)
             });
-            // -- Their projections
+            // -- Project
             let mut splats = SplatLanes::new();
             let mut fates = [0_u32; LANES];
             for (i, fate) in fates.iter_mut().enumerate() {
@@ -182,9 +182,10 @@ vectorized!(
                 splats.put(i, &f, &b, back);
                 *fate = reasons.fate() as u32;
             }
-            // -- The visible ones
+            // -- Draw the visible ones
             for i in 0..LANES {
                 let Enlarged { surfel, times, .. } = item(first + i);
+                // The mask shows the compiler that the index is in range.
                 counts[fates[i] as usize & 7] += u64::from(times);
                 if fates[i] == Fate::Visible as u32 {
                     draw(first + i, splats.get(i, surfel));
@@ -201,7 +202,7 @@ vectorized!(
     }
 );
 
-/// [`LANES`] splats, each of their numbers a vector.
+/// [`LANES`] splats; each number of the splats is a vector.
 struct SplatLanes {
     /// The footprint, in the order of its fields.
     numbers: [Lanes; 11],
@@ -272,7 +273,7 @@ mod tests {
         let ellipses = ellipses(discs.clone());
         let lens = Shape::Torus.default_lens();
         let camera = Camera::new(57, 43, Shape::Torus.default_pose(), lens).unwrap();
-        // One that is near enough to have surfels behind it, beside it and at the near plane.
+        // A camera so near that surfels are behind it, beside it and at the near plane.
         let near = Camera { near: 2.0, fx: 4.0 * camera.fx, ..camera };
         for (camera, cull) in [(camera, false), (camera, true), (near, true)] {
             let projector = Projector::new(View::new(&camera), &Kernel::DEFAULT, cull);

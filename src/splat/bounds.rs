@@ -7,9 +7,9 @@ use crate::number::{Pixel, Real, Vector2};
 /// The pixels of the picture whose centres lie in `center` +- `extent`, widened for rounding.
 ///
 /// The bounds are a guarantee, not a part of the kernel: no pixel outside has q <= k^2. The extents
-/// grow by the factor 1 + 2^-18 `stretch` and by 1/128 px, which exceeds the rounding errors of q
-/// at the rim of an ellipse whose axes are skewed by `stretch`, and those of a column below 65,536.
-/// So an ellipse that ends at a pixel centre keeps that pixel.
+/// grow by the factor 1 + 2^-18 `stretch` and by 1/128 px. That exceeds the rounding errors of q at
+/// the rim of an ellipse whose axes are skewed by `stretch`, and the rounding errors of a column
+/// below 65,536. So an ellipse that ends at a pixel centre keeps that pixel.
 #[inline(always)]
 pub fn around<R: Real>(view: &View<R>, center: Vector2<R>, extent: Vector2<R>, stretch: R) -> Rect {
     let grow = R::ONE + stretch * R::from_f32(1.0 / 262_144.0);
@@ -37,7 +37,7 @@ pub fn between<R: Real>(view: &View<R>, low: Vector2<R>, high: Vector2<R>) -> Re
 #[inline(always)]
 fn first_pixel<R: Real>(position: R, count: R) -> R::Pixel {
     let position = position + R::from_f32(0.5);
-    // A comparison that NaN fails.
+    // NaN fails this comparison.
     let position = R::select(position.gt(R::ZERO), position, R::ZERO);
     position.at_most(count).to_pixel()
 }

@@ -1,6 +1,6 @@
-//! Bounds of a disc that reaches the near plane: its projection is no ellipse.
+//! Bound a disc that reaches the near plane, where its projection is no ellipse.
 //!
-//! The part at t >= near is convex, so its projection ends, in each direction of the screen, either
+//! The part at t >= near is convex. So its projection ends, in each direction of the screen, either
 //! where the rim's tangent is an axis of the picture or where the rim meets the near plane. The
 //! bounds are the box around these points, widened. In view space, with p the centre, n the normal
 //! and r the radius:
@@ -12,8 +12,8 @@
 //!   t(c, s) = (-p.z + -u.z c) + -v.z s      t0 = -p.z, t1 = -u.z, t2 = -v.z
 //! ```
 //!
-//! The points (c, s) of the unit circle with f0 + f1 c + f2 s = 0 are none unless rest >= 0, else
-//! two:
+//! The equation f0 + f1 c + f2 s = 0 has no solution (c, s) on the unit circle unless rest >= 0,
+//! and otherwise two:
 //!
 //! ```text
 //!   L = sqrt(f1 f1 + f2 f2)      a = f1 / L      b = f2 / L      d = f0 / L
@@ -21,7 +21,7 @@
 //!   (-(d a) - root b, -(d b) + root a)      (-(d a) + root b, -(d b) - root a)
 //! ```
 //!
-//! They are taken for three equations, each point with a depth:
+//! Three equations (f0, f1, f2) are solved this way, and each solution gets a depth:
 //!
 //! ```text
 //!   (t0 - near, t1, t2)                                         depth near
@@ -36,9 +36,9 @@
 //!   mx = ((greatest X - least X) 0.001 + fx e) + 1       my likewise with fy; 0.001 from f32
 //! ```
 //!
-//! A point of the rim is exact to a few roundings of the radius, which the near plane magnifies by
-//! f/near: hence e. The thousandth and the pixel leave room for the roundings of q. A test has discs
-//! that lose pixels without e, and without the thousandth.
+//! A point of the rim is exact to a few roundings of the radius, and the near plane magnifies these
+//! by f/near: hence e. The thousandth and the pixel leave room for the roundings of q. A test has
+//! discs that lose pixels without e, and without the thousandth.
 
 use super::shape::PlacedDisc;
 use super::{Disc, View};
@@ -61,7 +61,7 @@ fn basis<R: Real>(view: &View<R>, placed: &PlacedDisc<R>, disc: &Disc<R>) -> [Ve
 }
 
 /// The corners of the box around the visible part of a disc, see the module. A point that may be a
-/// solution is in the box too: bounds are a guarantee.
+/// solution is in the box too, because bounds are a guarantee.
 pub(super) fn corners<R: Real>(
     view: &View<R>,
     placed: &PlacedDisc<R>,
@@ -69,7 +69,7 @@ pub(super) fn corners<R: Real>(
 ) -> (Vector2<R>, Vector2<R>) {
     let (p, near) = (placed.p, view.near);
     let [u, v] = basis(view, placed, disc);
-    // Each a function of (c, s) as [constant, c, s]: x and y in view space, and depth.
+    // x, y and depth in view space, each as a function of (c, s), stored as [constant, c, s].
     let x = [p.x, u.x, v.x];
     let y = [p.y, u.y, v.y];
     let t = [-p.z, -u.z, -v.z];
@@ -100,7 +100,8 @@ pub(super) fn corners<R: Real>(
     (Vector2::new(low.x - mx, low.y - my), Vector2::new(high.x + mx, high.y + my))
 }
 
-/// The equation of the points of the rim where x/t is stationary: the terms of second order cancel.
+/// The equation for the points of the rim where x/t is stationary: the terms of second order
+/// cancel.
 fn tangent<R: Real>(x: [R; 3], t: [R; 3]) -> [R; 3] {
     [x[2] * t[1] - x[1] * t[2], x[2] * t[0] - x[0] * t[2], x[0] * t[1] - x[1] * t[0]]
 }
@@ -110,9 +111,11 @@ fn on_circle<R: Real>(f: [R; 3]) -> Option<[Vector2<R>; 2]> {
     let length = (f[1] * f[1] + f[2] * f[2]).sqrt();
     let (a, b, c) = (f[1] / length, f[2] / length, f[0] / length);
     let rest = R::ONE - c * c;
+    // No point of the circle can solve the equation.
     if !rest.ge(R::ZERO).possibly() {
         return None;
     }
+    // A ball of `rest` may reach below 0, where only a part of its values solves the equation.
     let root = rest.at_least(R::ZERO).sqrt();
     Some([
         Vector2::new(-(c * a) - root * b, -(c * b) + root * a),

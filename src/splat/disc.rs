@@ -1,4 +1,4 @@
-//! A surfel as the projection takes it.
+//! A surfel in the form that the projection takes.
 
 use crate::number::{Real, Vector3};
 
@@ -9,15 +9,15 @@ pub struct Disc<R> {
     pub position: Vector3<R>,
     /// Unit normal.
     pub normal: Vector3<R>,
-    /// Radius; with tangents they count instead.
+    /// Radius; ignored if there are tangents.
     pub radius: R,
     /// Half axes of an elliptical surfel.
     pub tangents: Option<[Vector3<R>; 2]>,
 }
 
 impl<R: Real> Disc<R> {
-    /// The radius of a sphere that holds it: r, or sqrt(U . U + V . V) of an ellipse, whose half
-    /// axes need not be perpendicular.
+    /// The radius of a sphere that contains the surfel: r, or sqrt(U . U + V . V) for an ellipse,
+    /// whose half axes need not be perpendicular.
     #[inline(always)]
     pub(super) fn reach(&self) -> R {
         match self.tangents {

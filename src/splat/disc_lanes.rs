@@ -1,4 +1,4 @@
-//! Discs side by side, for loops that become vectors.
+//! Discs side by side, for loops that vectorize.
 
 use super::Disc;
 use crate::number::lanes::{LANES, Lanes};
@@ -6,14 +6,16 @@ use crate::number::{Real, Vector3};
 use crate::scene::Surfels;
 use glam::Vec3;
 
-/// [`LANES`] surfels, each of their numbers a vector; with `TANGENTS` of a scene of ellipses.
+/// [`LANES`] surfels; each number of the surfels is a vector. With `TANGENTS` the surfels are
+/// ellipses.
 pub(super) struct DiscLanes<const TANGENTS: bool> {
     /// Position, normal, radius, and both tangents.
     numbers: [Lanes; 13],
 }
 
 impl<const TANGENTS: bool> DiscLanes<TANGENTS> {
-    /// For each lane a surfel, and what its radius, or tangents, are multiplied by.
+    /// Reads a surfel for each lane, and multiplies its radius, or tangents, by the factor of the
+    /// lane.
     #[inline(always)]
     pub(super) fn new(surfels: &Surfels, item: impl Fn(usize) -> (usize, f32)) -> Self {
         let mut lanes = Self { numbers: [[0.0; LANES]; 13] };

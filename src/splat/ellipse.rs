@@ -1,9 +1,10 @@
 //! A disc by orthogonal projection: the ellipse of image-space reconstruction.
 //!
 //! A disc of radius rho pixels and normal n = (nx, ny, nz), given in view space and of any length,
-//! is projected along the view axis \[MKC08, section 3.2\], \[MOC08, section 3.1\]: its major axis
-//! is perpendicular to (nx, ny) and 2 rho long, its minor axis is that times |nz|, for |n| = 1. At
-//! the offset (x, y) from its centre, in pixels, x right and y down, in this order of operations:
+//! is projected along the view axis \[MKC08, section 3.2\], \[MOC08, section 3.1\]. Its major axis
+//! is perpendicular to (nx, ny) and 2 rho long. Its minor axis is the major axis times |nz|, for
+//! |n| = 1. At the offset (x, y) from its centre, in pixels, x right and y down, in this order of
+//! operations:
 //!
 //! ```text
 //!   tilt = (nx / nz, ny / nz)             square = rho rho
@@ -13,18 +14,21 @@
 //! ```
 //!
 //! so that d = sqrt(form / square) is the elliptical distance, 1 on the rim. The axes are never
-//! needed: a sum of squares has no cancellation, and the length of n does not enter, so that
-//! averages of normals need not be made unit vectors. (Along the view axis is what both papers say,
-//! because radii are small; but the error is in the angle between the axis and the ray, not in the
-//! size of the disc: a wall that a wide camera sees at its side is edge-on to the axis, and
-//! vanishes.) A disc seen edge-on (nz = 0) contains nothing, not even its centre, and neither does
-//! one without a normal or with rho = 0: the form is then infinite or NaN, or the square is not >
-//! 0.
+//! needed. A sum of squares has no cancellation, and the length of n does not enter, so averages of
+//! normals need not be made unit vectors.
+//!
+//! (Both papers project along the view axis, because radii are small. But the error is in the angle
+//! between the axis and the ray, not in the size of the disc. A wall that a wide camera sees at its
+//! side is edge-on to the axis, and vanishes.)
+//!
+//! A disc contains nothing, not even its centre, if it is seen edge-on (nz = 0), has no normal, or
+//! has rho = 0: the form is then infinite or NaN, or the square is not > 0.
 
 use crate::composite::decide;
 use crate::number::{Real, Vector2, Vector3};
 
-/// The largest radius in pixels, 2^48; a larger one counts as this. Its square is finite in `f32`.
+/// The largest radius in pixels, 2^48; a larger radius counts as 2^48, whose square is finite in
+/// `f32`.
 pub const LARGEST_RADIUS: f32 = 281_474_976_710_656.0;
 
 /// The ellipse of a disc, see the module page.
@@ -37,7 +41,7 @@ pub struct Ellipse<R> {
 }
 
 impl<R> Ellipse<R> {
-    /// Each number in another arithmetic.
+    /// Converts each number to another arithmetic.
     #[must_use]
     pub fn map<S>(self, f: impl Fn(R) -> S) -> Ellipse<S> {
         Ellipse { tilt: self.tilt.map(&f), square: f(self.square) }
@@ -52,7 +56,7 @@ impl<R: Real> Ellipse<R> {
         Self::tilted(Vector2::new(normal.x / normal.z, normal.y / normal.z), radius)
     }
 
-    /// The same from the tilt.
+    /// The same ellipse from the tilt.
     #[inline(always)]
     #[must_use]
     pub fn tilted(tilt: Vector2<R>, radius: R) -> Self {
@@ -93,7 +97,7 @@ mod tests {
         [x, y, if z.abs() < 0.01 { 0.25 } else { z }]
     }
 
-    /// By the paper's words: axes along and across the projected normal, the minor one shortened.
+    /// As the papers word it: axes along and across the projected normal, the minor one shortened.
     fn by_axes(n: [f64; 3], rho: f64, x: f64, y: f64) -> f64 {
         let flat = (n[0] * n[0] + n[1] * n[1]).sqrt();
         let length = (flat * flat + n[2] * n[2]).sqrt();
@@ -113,7 +117,7 @@ mod tests {
             let rho = 0.5 + (i % 5) as f64;
             let ellipse = Ellipse::new(Vector3::new(n[0] * scale, n[1] * scale, n[2] * scale), rho);
             let (ours, theirs) = (ellipse.form(x, y) / ellipse.square, by_axes(n, rho, x, y));
-            // Both round a dozen times; 1/nz is the condition of either.
+            // Both round about a dozen times; 1/nz is the condition number of either.
             assert!((ours - theirs).abs() <= 1e-13 * theirs / (n[2] * n[2]), "{ours} {theirs}");
         }
     }

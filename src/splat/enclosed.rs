@@ -1,11 +1,12 @@
-//! Projection of affine discs and ellipses in balls, in lanes.
+//! Project affine discs and ellipses in balls, in lanes.
 //!
-//! The lanes are balls of [`Common`]: what these decide of a surfel is decided, and a splat of which they
-//! know every number is that of the plain ball, bit for bit. Of any other surfel they say nothing.
+//! The lanes are balls of [`Common`]. If these balls decide something about a surfel, it is
+//! decided. If they know every number of a splat, the splat equals the one in plain balls, bit for
+//! bit. About any other surfel they say nothing.
 //!
-//! A projection in balls is 80 kB of code for each width of vectors. So what is done with a splat is called, not
-//! compiled into each; and there is one width, AVX2. AVX-512 was no faster. Without AVX2 nothing is known of any
-//! surfel, because two lanes gain less than they cost to compile.
+//! A projection in balls is 80 kB of code for each vector width. So the code that uses a splat is
+//! called, and not compiled into each version. One width is compiled, AVX2, because AVX-512 was no
+//! faster. Without AVX2 the lanes decide nothing, because two lanes gain less than they cost to compile.
 
 #![expect(
     clippy::needless_range_loop,
@@ -22,15 +23,15 @@ use crate::scene::Surfels;
 use multiversion::target::target_cfg_f;
 use std::ops::Range;
 
-/// What is known of a surfel: it certainly is not drawn, or certainly is and as this splat, or neither.
-/// Numbers, so that a choice between them is a vector.
+/// What is known of a surfel: it is certainly not drawn, or certainly drawn as this splat, or
+/// neither. These are numbers, because a choice between numbers vectorizes.
 const DROPPED: u32 = 0;
 const DRAWN: u32 = 1;
 const OPEN: u32 = 2;
 
-/// Calls `draw` for the affine surfels of a range, whose length is a multiple of [`LANES`], in ascending
-/// order, but for those that certainly are not drawn: with the splat if that is certain, none if nothing is
-/// known.
+/// Calls `draw` for the affine surfels of a range, whose length is a multiple of [`LANES`], in
+/// ascending order. Skips surfels that are certainly not drawn. Passes the splat if it is certain,
+/// and none if nothing is known.
 pub(crate) fn affine_surfels<P: Profile>(
     projector: &Projector<Ball<Common<P>>>,
     surfels: &Surfels,
@@ -56,17 +57,17 @@ vectorized_avx2!(
         let projector = *projector;
         let picture = [projector.view.width, projector.view.height].map(|n| n.middle as u32);
         for some in seen::<TANGENTS, P>(&projector, surfels, range).chunks(LANES) {
-            // The last lanes may be one surfel again.
+            // The last lanes may repeat one surfel.
             let one = |i: usize| (some[i.min(some.len() - 1)], 1.0);
             let discs = DiscLanes::<TANGENTS>::new(surfels, one);
-            // -- Their projections
+            // -- Project
             let mut splats = SplatLanes::<Common<P>>::new();
             for i in 0..LANES {
                 let (f, b, truths, reasons) = projector.affine_disc(&discs.get(i));
                 splats.known[i] = known(&f, &b, picture, truths[1], &reasons);
                 splats.put(i, &f, &b, truths[0]);
             }
-            // -- Those that may be drawn
+            // -- Draw those that may be visible
             for (i, &surfel) in some.iter().enumerate() {
                 match splats.known[i] {
                     DROPPED => {}
@@ -78,8 +79,8 @@ vectorized_avx2!(
     }
 );
 
-/// The surfels of a range, whose length is a multiple of [`LANES`], that do not certainly lie where they
-/// cannot be seen, nor are turned away: a shape is made of these alone.
+/// The surfels of a range, whose length is a multiple of [`LANES`], that may be seen: they are not
+/// certainly out of sight and not certainly turned away. Only these get a shape.
 #[inline(always)]
 fn seen<const TANGENTS: bool, P: Profile>(
     projector: &Projector<Ball<Common<P>>>,
@@ -100,7 +101,7 @@ fn seen<const TANGENTS: bool, P: Profile>(
     seen
 }
 
-/// What is known of a surfel.
+/// Classifies a surfel.
 #[inline(always)]
 fn known<P: Profile>(
     footprint: &Footprint<Ball<P>>,
@@ -113,7 +114,7 @@ fn known<P: Profile>(
     let radii = (center.x.radius + center.y.radius + ux.radius + uy.radius + vy.radius)
         + (w0.radius + wx.radius + wy.radius)
         + (w_far.radius + w_near.radius + amplitude.radius);
-    // Bounds of which nothing is known reach beyond the picture.
+    // Bounds reach beyond the picture if nothing is known of them.
     let bounded = (bounds.x1 <= width) & (bounds.y1 <= height);
     let dropped = reasons.any();
     let certain = !dropped.possibly() & (crosses.certainly() == crosses.possibly());
@@ -122,7 +123,7 @@ fn known<P: Profile>(
     if dropped.certainly() { DROPPED } else { known }
 }
 
-/// [`LANES`] splats, each of their numbers a vector.
+/// [`LANES`] splats; each number of the splats is a vector.
 struct SplatLanes<P: Profile> {
     /// The footprint, in the order of its fields.
     numbers: [BallLanes<P>; 11],

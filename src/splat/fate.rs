@@ -5,7 +5,7 @@ use super::{Footprint, Projector};
 use crate::frame::Rect;
 use crate::number::{Exact, Real};
 
-/// What became of a surfel.
+/// What happens to a surfel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 #[repr(u32)]
 pub enum Fate {
@@ -21,8 +21,7 @@ pub enum Fate {
     Outside,
 }
 
-/// Why a surfel is not drawn, in the order of the fates; see
-/// [`mod@super::project`].
+/// Why a surfel is not drawn, in the order of the fates; see [`mod@super::project`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Reasons<R: Real> {
     /// The centre is not farther than the near plane: not t > near.
@@ -31,8 +30,8 @@ pub struct Reasons<R: Real> {
     pub degenerate: R::Truth,
     /// The back is seen, g >= 0, and culling is on.
     pub back_facing: R::Truth,
-    /// The surfel cannot be seen in the picture. Empty bounds are a reason, but bounds that may be
-    /// empty are no doubt: bounds are rounded outwards, and empty ones have no fragments.
+    /// The surfel cannot be seen in the picture. Empty bounds are a reason. Bounds that may be
+    /// empty raise no doubt, because bounds are rounded outwards, and empty ones have no fragments.
     pub outside: R::Truth,
 }
 
@@ -46,7 +45,7 @@ impl<R: Real> Reasons<R> {
 }
 
 impl<R: Exact> Reasons<R> {
-    /// The first reason there is; without a branch, so that a loop over surfels vectorizes.
+    /// The first reason that holds; without a branch, so that a loop over surfels vectorizes.
     #[inline(always)]
     #[must_use]
     pub fn fate(&self) -> Fate {
@@ -74,7 +73,7 @@ impl<R: Real> Projector<R> {
         R::Truth::from(self.cull) & placed.g.ge(R::ZERO)
     }
 
-    /// The reasons not to draw a surfel that its place gives; see the module page.
+    /// The reasons not to draw a surfel that follow from its place alone; see the module page.
     #[inline(always)]
     pub(super) fn unseen(&self, placed: &PlacedDisc<R>, radius: R) -> Reasons<R> {
         Reasons {
@@ -86,7 +85,7 @@ impl<R: Real> Projector<R> {
     }
 }
 
-/// The reasons not to draw a surfel: those that its place gives, and those of its footprint.
+/// All reasons not to draw a surfel: the ones from its place, and the ones from its footprint.
 #[inline(always)]
 pub(super) fn reasons<R: Real>(
     unseen: Reasons<R>,
@@ -94,7 +93,7 @@ pub(super) fn reasons<R: Real>(
     bounds: &Rect,
 ) -> Reasons<R> {
     let f = footprint;
-    // Comparisons with NaN are false, so every test is one that a good surfel passes.
+    // Comparisons with NaN are false, so each test is written as one that a good surfel passes.
     let largest = R::from_f32(LARGEST);
     let sound = f.amplitude.ge(R::from_f32(1.0 / LARGEST))
         & f.wx.abs().le(largest)
@@ -113,6 +112,6 @@ pub(super) fn reasons<R: Real>(
     }
 }
 
-/// 2^96: what the numbers of a footprint may reach, and its inverse what its amplitude may fall to.
-/// A product with any pixel offset (2^17) or any squared term then stays within `f32`.
+/// 2^96: the largest allowed number of a footprint; its inverse is the least allowed amplitude. A
+/// product with any pixel offset (2^17) or any squared term then stays within `f32`.
 const LARGEST: f32 = 79_228_162_514_264_337_593_543_950_336.0;

@@ -3,7 +3,7 @@
 use super::{Kernel, View};
 use crate::number::{Real, Vector3};
 
-/// The four sides of what a picture shows, moved out by the reach of the low-pass filter.
+/// The four sides of the visible region, moved out by the reach of the low-pass filter.
 #[derive(Clone, Copy, Debug)]
 pub struct Frustum<R> {
     sides: [FrustumSide<R>; 4],
@@ -18,12 +18,12 @@ struct FrustumSide<R> {
     along: R,
     across: R,
     past: R,
-    /// The change of that per world unit towards the outside.
+    /// How much that value changes per world unit towards the outside.
     slope: R,
 }
 
 impl<R: Real> Frustum<R> {
-    /// The sides for a camera and a kernel.
+    /// Computes the sides for a camera and a kernel.
     #[must_use]
     pub fn new(view: &View<R>, kernel: &Kernel) -> Self {
         let side = |along: R, across: R, past: R| {

@@ -1,4 +1,4 @@
-//! From a surfel to its footprint on the screen.
+//! Turn a surfel into its footprint on the screen.
 //!
 //! ```text
 //!   surfel (position, normal, radius) ──View──▶ centre p, normal n       view space
@@ -7,8 +7,8 @@
 //! ```
 //!
 //! **Nearness** orders fragments: w = 1/t under a perspective camera, w = -t under an orthographic
-//! one, so that it is affine in the pixel position over a plane and the nearer fragment has the
-//! larger w in both. An empty pixel has the nearness of t = +inf: 0 or -inf.
+//! one. So nearness is affine in the pixel position over a plane, and the nearer fragment has the
+//! larger w under both cameras. An empty pixel has the nearness of t = +inf: 0 or -inf.
 //!
 //! This module knows neither tiles nor pictures. Sources: \[ZPvBG01\] (affine), \[ZRB+04\]
 //! (perspective), \[BHZK05\] (ray casting).
@@ -54,8 +54,8 @@ pub enum Outline {
     /// The ellipse that is the exact projection of the disc \[ZRB+04\], then the low-pass filter. A
     /// disc that reaches the near plane has no such ellipse and is drawn as `Affine`.
     Perspective,
-    /// The disc itself, by intersecting each pixel's ray with its plane; the low-pass filter is the
-    /// larger of the two weights \[BHZK05\].
+    /// The disc itself, by intersecting each pixel's ray with the disc's plane. The low-pass filter
+    /// enters as the larger of the two weights \[BHZK05\].
     RayCast,
 }
 
@@ -81,7 +81,7 @@ impl Kernel {
     /// low-pass filter.
     pub const ZP06: Self = Self { outline: Outline::RayCast, cutoff: 2.0, low_pass: 0.0 };
 
-    /// Whether the numbers are in range.
+    /// Checks that the numbers are in range.
     ///
     /// # Errors
     /// [`Error::Invalid`] if the cut-off or the low-pass variance is out of range.
@@ -122,8 +122,8 @@ impl Default for Kernel {
 ///   weight                 amplitude * exp(-0.5 q)
 /// ```
 ///
-/// f is d^T Q d of the conic Q by its Cholesky factor: a sum of squares keeps the digits that the
-/// expanded form loses on thin ellipses, and is never negative.
+/// f is d^T Q d, with the conic Q given by its Cholesky factor. A sum of squares is never negative,
+/// and keeps the digits that the expanded form loses on thin ellipses.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Footprint<R> {
     /// The centre of the ellipse in pixels.
@@ -142,7 +142,7 @@ pub struct Footprint<R> {
     pub wy: R,
     /// The least nearness of the disc itself.
     pub w_far: R,
-    /// The greatest nearness of the disc itself, at most that of the near plane.
+    /// The greatest nearness of the disc itself, at most the nearness of the near plane.
     pub w_near: R,
     /// The weight at q = 0.
     pub amplitude: R,
@@ -173,11 +173,11 @@ pub(crate) struct Row<R> {
 /// What the fragments of every splat of a picture share.
 #[derive(Clone, Copy, Debug)]
 pub struct Shared<R> {
-    /// k^2, what q is compared with, see [`crate::composite::decide::inside`].
+    /// k^2, the limit for q, see [`crate::composite::decide::inside`].
     pub limit: R,
     /// Whether q comes from ray casting.
     pub ray_cast: bool,
-    /// Whether nearness is 1/t; else it is -t.
+    /// Whether nearness is 1/t; if not, it is -t.
     pub perspective: bool,
     /// h, the variance of the low-pass filter in px^2.
     pub low_pass: R,
@@ -186,7 +186,7 @@ pub struct Shared<R> {
 }
 
 impl<R> Shared<R> {
-    /// Each number in another arithmetic.
+    /// Converts each number to another arithmetic.
     #[must_use]
     pub fn map<S>(self, f: impl Fn(R) -> S) -> Shared<S> {
         Shared {
@@ -200,7 +200,7 @@ impl<R> Shared<R> {
 }
 
 impl<R: Real> Shared<R> {
-    /// The shared numbers of a picture.
+    /// Computes the shared numbers of a picture.
     #[must_use]
     pub fn new(view: &View<R>, kernel: &Kernel) -> Self {
         let cutoff = R::from_f32(kernel.cutoff);
@@ -227,7 +227,7 @@ impl<R: Real> Shared<R> {
 }
 
 impl<R> Footprint<R> {
-    /// Each number in another arithmetic.
+    /// Converts each number to another arithmetic.
     #[must_use]
     pub fn map<S>(self, f: impl Fn(R) -> S) -> Footprint<S> {
         Footprint {
@@ -269,13 +269,13 @@ impl<R: Real> Footprint<R> {
         (q, w.clamped(self.w_far, self.w_near))
     }
 
-    /// What all fragments of a column share, at dx from the centre.
+    /// The terms that all fragments of a column share, at dx from the centre.
     #[inline(always)]
     pub(crate) fn column(&self, dx: R) -> Column<R> {
         Column { dx, u: self.ux * dx, w: self.w0 + self.wx * dx }
     }
 
-    /// What all fragments of a row share, at dy from the centre.
+    /// The terms that all fragments of a row share, at dy from the centre.
     #[inline(always)]
     pub(crate) fn row(&self, dy: R) -> Row<R> {
         let v = self.vy * dy;
@@ -299,13 +299,13 @@ impl<R: Real> Footprint<R> {
     }
 }
 
-/// q of the disc by ray casting, or of the low-pass filter where that is smaller.
+/// q of the disc by ray casting, or q of the low-pass filter where it is smaller.
 #[inline(always)]
 fn ray_cast<R: Real>(shared: &Shared<R>, form: R, w: R, dx: R, dy: R) -> R {
     let q = if shared.perspective { form / (w * w) } else { form };
     let hits = w.le(shared.w_clip) & (w.gt(R::ZERO) | R::Truth::from(!shared.perspective));
     let q = R::select(hits, q, R::INFINITY);
-    // h is an input, and so the same in every number.
+    // h is an input, so it is the same in every number.
     if shared.low_pass.gt(R::ZERO).certainly() {
         q.at_most((dx * dx + dy * dy) / shared.low_pass)
     } else {
@@ -329,18 +329,18 @@ pub fn fragment<R: Real>(
 /// A surfel on the screen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Splat<R: Real> {
-    /// Its kernel.
+    /// The kernel of the splat.
     pub footprint: Footprint<R>,
-    /// The pixels that can be inside.
+    /// The pixels that may be inside.
     pub bounds: Rect,
     /// The index of the surfel in its scene.
     pub surfel: u32,
-    /// Whether the back of the surfel is seen; its normal then counts reversed.
+    /// Whether the back of the surfel is seen; its normal is then reversed.
     pub back: R::Truth,
 }
 
 impl<R: Exact> Splat<R> {
-    /// Each number in another arithmetic.
+    /// Converts each number to another arithmetic.
     #[must_use]
     pub fn map<S: Real>(&self, f: impl Fn(R) -> S) -> Splat<S> {
         let Self { footprint, bounds, surfel, back } = *self;

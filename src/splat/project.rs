@@ -1,4 +1,4 @@
-//! Projection of one surfel: the specification of its [`Footprint`].
+//! Project one surfel: the specification of its [`Footprint`].
 //!
 //! **Placing.** p and n are the centre and the normal in view space, t = -p.z. Under a perspective
 //! camera m = 1/t and the ray through the centre is d = (p.x m, p.y m, -1); under an orthographic
@@ -11,8 +11,9 @@
 //!   g = (n.x d.x + n.y d.y) - n.z               < 0: the front is seen
 //! ```
 //!
-//! **Covariance.** V0 in px^2 of the disc, a Gaussian of standard deviation s = r/k on its plane,
-//! needs no tangent basis: with c = (1, 0, d.x) x n, e = (0, 1, d.y) x n, rx = s sx, ry = s sy
+//! **Covariance.** V0 is the covariance of the disc on the screen, in px^2; the disc is a Gaussian
+//! of standard deviation s = r/k on its plane. No tangent basis is needed. With c = (1, 0, d.x) x
+//! n, e = (0, 1, d.y) x n, rx = s sx, ry = s sy:
 //!
 //! ```text
 //!   xx = (rx rx) c.c      xy = -((rx ry) c.e)      yy = (ry ry) e.e      area = |(rx ry) g|
@@ -28,8 +29,8 @@
 //!   a.z' = sx (z'.x + d.x z'.z)                    b.z' = -(sy (z'.y + d.y z'.z))
 //! ```
 //!
-//! For an ellipse with half axes k U and k V (its tangents, of any angle between them): each tangent
-//! is turned to view space first, then each of its components is divided by k.
+//! An ellipse has half axes k U and k V (its tangents, with any angle between them). Each tangent
+//! is first turned to view space, then each of its components is divided by k.
 //!
 //! ```text
 //!   a.U = sx (U.x + d.x U.z)   b.U = -(sy (U.y + d.y U.z))        and so for V
@@ -39,13 +40,14 @@
 //!   tilt = (((a.U) U.z + (a.V) V.z) m, ((b.U) U.z + (b.V) V.z) m)
 //! ```
 //!
-//! Its plane and its facing are those of the surfel's normal, not of U x V. n is not made a unit
+//! Its plane and its facing follow from the surfel's normal, not from U x V. n is not made a unit
 //! vector again in view space.
 //!
 //! **Nearness** of the plane: w0 = 1/t or -t at the centre, wx = m n.x / (fx g), wy = -m n.y / (fy
 //! g) per pixel, the ray-plane intersection relative to the centre. `Decided:` a fragment in the
-//! skirt of the low-pass filter, outside the disc, has no meaningful intersection; its nearness is
-//! clamped to that of the depths [t - half, t + half], the nearer not nearer than the near plane.
+//! skirt of the low-pass filter, outside the disc, has no meaningful intersection. Its nearness is
+//! clamped to the nearness of the depths [t - half, t + half], the nearer not nearer than the near
+//! plane.
 //!
 //! **Outline.** `Affine`, the projection linearized at the centre \[ZPvBG01\]: V = V0 + h I,
 //!
@@ -55,14 +57,15 @@
 //!   amplitude = area / sqrt(det)
 //! ```
 //!
-//! `Departs:` the amplitude is that of \[ZPvBG01\], whose Gaussians are normalized, times 2 pi s s
-//! (of an ellipse 2 pi |U x V|): without the filter every splat has the weight 1 at its centre.
-//! Normalization removes the factor where the radii of neighbours are equal; where they differ, a
-//! larger splat counts more than there, in proportion to its area. Bounds: k sqrt(xx') and
-//! k sqrt(yy') about the centre, by [`super::bounds::around`] with the stretch ux sqrt(xx').
+//! `Departs:` the amplitude is the amplitude of \[ZPvBG01\], whose Gaussians are normalized, times
+//! 2 pi s s (for an ellipse 2 pi |U x V|). So without the filter every splat has the weight 1 at
+//! its centre. Normalization removes the factor where the radii of neighbours are equal. Where they
+//! differ, a larger splat counts more than in \[ZPvBG01\], in proportion to its area. Bounds: k
+//! sqrt(xx') and k sqrt(yy') about the centre, by [`super::bounds::around`] with the stretch ux
+//! sqrt(xx').
 //!
 //! `Perspective`, the exact ellipse of the projected disc \[ZRB+04\], then the low-pass filter.
-//! `Decided:` \[ZRB+04\] gives the outline as a conic; here its centre and covariance follow from
+//! `Decided:` \[ZRB+04\] gives the outline as a conic. Here its centre and covariance follow from
 //! V0 by a rank-one update, without cancellation. With rest = ((t - half)/t) ((t + half)/t) and
 //! factor = (k k) / rest, before the formulas of `Affine`:
 //!
@@ -74,7 +77,7 @@
 //! A disc with t - half <= near has no ellipse and is drawn `Affine`. Under an orthographic camera
 //! the affine outline is exact.
 //!
-//! `RayCast`, the disc itself with the low-pass filter beside it \[BHZK05\]: the form of V0 alone,
+//! `RayCast`, the disc itself with the low-pass filter beside it \[BHZK05\]. The form of V0 alone,
 //! times w0 w0 under a perspective camera (scale = w0, else 1), is the squared distance from the
 //! centre in the disc's plane, in standard deviations, once divided by w w:
 //!
@@ -83,31 +86,35 @@
 //!   amplitude = 1, or 0 if area is 0
 //! ```
 //!
-//! Bounds: those of the exact outline and of the filter's circle of radius k sqrt(h), both; a disc
-//! that reaches the near plane has those of its visible part ([`mod@super::crossing`]). The outline's are k sqrt(xx) and
-//! k sqrt(yy) about its centre, each times 1 + (stretch ratio) 2^-18 with stretch = (sqrt(xx)
-//! sqrt(yy)) / area and ratio = t / (t - half) (1 under an orthographic camera), and at the end all
-//! are moved outwards by 1/128 px.
+//! Bounds: they contain both the exact outline and the filter's circle of radius k sqrt(h). A disc
+//! that reaches the near plane has the bounds of its visible part ([`mod@super::crossing`]) instead
+//! of the outline's. The outline's bounds are k sqrt(xx) and k sqrt(yy) about its centre, each
+//! times 1 + (stretch ratio) 2^-18. Here stretch = (sqrt(xx) sqrt(yy)) / area and ratio = t / (t -
+//! half) (1 under an orthographic camera). At the end all bounds are moved outwards by 1/128 px.
 //!
-//! **Fate**, the first of the [`Reasons`] in this arithmetic: `f32` and `f64` may differ. In this
-//! order: a surfel whose centre is not farther than the near plane is `Behind`; one whose amplitude
-//! is below 2^-96, whose gradient of nearness exceeds 2^96 a pixel, or of which any number is not
-//! finite is `Degenerate` (seen edge-on, or astronomically large or small); with culling, one with
-//! g >= 0 is `BackFacing` (at 0 it has no area, and is `Degenerate` already); one that cannot be
-//! seen is `Outside`: no pixel of the picture is in its bounds, or the sphere about p that holds it,
-//! of radius r or, for an ellipse, sqrt(k U . k U + k V . k V), lies beyond a side of the view by
-//! more than the reach of the low-pass filter, k sqrt(h) px. For the left side that is
+//! **Fate** is the first of the [`Reasons`] that holds in this arithmetic; `f32` and `f64` may
+//! differ. In this order:
+//!
+//! 1. `Behind`: the centre is not farther than the near plane.
+//! 2. `Degenerate`: the amplitude is below 2^-96, the gradient of nearness exceeds 2^96 a pixel, or
+//!    any number is not finite. Such a surfel is seen edge-on, or is astronomically large or small.
+//! 3. `BackFacing`: with culling, g >= 0. (At 0 the surfel has no area, and is `Degenerate`
+//!    already.)
+//! 4. `Outside`: the surfel cannot be seen. Either no pixel of the picture is in its bounds, or its
+//!    bounding sphere lies beyond a side of the view. Beyond means by more than the reach of the
+//!    low-pass filter, k sqrt(h) px. The sphere has its centre at p and the radius r or, for an
+//!    ellipse, sqrt(k U . k U + k V . k V). For the left side the condition is
 //!
 //! ```text
 //!   fx p.x + cx t < -(r sqrt(fx fx + cx cx) + (k sqrt(h)) t)      orthographic: t = 1, and fx r
 //! ```
 //!
 //! and so for the others with width - cx and -p.x, cy and -p.y, height - cy and p.y. (`Decided:`
-//! beside the camera the ellipse of a disc that is out of sight, linearized at its centre, would
-//! reach across the picture. A disc that is partly in sight is drawn.)
+//! beside the camera, the ellipse of a disc out of sight, linearized at its centre, would reach
+//! across the picture. A disc that is partly in sight is drawn.)
 //!
-//! Source: \[ZPvBG01, sections 3 and 4\]; `Departs:` the determinant is a sum of terms >= 0, where
-//! the textbook xx yy - xy xy cancels.
+//! Source: \[ZPvBG01, sections 3 and 4\]; `Departs:` the determinant is a sum of terms >= 0,
+//! because the textbook xx yy - xy xy cancels.
 
 use super::fate::reasons;
 use super::frustum::Frustum;
@@ -116,7 +123,7 @@ use super::{Disc, Footprint, Kernel, Outline, Reasons, Splat, View, bounds, cros
 use crate::frame::Rect;
 use crate::number::{Exact, Real, Truth, Vector2};
 
-/// All that the projection of a picture's surfels shares.
+/// All numbers that the projection of a picture's surfels shares.
 #[derive(Clone, Copy, Debug)]
 pub struct Projector<R> {
     /// The camera.
@@ -133,8 +140,8 @@ pub struct Projector<R> {
     pub(super) frustum: Frustum<R>,
 }
 
-/// Projects one surfel; see the module page. The splat is meaningless unless there is no reason not
-/// to draw it.
+/// Projects one surfel; see the module page. The splat is meaningless if there is any reason not to
+/// draw it.
 #[must_use]
 pub fn project<R: Exact>(
     projector: &Projector<R>,
@@ -146,8 +153,8 @@ pub fn project<R: Exact>(
     projector.splat(disc, (&placed, &shape), crosses, surfel)
 }
 
-/// [`project`] of a surfel that reaches the near plane, or does not, as `crosses` says: what a
-/// number that cannot decide [`Projector::crosses`] asks for twice.
+/// [`project`] where `crosses` says whether the surfel reaches the near plane. A number that cannot
+/// decide [`Projector::crosses`] calls this twice.
 #[inline(never)]
 #[must_use]
 pub fn project_as<R: Real>(
@@ -160,10 +167,10 @@ pub fn project_as<R: Real>(
     projector.splat(disc, (&placed, &shape), crosses, surfel)
 }
 
-/// Runs `each` for the outlines that a surfel may have: splat, the reasons not to draw it, and
-/// whether it reaches the near plane. That is [`project_as`] once, or twice where the latter is
-/// undecided; not at all of a surfel that certainly is not drawn, as its place alone says: only
-/// what is left has its shape computed.
+/// Calls `each` for every outline that a surfel may have: with the splat, the reasons not to draw
+/// it, and whether it reaches the near plane. That is [`project_as`] once, or twice where the near
+/// plane is undecided. It does not call `each` at all if the place alone shows that the surfel is
+/// certainly not drawn; then no shape is computed.
 #[inline(always)]
 pub(crate) fn project_each<R: Real>(
     projector: &Projector<R>,
@@ -182,6 +189,7 @@ pub(crate) fn project_each<R: Real>(
     let shape = projector.covariance(&placed, disc);
     let crosses = projector.reaches_near_plane(&placed, &shape);
     for alternative in [false, true] {
+        // Each outcome of the near-plane test that is possible gives an outline.
         let possible = if alternative { crosses.possibly() } else { !crosses.certainly() };
         if possible {
             let (footprint, bounds) = projector.footprint(disc, (&placed, &shape), alternative);
@@ -193,7 +201,7 @@ pub(crate) fn project_each<R: Real>(
 }
 
 impl<R: Real> Projector<R> {
-    /// The shared numbers of a picture.
+    /// Computes the shared numbers of a picture.
     #[must_use]
     pub fn new(view: View<R>, kernel: &Kernel, cull: bool) -> Self {
         Self {
@@ -225,7 +233,7 @@ impl<R: Real> Projector<R> {
         R::Truth::from(self.view.perspective) & !(placed.t - shape.half).gt(self.view.near)
     }
 
-    /// The splat by the outline of the picture, and the reasons not to draw it.
+    /// The splat with the outline of the picture, and the reasons not to draw it.
     #[inline(always)]
     fn splat(
         &self,
@@ -239,7 +247,7 @@ impl<R: Real> Projector<R> {
         (Splat { footprint, bounds, surfel, back: placed.g.gt(R::ZERO) }, reasons)
     }
 
-    /// The footprint by the outline of the picture, and the pixels that can be inside.
+    /// The footprint with the outline of the picture, and the pixels that may be inside.
     #[inline(always)]
     fn footprint(
         &self,
@@ -256,7 +264,7 @@ impl<R: Real> Projector<R> {
         }
     }
 
-    /// A surfel in view space, and its covariance.
+    /// Computes a surfel in view space, and its covariance.
     #[inline(always)]
     fn shape(&self, disc: &Disc<R>) -> (PlacedDisc<R>, Covariance<R>) {
         let placed = self.place(disc.position, disc.normal);
@@ -271,9 +279,9 @@ impl<R: Real> Projector<R> {
         }
     }
 
-    /// An affine disc without a branch, so that a loop over discs, or over ellipses, vectorizes:
-    /// footprint, bounds, whether its back is seen and whether it reaches the near plane, and the
-    /// reasons not to draw it.
+    /// Projects an affine disc without a branch, so that a loop over discs, or over ellipses,
+    /// vectorizes. Returns the footprint, the bounds, whether its back is seen and whether it
+    /// reaches the near plane, and the reasons not to draw it.
     #[inline(always)]
     pub(super) fn affine_disc(
         &self,
@@ -319,7 +327,7 @@ impl<R: Real> Projector<R> {
         (exact, Vector2::new(c.x + factor * tilt.x, c.y + factor * tilt.y), rest)
     }
 
-    /// The disc by ray casting, the low-pass filter beside it.
+    /// The disc by ray casting, with the low-pass filter beside it.
     fn ray_cast(
         &self,
         placed: &PlacedDisc<R>,
@@ -336,6 +344,7 @@ impl<R: Real> Projector<R> {
         footprint.vy = scale / shape.yy.sqrt();
         footprint.amplitude = R::select(shape.area.gt(R::ZERO), R::ONE, R::ZERO);
 
+        // A disc that reaches the near plane has no outline; its visible part has bounds.
         let (low, high) = if crosses {
             crossing::corners(view, placed, disc)
         } else {
@@ -386,7 +395,7 @@ impl<R: Real> Projector<R> {
         (footprint, bounds)
     }
 
-    /// The plane and the range of nearness; the other fields are 0.
+    /// Sets the plane and the range of nearness; the other fields are 0.
     #[inline(always)]
     fn nearness(
         &self,

@@ -1,7 +1,7 @@
-//! Splats as bytes, for a backend to upload: the same numbers that this crate draws.
+//! Export splats as bytes for a backend to upload: the same numbers that this crate draws.
 //!
-//! A backend that draws these records has the projection of the reference, bit for bit, so that a
-//! difference in its picture is one of its rasterization or its compositing.
+//! A backend that draws these records has the projection of the reference, bit for bit. So a
+//! difference in its picture comes from its rasterization or its compositing.
 
 use super::{Footprint, Kernel, Projector, Shared, Splat, Tally, View, batch};
 use crate::number::Vector2;
@@ -10,7 +10,7 @@ use std::mem::{offset_of, size_of};
 
 /// A visible splat and its attributes in 96 bytes of `f32` and `u32`.
 ///
-/// | offset | size | field | is |
+/// | offset | size | field | meaning |
 /// |---|---|---|---|
 /// | 0 | 8 | `center` | column and row of the centre, px |
 /// | 8 | 12 | `conic` | ux, uy, vy of [`super::Footprint`] |
@@ -18,13 +18,13 @@ use std::mem::{offset_of, size_of};
 /// | 32 | 8 | `range` | `w_far`, `w_near`: the least and the greatest nearness |
 /// | 40 | 4 | `amplitude` | the weight at q = 0 |
 /// | 44 | 4 | `surfel` | its index in the scene: the order of every sum, and of ties |
-/// | 48 | 16 | `bounds` | the pixels that can be inside: first column and row, and those after the last |
+/// | 48 | 16 | `bounds` | the pixels that may be inside: first column and row, and the ones after the last |
 /// | 64 | 12 | `normal` | world space, of the side that is seen |
 /// | 76 | 4 | `opacity` | in \[0, 1\]; 1 if the scene has no opacities |
-/// | 80 | 12 | `color` | linear RGB; 0 if the scene has no colours, and the material's holds for all |
+/// | 80 | 12 | `color` | linear RGB; 0 if the scene has no colours: the material's colour then applies |
 /// | 92 | 4 | `back` | 1 if the back of the surfel is seen, else 0 |
 ///
-/// The offsets are those that WGSL gives the same struct in a storage buffer, and so does std430:
+/// WGSL gives the same struct in a storage buffer these offsets, and so does std430:
 ///
 /// ```wgsl
 /// struct SplatRecord {
@@ -34,8 +34,8 @@ use std::mem::{offset_of, size_of};
 /// }
 /// ```
 ///
-/// What to do with them is said at [`super::Footprint`]; the numbers that all splats of a picture
-/// share are those of [`Shared`].
+/// [`super::Footprint`] says how to draw the records; the numbers that all splats of a picture
+/// share are in [`Shared`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]
 pub struct SplatRecord {
@@ -51,7 +51,7 @@ pub struct SplatRecord {
     pub amplitude: f32,
     /// The index of the surfel in its scene.
     pub surfel: u32,
-    /// The pixels that can be inside: x0, y0, x1, y1, the ends exclusive.
+    /// The pixels that may be inside: x0, y0, x1, y1, the ends exclusive.
     pub bounds: [u32; 4],
     /// The unit normal in world space, reversed if the back is seen.
     pub normal: [f32; 3],
@@ -64,7 +64,7 @@ pub struct SplatRecord {
 }
 
 impl SplatRecord {
-    /// The bytes of a record, and the distance from one to the next.
+    /// The number of bytes of a record, and the distance from one to the next.
     pub const SIZE: usize = size_of::<Self>();
 
     /// Name, offset in bytes and type of each field, in order.
@@ -82,10 +82,10 @@ impl SplatRecord {
         ("back", offset_of!(Self, back), "u32"),
     ];
 
-    /// The record of a visible splat of `surfels`.
+    /// Makes the record of a visible splat of `surfels`.
     ///
     /// # Panics
-    /// If the splat is of another scene, with more surfels.
+    /// If the splat belongs to another scene, with more surfels.
     #[must_use]
     pub fn new(splat: &Splat<f32>, surfels: &Surfels) -> Self {
         let (f, b, i) = (&splat.footprint, &splat.bounds, splat.surfel as usize);
@@ -105,7 +105,7 @@ impl SplatRecord {
         }
     }
 
-    /// The bytes of the record: its fields in order, little-endian, without padding.
+    /// Writes the fields in order, little-endian, without padding.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; Self::SIZE] {
         let mut bytes = [0; Self::SIZE];
@@ -116,7 +116,7 @@ impl SplatRecord {
         bytes
     }
 
-    /// The record that these bytes hold, as [`SplatRecord::to_bytes`] writes them.
+    /// Reads a record from bytes that [`SplatRecord::to_bytes`] wrote.
     #[must_use]
     pub fn from_bytes(bytes: &[u8; Self::SIZE]) -> Self {
         let words = bytes.as_chunks().0;
@@ -164,10 +164,11 @@ impl SplatRecord {
     }
 }
 
-/// The visible splats of a scene, in ascending surfel index, and what became of all surfels.
+/// Projects the visible splats of a scene, in ascending surfel index, and counts the fates of all
+/// surfels.
 ///
-/// Each surfel as the scene has it: where a method of groups enlarges its splats, the records do
-/// not.
+/// Each surfel has the size that it has in the scene: the records of a method of groups are not
+/// enlarged.
 ///
 /// ```
 /// use splatref::scene::Camera;
@@ -198,7 +199,7 @@ pub fn project_records(
     (records, tally)
 }
 
-/// What the records of a picture share, in words: `name = value` each.
+/// The numbers that the records of a picture share, each with its name.
 #[must_use]
 pub fn shared_numbers(camera: &Camera, kernel: &Kernel) -> Vec<(&'static str, f32)> {
     let shared = Shared::new(&View::<f32>::new(camera), kernel);

@@ -20,7 +20,7 @@ pub(super) struct PlacedDisc<R> {
     pub(super) center: Vector2<R>,
 }
 
-/// The covariance of a disc on the screen, without low-pass filter.
+/// The covariance of a disc on the screen, without the low-pass filter.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Covariance<R> {
     pub(super) xx: R,
@@ -32,14 +32,15 @@ pub(super) struct Covariance<R> {
 }
 
 impl<R: Real> Projector<R> {
-    /// A surfel in view space, and the Jacobian there.
+    /// Places a surfel in view space, with the Jacobian there.
     #[inline(always)]
     pub(super) fn place(&self, position: Vector3<R>, normal: Vector3<R>) -> PlacedDisc<R> {
         let view = &self.view;
         let p = view.point(position);
         let n = view.direction(normal);
         let t = -p.z;
-        // Choices between numbers, not between ways: of them a loop over balls makes vectors.
+        // Chooses between numbers, not between branches, because only then does a loop over balls
+        // vectorize.
         let one_of =
             |perspective: R, other: R| R::select(view.perspective.into(), perspective, other);
         let m = one_of(R::ONE / t, R::ONE);
@@ -66,7 +67,7 @@ impl<R: Real> Projector<R> {
         let (rx, ry) = (s * sx, s * sy);
         let c = Vector3::new(-(d.x * n.y), d.x * n.x - n.z, n.y);
         let e = Vector3::new(n.z - d.y * n.y, d.y * n.x, -n.x);
-        // The z axis in the disc's plane, times the variance.
+        // The z axis projected into the disc's plane, times the variance.
         let z = Vector3::new(-(n.z * n.x), -(n.z * n.y), n.x * n.x + n.y * n.y) * (s * s);
         Covariance {
             xx: (rx * rx) * c.dot(c),
@@ -86,7 +87,7 @@ impl<R: Real> Projector<R> {
         tangents: [Vector3<R>; 2],
     ) -> Covariance<R> {
         let PlacedDisc { m, d, sx, sy, .. } = *placed;
-        // Not by `map`, which is not inlined.
+        // Not by `map`, because it is not inlined.
         let (u, v) = (self.axis(tangents[0]), self.axis(tangents[1]));
         let (ux, uy) = (sx * (u.x + d.x * u.z), -(sy * (u.y + d.y * u.z)));
         let (vx, vy) = (sx * (v.x + d.x * v.z), -(sy * (v.y + d.y * v.z)));

@@ -7,7 +7,8 @@ use crate::number::{Exact, Vector2, Vector3};
 use crate::scene::{Camera, Cloud, Lens, Pose, Surfels};
 use glam::{DVec3, Vec3};
 
-/// Discs as ellipses of 1.5 times their radius and half of it, whose half axes are not perpendicular.
+/// Discs turned into ellipses of 1.5 times their radius and half of it; the half axes are not
+/// perpendicular.
 pub(crate) fn ellipses(discs: Surfels) -> Surfels {
     let halves = |(normal, radius): (&Vec3, &f32)| {
         let u = normal.any_orthonormal_vector();
@@ -23,7 +24,7 @@ fn camera(near: f32, lens: Lens) -> Camera {
     Camera { near, ..Camera::new(32, 24, pose, lens).unwrap() }
 }
 
-/// q of a ray-cast fragment, half a pixel beside the centre, whose plane has a nearness there.
+/// q of a ray-cast fragment, half a pixel beside the centre, whose plane has nearness `w` there.
 fn q_at<R: Exact>(camera: &Camera, w: R) -> R {
     let (one, zero) = (R::ONE, R::ZERO);
     let center = Vector2::new(zero, zero);
@@ -44,7 +45,7 @@ fn q_at<R: Exact>(camera: &Camera, w: R) -> R {
     footprint.fragment(&shared, R::from_f32(0.5), zero).0
 }
 
-/// A fragment exactly at the near plane is there, and the next nearer one is not: 0 < w <= 1/near,
+/// A fragment exactly at the near plane is kept, and the next nearer one is not: 0 < w <= 1/near,
 /// or w <= -near under an orthographic camera.
 #[test]
 fn a_ray_meets_a_disc_at_the_near_plane_and_not_before() {
@@ -66,8 +67,8 @@ fn a_ray_meets_a_disc_at_the_near_plane_and_not_before() {
     assert_eq!(q_at(&behind, 0.25_f32), quarter, "an orthographic camera sees what is behind it");
 }
 
-/// Disc `i` of a list: large, with a point of its rim in the picture, not far beyond the near plane;
-/// some lie nearly in the plane x = 0, so that their box is narrow.
+/// Disc `i` of a list: large, with a point of its rim in the picture, not far beyond the near
+/// plane. Some lie nearly in the plane x = 0, so that their box is narrow.
 fn rim_at_the_near_plane(i: u64, narrow: bool) -> (Camera, Disc<f32>) {
     let u = |k: u64| unit(if narrow { 9 } else { 5 }, 16 * i + k);
     let ten = |exponent: f32| crate::number::elementary::pow(10.0, f64::from(exponent));
@@ -94,7 +95,7 @@ fn rim_at_the_near_plane(i: u64, narrow: bool) -> (Camera, Disc<f32>) {
     (camera(near, Lens::Focal(focal)), disc)
 }
 
-/// How many pixels of a disc that reaches the near plane are inside, in and out of the bounds.
+/// Counts the inside pixels of a disc that reaches the near plane, in and out of the bounds.
 fn inside(camera: &Camera, disc: &Disc<f32>) -> [u32; 2] {
     let (view, kernel) = (View::<f32>::new(camera), Kernel::ZP06);
     let (shared, projector) = (Shared::new(&view, &kernel), Projector::new(view, &kernel, false));
@@ -119,8 +120,8 @@ const WIDE: [u64; 8] = [15, 498, 761, 1354, 1754, 1880, 4216, 4280];
 /// Discs that lose pixels if their box is not widened by the magnified rounding of the radius.
 const NARROW: [u64; 6] = [1567, 2839, 2973, 3998, 4704, 7062];
 
-/// Why [`super::crossing`] widens its box: the points that it is made of carry roundings that the
-/// near plane magnifies. Without that, these lose pixels.
+/// Shows why [`super::crossing`] widens its box: the points that define it carry roundings that the
+/// near plane magnifies. Without the widening these discs lose pixels.
 #[test]
 fn bounds_at_the_near_plane_are_wide_enough_for_their_roundings() {
     for (narrow, lost_without) in [(false, &WIDE[..]), (true, &NARROW[..])] {

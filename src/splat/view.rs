@@ -27,7 +27,7 @@ pub struct View<R> {
 }
 
 impl<R: Real> View<R> {
-    /// The numbers of a camera.
+    /// Converts the numbers of a camera.
     #[must_use]
     pub fn new(camera: &Camera) -> Self {
         let m = camera.view_from_world;
@@ -59,14 +59,14 @@ impl<R: Real> View<R> {
         Vector3::new(turned(x, world), turned(y, world), turned(z, world))
     }
 
-    /// The world-space direction of the ray of pixel (x, y), of any length but 0.
+    /// The world-space direction of the ray of pixel (x, y); its length is any but 0.
     ///
     /// ```text
     ///   d = (((x + 1/2) - cx)/fx, -(((y + 1/2) - cy)/fy), -1)   orthographic: (0, 0, -1)
     ///   each component of the ray: (m0 d.x + m1 d.y) + m2 d.z   down a column of the view matrix
     /// ```
     ///
-    /// The inverse of a rotation is its transpose.
+    /// This works because the inverse of a rotation is its transpose.
     #[inline(always)]
     pub fn ray(&self, x: u32, y: u32) -> Vector3<R> {
         let (px, py) = if self.perspective {
@@ -89,7 +89,8 @@ impl<R: Real> View<R> {
     }
 }
 
-/// A component of a direction. No closure, which would stay a function where numbers are balls.
+/// A component of a direction. It is not a closure, because a closure would not be inlined where
+/// numbers are balls.
 #[inline(always)]
 fn turned<R: Real>(row: &[R; 4], world: Vector3<R>) -> R {
     (row[0] * world.x + row[1] * world.y) + row[2] * world.z

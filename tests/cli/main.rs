@@ -5,6 +5,7 @@
 mod compare;
 mod golden;
 mod groups;
+mod guide;
 mod hierarchy;
 #[cfg(unix)]
 mod interrupts;

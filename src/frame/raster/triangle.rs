@@ -1,26 +1,27 @@
-//! Triangles: the pixels whose centres are inside, with exact weights of the corners.
+//! Find the pixels whose centres are inside a triangle, with exact weights of the corners.
 //!
-//! **Weights.** w0, w1, w2 of a point are twice the areas of its triangles with the edges opposite
-//! to corners 0, 1, 2, positive inside; their sum is the same everywhere, the `area`. The unit is
-//! half a square of the fixed-point grid, in which pixel centres have integer weights too. A value
-//! that is linear on the screen is (w0 v0 + w1 v1 + w2 v2) / area.
+//! **Weights.** The weights w0, w1, w2 of a point are twice the areas of its triangles with the
+//! edges opposite to corners 0, 1, 2, positive inside. Their sum is the same everywhere: the
+//! `area`. The unit is half a square of the fixed-point grid, so that pixel centres have integer
+//! weights too. A value that is linear on the screen is (w0 v0 + w1 v1 + w2 v2) / area.
 //!
 //! ```text
 //!   edge from q to r, sense s = +1 or -1 so that the area is positive, p in halves of a unit
 //!   w(p) = s ((r.x - q.x) (p.y - 2 q.y) - (r.y - q.y) (p.x - 2 q.x))
 //! ```
 //!
-//! **The top-left rule.** A pixel is covered if its centre is inside, or on the outline where that
-//! is a left or a top edge: on an edge counts as inside
+//! **The top-left rule.** A pixel is covered if its centre is inside the triangle. A centre on an
+//! edge counts as inside if the edge is
 //!
-//! - of a **left** edge, which is not horizontal and has the triangle to its right: w grows with X,
-//! - of a **top** edge, which is horizontal and has the triangle below it: w grows with Y, down,
+//! - a **left** edge, which is not horizontal and has the triangle to its right: w grows with X,
+//! - a **top** edge, which is horizontal and has the triangle below it: w grows with Y, down,
 //!
-//! and as outside of every other. On a corner both of its edges must accept. That is the rule of
-//! Direct3D; Vulkan and OpenGL ask for what follows from it: of triangles that share an edge and
-//! lie on either side of it exactly one covers a centre on the edge, and likewise around a shared
-//! corner. It is as if every centre were moved to the right by an infinitesimal and down by a much
-//! smaller one. The order of the corners does not matter.
+//! and as outside on every other edge. On a corner both of its edges must accept.
+//!
+//! This is the rule of Direct3D. Vulkan and OpenGL require its consequence: if triangles share an
+//! edge and lie on either side of it, exactly one of them covers a centre on the edge. The same
+//! holds around a shared corner. The rule works as if every centre were moved to the right by an
+//! infinitesimal and down by a much smaller one. The order of the corners does not matter.
 
 use super::{Snap, not_negative};
 use crate::frame::Rect;
@@ -31,26 +32,26 @@ pub struct Triangle {
     edges: [Edge; 3],
     area: i64,
     front: bool,
-    /// Of a picture without an end.
+    /// The bounds in an infinite picture.
     bounds: Rect,
 }
 
 /// The weight of the corner opposite to an edge, as a function of the pixel.
 #[derive(Clone, Copy, Debug)]
 struct Edge {
-    /// At the centre of pixel (0, 0).
+    /// The weight at the centre of pixel (0, 0).
     origin: i64,
-    /// The change from a pixel to the next to the right, and to the next below.
+    /// The change of the weight from a pixel to the next on the right, and to the next below.
     step: [i64; 2],
-    /// The least weight that is inside: 0 for top and left edges, else 1.
+    /// The least weight that counts as inside: 0 for top and left edges, else 1.
     least: i64,
 }
 
 impl Edge {
-    /// The edge from q to r, with the triangle on the side that `sense` says.
+    /// The edge from q to r, with the triangle on the side given by `sense`.
     fn new(snap: &Snap, q: [i64; 2], r: [i64; 2], sense: i64) -> Self {
         // Coordinates are at most 2^29, gradients 2^30, p - 2 q at most 2^31 for every pixel that
-        // is visited: products stay below 2^61, their sum below 2^62.
+        // is visited. So products stay below 2^61 and their sum below 2^62.
         let gradient = [-sense * (r[1] - q[1]), sense * (r[0] - q[0])];
         let first = snap.center(0);
         let origin = gradient[0] * (first - 2 * q[0]) + gradient[1] * (first - 2 * q[1]);
@@ -69,8 +70,8 @@ impl Triangle {
     /// The triangle of three corners in fixed point, X to the right and Y down; `None` if its area
     /// is 0.
     ///
-    /// Coordinates outside the guard band, which [`Snap::fixed`] never gives, are held at its
-    /// border.
+    /// Coordinates outside the guard band are held at its border; [`Snap::fixed`] never gives such
+    /// coordinates.
     #[must_use]
     pub fn new(snap: &Snap, corners: [[i64; 2]; 3]) -> Option<Self> {
         let [a, b, c] = corners.map(|p| snap.held(p));
@@ -85,17 +86,17 @@ impl Triangle {
         Some(Self { edges, area: 2 * cross.abs(), front: cross < 0, bounds })
     }
 
-    /// The pixels whose centres are in the rectangle around three corners in fixed point, in a picture
-    /// without an end.
+    /// The pixels whose centres are in the rectangle around three corners in fixed point, in an
+    /// infinite picture.
     pub(crate) fn around(snap: &Snap, [a, b, c]: [[i64; 2]; 3]) -> Rect {
-        // A centre on the right or the lower border is on no left and no top edge: the ends are
-        // exclusive.
+        // The ends are exclusive, because a centre on the right or the lower border is on no left
+        // or top edge.
         let low = [0, 1].map(|i| snap.first_center_from(2 * a[i].min(b[i]).min(c[i])));
         let high = [0, 1].map(|i| snap.first_center_from(2 * a[i].max(b[i]).max(c[i])));
         not_negative(low, high)
     }
 
-    /// Whether the corners run counter-clockwise as one sees them on the screen, with Y up.
+    /// Whether the corners run counter-clockwise as seen on the screen, with Y up.
     #[must_use]
     pub fn front(&self) -> bool {
         self.front
@@ -107,14 +108,14 @@ impl Triangle {
         self.area
     }
 
-    /// The pixels of a picture that can be covered; may be empty.
+    /// The pixels of a picture that the triangle may cover; may be empty.
     #[must_use]
     pub fn bounds(&self, width: u32, height: u32) -> Rect {
         self.bounds.intersection(&Rect { x0: 0, y0: 0, x1: width, y1: height })
     }
 
     /// Visits the covered pixels of `rect`, row by row from left to right, with the weights of the
-    /// corners: each at least 0, their sum [`Triangle::area`].
+    /// corners. Each weight is at least 0, and their sum is [`Triangle::area`].
     #[inline]
     pub fn for_each(&self, rect: &Rect, mut visit: impl FnMut(u32, u32, [i64; 3])) {
         let rect = rect.intersection(&self.bounds);
@@ -132,12 +133,14 @@ impl Triangle {
         }
     }
 
-    /// The covered columns of row `y` among `x0 .. x1`: a triangle is convex, so they are one run.
+    /// The covered columns of row `y` among `x0 .. x1`: one run, because a triangle is convex.
     fn span(&self, y: u32, x0: u32, x1: u32) -> (u32, u32) {
-        // Counted from x0.
+        // Columns are counted from x0.
         let (mut first, mut end) = (0, i64::from(x1 - x0));
         for edge in &self.edges {
             let (excess, step) = (edge.at(x0, y) - edge.least, edge.step[0]);
+            // The weight grows along the row, falls, or stays: it bounds the start of the run, the
+            // end, or all of it.
             if step > 0 {
                 first = first.max(-excess.div_euclid(step));
             } else if step < 0 {

@@ -1,4 +1,4 @@
-//! Extension (1): surfels of other groups are added to a group \[ZP06, section 4.2.2\].
+//! Extension (1): add surfels of other groups to a group \[ZP06, section 4.2.2\].
 
 use super::budget;
 use super::clipped::{SAMPLES, areas, areas_of_groups, covered_by};
@@ -12,10 +12,10 @@ use std::ops::Range;
 use std::sync::atomic::AtomicU8;
 use std::sync::atomic::Ordering::Relaxed;
 
-/// Groups that are extended at once: each neighbour is looked at once for all of them.
+/// How many groups are extended at once; each neighbour is then looked at once for all of them.
 const BATCH: usize = 4;
 
-/// What adding surfels came to.
+/// The result of adding surfels.
 pub(super) struct Added {
     /// A divided by pi.
     pub(super) target: f64,
@@ -24,10 +24,10 @@ pub(super) struct Added {
     pub(super) groups: Vec<GroupCoverage>,
 }
 
-/// Adds surfels to all groups, and measures how much of the surface each covers.
+/// Adds surfels to all groups, and measures how much of the surface each group covers.
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] if the process may not hold those that are added.
+/// [`crate::Error::Invalid`] if the process may not hold the added surfels.
 pub(super) fn add(
     overlaps: &Overlaps<'_>,
     groups: &Groups,
@@ -39,8 +39,8 @@ pub(super) fn add(
     let mut own = Vec::new();
     exec.extend(&mut own, n, |place| groups.own()[tree.surfel[place] as usize]);
     let members = Members { overlaps, own: &own, most };
-    // What all that are lower cover, what those of the same group do, and what each group of the
-    // first batch covers of the others.
+    // The sets: what all lower surfels cover, what lower surfels of the same group cover, and what
+    // each group of the first batch covers of the others.
     let show = |done, of| progress("measuring the surface", done, of);
     let sets = |i: usize, j: usize, lower: bool| {
         let lower = u32::from(lower) * (1 | u32::from(own[i] == own[j]) << 1);
@@ -99,8 +99,9 @@ pub(super) fn add(
     Ok(Added { target, further, groups: coverages })
 }
 
-/// How many surfels are in each group of a batch, and its area, divided by pi; `members` has a bit for each group
-/// at each place, and `open` tells how many samples of a place others of each group leave open.
+/// How many surfels are in each group of a batch, and the group's area, divided by pi. `members`
+/// has a bit for each group at each place. `open` tells how many samples of a place the others of
+/// each group leave open.
 fn measured_groups(
     tree: &DiscTree,
     members: &[u32],
@@ -114,7 +115,7 @@ fn measured_groups(
         each.for_each(|(surfels, is_member)| *surfels += u64::from(is_member));
         surfels
     });
-    // Of those that are no members, nothing is open.
+    // A place outside the group contributes no open samples.
     let of_members = |place| {
         let (open, is_member) = (open(place), is_member(place));
         std::array::from_fn::<_, BATCH, _>(|set| if is_member[set] { open[set] } else { 0 })
@@ -122,7 +123,7 @@ fn measured_groups(
     (surfels, areas(tree, of_members))
 }
 
-/// Who is in which group.
+/// The group of each place, and the rule for adding.
 struct Members<'a> {
     overlaps: &'a Overlaps<'a>,
     /// The group of each place.
@@ -131,21 +132,21 @@ struct Members<'a> {
 }
 
 impl Members<'_> {
-    /// The bit of the group of a place, of those groups from `first` on.
+    /// The bit of a place's group, if the group is one of the batch that begins with `first`.
     #[inline(always)]
     fn own(&self, first: usize, place: usize) -> u32 {
         let group = usize::from(self.own[place]).wrapping_sub(first);
         if group < BATCH { 1 << group } else { 0 }
     }
 
-    /// The bit of the group of a place j, if that at i is in another group.
+    /// The bit of the group of place j, if place i is in another group.
     #[inline(always)]
     fn of_others(&self, first: usize, i: usize, j: usize) -> u32 {
         self.own(first, j) & !self.own(first, i)
     }
 
-    /// For each place a bit for each group of a batch that it is in, or is added to; of the samples of a
-    /// place, `covered` tells those that a group of the batch covers to begin with.
+    /// For each place, a bit for each group of a batch that it is in, or is added to. `covered`
+    /// tells which samples of a place a group of the batch covers at the beginning.
     fn extended(
         &self,
         batch: Range<usize>,
@@ -166,19 +167,21 @@ impl Members<'_> {
     }
 }
 
-/// No candidate, or none any more. A candidate has one more than its priority.
+/// The state of a place that is no candidate, or no longer one. The state of a candidate is its
+/// priority plus one.
 const OUT: u8 = 0;
-/// A candidate that was added; the rest as before.
+/// The flag of a candidate that was added; the lower bits stay.
 const ADDED: u8 = 128;
 
 impl Members<'_> {
-    /// Whether a surfel of which these samples are covered is not added.
+    /// Whether too many samples of a surfel are covered for it to be added.
     #[inline(always)]
     fn is_too_big(&self, covered: u64) -> bool {
         covered.count_ones() as f32 / SAMPLES as f32 > self.most
     }
 
-    /// For each group of a batch the state of each place, if nothing is added yet (the paper's step 1).
+    /// For each group of a batch, the state of each place before anything is added (the paper's
+    /// step 1).
     fn undecided(
         &self,
         batch: Range<usize>,
@@ -196,13 +199,14 @@ impl Members<'_> {
         batch.clone().map(state).collect()
     }
 
-    /// For each group of a batch the state of each place, all decided: those from [`ADDED`] on are added
-    /// to it. `covered` is what it covers of each to begin with.
+    /// Decides each place for each group of a batch; states from [`ADDED`] on mean that the place
+    /// is added to the group. `covered` tells what the group covers of each place at the beginning.
     ///
-    /// The paper's queue needs no queue. A surfel is taken out at the priority p; if it has grown
-    /// since, it goes back with a larger one. All others were at p or below and have not been
-    /// looked at since: it is the first again, nothing has changed, and step 2b adds it. So each
-    /// surfel is decided when its turn comes, in the order of the priorities that step 1 gave.
+    /// The paper's queue is not needed. A surfel is taken out at the priority p; if it has grown
+    /// since, it goes back with a larger priority. All others were at p or below and have not been
+    /// looked at since. So the surfel is the first again, nothing has changed, and step 2b adds it.
+    /// Each surfel is therefore decided when its turn comes, in the order of the priorities from
+    /// step 1.
     fn added(
         &self,
         batch: Range<usize>,
@@ -224,6 +228,8 @@ impl Members<'_> {
             }
             let (row, mut samples) = (graph.of(place), None);
             loop {
+                // Neighbours that come first and were not decided: each is decided before this
+                // place.
                 while let Some(other) = open.first_of(open.waits, &row) {
                     let theirs = state[other].load(Relaxed);
                     if is_open(theirs) {
@@ -233,6 +239,7 @@ impl Members<'_> {
                     open.decided |= if theirs == OUT { 0 } else { open.waits ^ left };
                     open.waits = left;
                 }
+                // Neighbours that were added: what they cover may make this place too big.
                 while let Some(other) = open.first_of(open.decided, &row) {
                     let samples = samples.get_or_insert_with(|| tree.samples(place));
                     open.mask |= covered_by(samples, &tree.discs[other]);
@@ -248,7 +255,8 @@ impl Members<'_> {
                 let (mut added, mut waits) = (0_u64, 0_u64);
                 row.visit_64(open.asked, |number, other, lower| {
                     let theirs = state[other].load(Relaxed);
-                    // What is out is not above anything, not by its index either.
+                    // A place that is out has a state of 0 and must not count as earlier, even with
+                    // a lower index.
                     let first = (theirs & !ADDED) + u8::from(lower) > own;
                     added |= u64::from(first & (theirs >= ADDED)) << number;
                     waits |= u64::from(first & (theirs < ADDED)) << number;

@@ -1,4 +1,4 @@
-//! How much of the neighbourhood is looked at, and the memory that it takes.
+//! Limit how many neighbours are looked at, and the memory that they take.
 
 use super::disc_tree::{DISCS, DiscTree, NearBlocks};
 use crate::error::{Error, Result};
@@ -6,11 +6,11 @@ use crate::memory;
 use crate::number::lanes::vectorized;
 use std::sync::atomic::{AtomicU64, Ordering};
 
-/// How many pairs of near surfels are looked at, at most.
+/// The most pairs of near surfels that are looked at.
 ///
-/// Colours and average degree are much the same in practice (Table 1 of the paper), so that twice
-/// as many neighbours on the average as there can be groups is more than any good scene needs. The
-/// bound is for memory and time where a million surfels stand at one place.
+/// In practice the number of colours and the average degree are much the same (Table 1 of the
+/// paper). So an average of twice as many neighbours as there can be groups is more than any good
+/// scene needs. The limit bounds memory and time where a million surfels stand at one place.
 #[derive(Debug)]
 pub(super) struct Budget {
     surfels: usize,
@@ -20,13 +20,13 @@ pub(super) struct Budget {
 }
 
 impl Budget {
-    /// For so many surfels, near by this factor.
+    /// The budget for this many surfels that are near by this factor.
     pub(super) fn new(surfels: usize, factor: f64) -> Self {
         Self { surfels, factor, spent: AtomicU64::new(0) }
     }
 
-    /// Takes from the budget. Whether there is an error in the end does not depend on who asks
-    /// when.
+    /// Spends from the budget. Whether there is an error in the end does not depend on the order of
+    /// the calls.
     ///
     /// # Errors
     /// [`Error::Invalid`] if more is spent than there is.
@@ -39,8 +39,8 @@ impl Budget {
         }
     }
 
-    /// [`Budget::spend`] once there are many pairs, which then are none: threads need not meet for
-    /// each surfel.
+    /// Calls [`Budget::spend`] once there are many pairs and resets their count, so that threads
+    /// need not synchronize for each surfel.
     ///
     /// # Errors
     /// As [`Budget::spend`].
@@ -49,10 +49,10 @@ impl Budget {
         if *pairs < 4096 { Ok(()) } else { self.spend(std::mem::take(pairs)) }
     }
 
-    /// Whether those of a part can be counted.
+    /// Checks that the pairs of a part can be counted in 32 bits.
     ///
     /// # Errors
-    /// As [`Budget::spend`], of which a part has at most 2^32 - 1.
+    /// As [`Budget::spend`]; a part has at most 2^32 - 1 pairs.
     pub(super) fn fits(&self, pairs: usize) -> Result<()> {
         if u32::try_from(pairs).is_ok() { Ok(()) } else { Err(self.overrun()) }
     }
@@ -68,19 +68,20 @@ impl Budget {
     }
 }
 
-/// The most pairs of so many surfels.
+/// The most pairs for this many surfels.
 fn most(surfels: usize) -> u64 {
     64 * surfels as u64 + (1 << 20)
 }
 
-/// Bytes of a surfel in the tree, and of what is known of each beside its neighbours.
+/// Bytes of a surfel in the tree, and bytes that are kept for each surfel beside its neighbours.
 const OF_A_SURFEL: [u64; 2] = [128, 144];
-/// Bytes of a neighbour: in the graph of all, in that of a smaller c, and the grade of its edge.
+/// Bytes of a neighbour: in the graph of all overlaps, in the graph of a smaller c, and the grade
+/// of its edge.
 const OF_A_NEIGHBOUR: u64 = 4 + 4 + 1;
-/// The neighbours are counted of one block in so many.
+/// Neighbours are counted for one block in this many.
 const COUNTED: usize = 64;
 
-/// Asks for what so many surfels take, their neighbours aside.
+/// Asks for the memory of this many surfels, without their neighbours.
 ///
 /// # Errors
 /// [`Error::Invalid`] if the process may not hold as much.
@@ -89,7 +90,7 @@ pub(super) fn ask_for_surfels(count: usize) -> Result<()> {
     memory::ask(bytes, || format!("groups of {count} surfels"))
 }
 
-/// Asks for what the neighbours take that are near by a factor, where the tree is there already.
+/// Asks for the memory of the neighbours that are near by a factor; the tree exists already.
 ///
 /// # Errors
 /// [`Error::Invalid`] if the process may not hold as much.
@@ -100,8 +101,8 @@ pub(super) fn ask_for_neighbours(tree: &DiscTree, factor: f64) -> Result<()> {
     memory::ask(bytes, || format!("groups of {count} surfels with about {neighbours} neighbours"))
 }
 
-/// Room for so many surfels that are added to groups: of few neighbours here and many there, each may be
-/// added to dozens.
+/// Reserves room for this many surfels that are added to groups. Where few neighbours are near here
+/// and many there, each surfel may be added to dozens of groups.
 ///
 /// # Errors
 /// [`Error::Invalid`] if the process may not hold as much.
@@ -112,14 +113,14 @@ pub(super) fn room_for_added(count: u64) -> Result<Vec<(u32, u8)>> {
 }
 
 vectorized!(
-    /// About how many neighbours there are, and no more than there may be: those at one block in
-    /// [`COUNTED`] are counted.
+    /// Estimates the number of neighbours, at most the number allowed: it counts the neighbours of
+    /// one block in [`COUNTED`].
     fn about_so_many(tree: &DiscTree, factor: f64) -> u64 {
         let n = tree.surfel.len();
         let blocks = (0..n).step_by(COUNTED * DISCS).map(|first| first..n.min(first + DISCS));
         let places = blocks.clone().map(|block| block.len()).sum::<usize>().max(1);
         let (each_for, most) = (n.div_ceil(places).max(1) as u64, 2 * most(n));
-        // A million surfels at one place have a million squared.
+        // A million surfels at one place have a million squared, so counting stops at the limit.
         let enough = most / each_for;
         let (mut room, mut seen) = (NearBlocks::default(), 0);
         for place in blocks.flatten() {

@@ -14,14 +14,14 @@ use std::f64::consts::TAU;
 use std::ops::Range;
 use std::sync::LazyLock;
 
-/// How many points of a disc are asked whether they are covered.
+/// How many points of a disc are tested for being covered.
 pub(super) const SAMPLES: usize = 64;
 
 /// The golden angle, pi (3 - sqrt(5)), in radians.
 const GOLDEN_ANGLE: f64 = 2.399_963_229_728_653;
 
 /// The samples of the unit disc: x, y and x^2 + y^2 of each; and the cosines and sines of the
-/// angles that they are turned by.
+/// angles by which the samples are turned.
 struct Pattern {
     x: [f64; SAMPLES],
     y: [f64; SAMPLES],
@@ -47,7 +47,7 @@ pub(super) struct DiscSamples {
 }
 
 impl DiscSamples {
-    /// Of the disc of a surfel.
+    /// The samples of a surfel's disc.
     #[inline(always)]
     pub(super) fn of(disc: SpaceDisc, surfel: u32) -> Self {
         let (u, v) = axes(disc.normal.as_dvec3());
@@ -56,7 +56,7 @@ impl DiscSamples {
         Self { pattern, disc, u: c * u + s * v, v: c * v - s * u }
     }
 
-    /// Bit m is set if sample m is covered by a disc, see the [module](super).
+    /// Bit m is set if a disc covers sample m, see the [module](super).
     #[inline(always)]
     pub(super) fn covered_by(&self, other: &SpaceDisc) -> u64 {
         if self.disc.cosine(other) < 0.0 {
@@ -75,7 +75,7 @@ impl DiscSamples {
     }
 }
 
-/// Two perpendicular axes of the plane across a unit normal; no length has to be divided by.
+/// Two perpendicular axes of the plane across a unit normal, without dividing by a length.
 ///
 /// Duff et al., Building an Orthonormal Basis, Revisited, JCGT 6(1), 2017.
 #[inline(always)]
@@ -88,7 +88,7 @@ fn axes(n: DVec3) -> (DVec3, DVec3) {
     (u, v)
 }
 
-/// For each place, the samples that surfels of a lower index cover, all radii times `scale`.
+/// For each place, the samples that surfels of a lower index cover, with all radii times `scale`.
 pub(super) fn by_lower(
     tree: &DiscTree,
     scale: f64,
@@ -132,15 +132,15 @@ vectorized!(
     }
 );
 
-/// The covered area of eq. 7 for all radii times `scale`, divided by pi scale^2, and the sum of the
-/// squared radii: sums in ascending index.
+/// The covered area of eq. 7 with all radii times `scale`, divided by pi scale^2, and the sum of
+/// the squared radii: sums in ascending index.
 pub(super) fn area(tree: &DiscTree, covered: &Parts<Vec<u64>>) -> (f64, f64) {
     let [area] = areas(tree, |place| [covered.at(place).count_zeros() as u8]);
     (area, tree.square.iter().fold(0.0, |sum, square| sum + square))
 }
 
-/// The area of each of some sets, divided by pi, in ascending index; `open` tells how many samples of a place
-/// are not covered in each of them.
+/// The area of each of several sets, divided by pi, summed in ascending index. `open` tells how
+/// many samples of a place each set leaves uncovered.
 pub(super) fn areas<const SETS: usize>(
     tree: &DiscTree,
     open: impl Fn(usize) -> [u8; SETS],
@@ -154,7 +154,7 @@ pub(super) fn areas<const SETS: usize>(
     areas
 }
 
-/// [`areas`] of each of `count` groups, of which each rank is in one.
+/// [`areas`] for each of `count` groups; each rank is in one group.
 pub(super) fn areas_of_groups(
     tree: &DiscTree,
     count: usize,
@@ -168,12 +168,12 @@ pub(super) fn areas_of_groups(
     areas
 }
 
-/// What is open of a disc, divided by pi.
+/// The uncovered area of a disc, divided by pi.
 fn open_area(square: f64, open: u8) -> f64 {
     square * (f64::from(open) / SAMPLES as f64)
 }
 
-/// What there is of each place, by rank.
+/// Reorders a value of each place by rank.
 fn by_rank<T: Copy>(tree: &DiscTree, none: T, of: impl Fn(usize) -> T) -> Vec<T> {
     let mut all = vec![none; tree.rank.len()];
     for (place, &rank) in tree.rank.iter().enumerate() {
@@ -183,7 +183,7 @@ fn by_rank<T: Copy>(tree: &DiscTree, none: T, of: impl Fn(usize) -> T) -> Vec<T>
 }
 
 vectorized!(
-    /// [`DiscSamples::covered_by`], for those who are not compiled for vectors.
+    /// [`DiscSamples::covered_by`] for callers that are not compiled for vectors.
     pub(super) fn covered_by(samples: &DiscSamples, other: &SpaceDisc) -> u64 {
         samples.covered_by(other)
     }

@@ -14,10 +14,10 @@ use std::mem::{swap, take};
 use std::sync::atomic::Ordering::Relaxed;
 use std::sync::atomic::{AtomicBool, AtomicU32};
 
-/// c is tried in multiples of one in so many.
+/// c is tried in multiples of one in this many.
 pub(super) const STEPS: u8 = 64;
 
-/// What [`group`] found: a row of Table 1.
+/// The result of [`group`]: a row of Table 1.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroupingReport {
     /// Surfels of the scene.
@@ -38,7 +38,7 @@ pub struct GroupingReport {
 ///
 /// # Errors
 /// [`Error::Invalid`] as [`Rules::check`]; if there would be more than [`MAX_GROUPS`]; if more than
-/// 64 pairs a surfel, and a million, overlap; if the process may not hold what it takes.
+/// 64 pairs a surfel, and a million, overlap; if the process may not hold the working memory.
 pub fn group(
     surfels: &Surfels,
     rules: &Rules,
@@ -50,12 +50,12 @@ pub fn group(
     Coloring { surfels, tree: &tree, rules, exec, progress }.group()
 }
 
-/// As [`group`], with the largest c that gives at most `count` groups, as the [module](super)
-/// defines it.
+/// [`group`] with the largest c that gives at most `count` groups, as the [module](super) defines
+/// it.
 ///
 /// # Errors
-/// [`Error::Invalid`] as [`Rules::check`], if `count` is not in 1 to [`MAX_GROUPS`], or if the process may not
-/// hold what it takes.
+/// [`Error::Invalid`] as [`Rules::check`], if `count` is not in 1 to [`MAX_GROUPS`], or if the
+/// process may not hold the working memory.
 pub fn group_into(
     surfels: &Surfels,
     rules: &Rules,
@@ -69,10 +69,10 @@ pub fn group_into(
     Coloring { surfels, tree: &tree, rules, exec, progress }.group_into(count, None)
 }
 
-/// What is coloured, and how.
+/// The input of a colouring.
 pub(super) struct Coloring<'a> {
     pub(super) surfels: &'a Surfels,
-    /// Of all surfels.
+    /// The tree of all surfels.
     pub(super) tree: &'a DiscTree,
     pub(super) rules: &'a Rules,
     pub(super) exec: &'a Exec,
@@ -80,7 +80,7 @@ pub(super) struct Coloring<'a> {
 }
 
 impl Coloring<'_> {
-    /// The groups at the c of the rules.
+    /// Makes the groups at the c of the rules.
     pub(super) fn group(&self) -> Result<(Groups, GroupingReport)> {
         let overlap = self.rules.overlap;
         let (graph, mut attempt) = (self.graph(overlap)?, Attempt::default());
@@ -97,15 +97,15 @@ impl Coloring<'_> {
         Ok((self.groups(&attempt, report.groups)?, report))
     }
 
-    /// The groups at the largest c that gives at most `count`. `overlaps` is the graph of all pairs
-    /// that are near by 1, if there is one.
+    /// Makes the groups at the largest c that gives at most `count`. `overlaps` is the graph of all
+    /// pairs that are near by 1, if there is one.
     pub(super) fn group_into(
         &self,
         count: usize,
         overlaps: Option<&Graph>,
     ) -> Result<(Groups, GroupingReport)> {
         let c = |steps: u8| f32::from(steps) / f32::from(STEPS);
-        // What is above the c of the rules does not fit. c = 0 has no edges, and so fits.
+        // No c above the c of the rules fits. c = 0 has no edges, and so fits.
         let (mut fits, mut fails) = (0, (f32::from(STEPS) * self.rules.overlap) as u8 + 1);
         let (mut best, mut next) = (self.without_edges(), Attempt::default());
         // The graph of a c that does not fit has the edges of every smaller one.
@@ -121,8 +121,9 @@ impl Coloring<'_> {
                 fails = middle;
                 continue;
             };
-            // A place of few neighbours gets none of the colours that are too many, and those of more do
-            // not wait for it: it is coloured in the end, if its graph can be had then.
+            // A place with fewer neighbours than `count` cannot need a colour that is too many, and
+            // places with more neighbours do not wait for it. So it is coloured at the end, if its
+            // graph can be made again then.
             let least = if wider.is_some() { count as u32 } else { 0 };
             self.begin(&mut next, &graph);
             let is_fit = self.color(&next, &graph, least, count);
@@ -160,7 +161,7 @@ impl Coloring<'_> {
         wider.upto(steps, room, self.tree, self.exec, self.progress)
     }
 
-    /// What is told of the groups of an attempt.
+    /// Reports the groups of an attempt.
     fn report(&self, overlap: f32, attempt: &Attempt) -> GroupingReport {
         let n = self.surfels.len();
         let color = attempt.color.iter().map(|color| color.load(Relaxed));
@@ -185,7 +186,7 @@ impl Coloring<'_> {
     }
 }
 
-/// The colours that a graph comes to.
+/// The colours of a graph.
 #[derive(Default)]
 struct Attempt {
     /// The number of neighbours of every place.
@@ -205,14 +206,14 @@ impl Attempt {
 }
 
 impl Coloring<'_> {
-    /// Where there are no edges, all have one colour.
+    /// Without edges, all places have one colour.
     fn without_edges(&self) -> Attempt {
         let color = (0..self.surfels.len()).map(|_| AtomicU32::new(0)).collect();
         Attempt { color, ..Attempt::default() }
     }
 
-    /// Begins to colour a graph, in the memory of another attempt: what the system has taken back it clears
-    /// before it gives it again.
+    /// Starts to colour a graph, in the memory of another attempt, because the system clears memory
+    /// that it has taken back before it returns it.
     fn begin(&self, Attempt { degree, color }: &mut Attempt, graph: &Graph) {
         let n = self.surfels.len();
         degree.clear();
@@ -221,9 +222,10 @@ impl Coloring<'_> {
         self.exec.extend(color, n, |_| AtomicU32::new(NONE));
     }
 
-    /// Colours all places that have at least so many neighbours: those with more neighbours first, of
-    /// those with equally many the surfel of the lower index; each gets the smallest colour that no
-    /// neighbour has. False if one gets `most` or a larger one; then others may have none.
+    /// Colours all places that have at least `least` neighbours. Places with more neighbours come
+    /// first, among equal ones the surfel of the lower index. Each place gets the smallest colour
+    /// that no neighbour has. Returns false if a place gets the colour `most` or a larger one; then
+    /// other places may have no colour.
     fn color(&self, attempt: &Attempt, graph: &Graph, least: u32, most: usize) -> bool {
         let Attempt { degree, color } = attempt;
         let color_of = |place: usize| color[place].load(Relaxed);
@@ -231,16 +233,19 @@ impl Coloring<'_> {
         let show = |done, of| (self.progress)("colouring", done, of);
         settle(color.len(), 1, self.exec, &show, |_, open| {
             let place = open.place;
+            // Decided already, left for the end, or one place has needed too many colours and all
+            // has failed.
             if color_of(place) != NONE || degree[place] < least || too_many.load(Relaxed) {
                 return None;
             }
-            // Of equally many neighbours, the lower index comes first.
+            // Among equally many neighbours, the lower index comes first.
             let own = degree[place];
             let before = |other: usize, lower: bool| degree[other] + u32::from(lower) > own;
             let row = graph.of(place);
             loop {
                 while let Some(other) = open.first_of(open.waits, &row) {
                     let theirs = color_of(other);
+                    // A neighbour that comes first has no colour yet: `settle` decides it before.
                     if theirs == NONE {
                         return Some(other);
                     }
@@ -261,7 +266,8 @@ impl Coloring<'_> {
             }
             let (mut free, mut full) = (open.mask.trailing_ones(), open.mask == u64::MAX);
             while full {
-                // The next 64 colours; all that come before are coloured by now.
+                // Look at the next 64 colours; all places that come before have their colours by
+                // now.
                 let all =
                     row.all.iter().enumerate().map(|(at, &other)| (other as usize, at < row.lower));
                 let taken = all.filter(|&(other, lower)| before(other, lower));

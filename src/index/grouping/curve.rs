@@ -1,14 +1,15 @@
-//! Points along a space-filling curve, so that those near each other stand near each other.
+//! Points along a space-filling curve, so that points near each other in space are near each other
+//! in the list.
 
 use crate::frame::Exec;
 use crate::number::Real;
 use glam::{DVec3, Vec3};
 
-/// The numbers 0, 1, 2 ... of some points, in the order of their cells along the curve of Morton;
-/// of one cell the smaller number first.
+/// The numbers 0, 1, 2 ... of the points, in the order of their cells along the Morton curve;
+/// within one cell the smaller number comes first.
 ///
-/// If more than `most` points share a cell, they are ordered by cells of their own box, and so on:
-/// a point far away from all others does not put those into one cell.
+/// If more than `most` points share a cell, they are ordered by cells of their own box, and so on.
+/// So a point far away from all others does not put the others into one cell.
 pub(super) fn along(points: &[Vec3], most: usize, exec: &Exec) -> Vec<u32> {
     let numbered = Numbered::upto(points.len());
     let cells = Cells::around(points.iter().copied(), &numbered);
@@ -26,6 +27,7 @@ fn refine(points: &[Vec3], most: usize, numbered: &Numbered, order: &mut [u64]) 
     let in_one_cell = |a: &u64, b: &u64| numbered.cell(*a) == numbered.cell(*b);
     for run in order.chunk_by_mut(in_one_cell).filter(|run| run.len() > most) {
         let point = |of: u64| points[numbered.number(of)];
+        // No cells can separate points at one place.
         if run.iter().any(|&of| point(of) != point(run[0])) {
             let cells = Cells::around(run.iter().map(|&of| point(of)), numbered);
             run.iter_mut()
@@ -36,19 +38,21 @@ fn refine(points: &[Vec3], most: usize, numbered: &Numbered, order: &mut [u64]) 
     }
 }
 
-/// A cell and the number of a point in one integer, the cell above: one is sorted faster than two.
+/// A cell and the number of a point in one integer, the cell in the upper bits, because one integer
+/// sorts faster than two.
 struct Numbered {
     /// Bits of a number.
     bits: u32,
 }
 
 impl Numbered {
-    /// For so many numbers.
+    /// The format for this many numbers.
     fn upto(count: usize) -> Self {
         Self { bits: usize::BITS - count.leading_zeros() }
     }
 
-    /// Cells along the widest axis: as many as three axes leave bits.
+    /// How many cells there are along the widest axis: as many as the bits left for three axes
+    /// allow.
     fn cells(&self) -> u64 {
         1 << ((u64::BITS - self.bits) / 3)
     }
@@ -69,17 +73,17 @@ impl Numbered {
 /// The cells of a box.
 struct Cells {
     low: DVec3,
-    /// How many there are along the widest axis.
+    /// How many cells there are along the widest axis.
     count: u64,
     scale: f64,
 }
 
 impl Cells {
-    /// Of the box around some points.
+    /// The cells of the box around some points.
     fn around(points: impl Iterator<Item = Vec3>, numbered: &Numbered) -> Self {
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
         for point in points {
-            // One instruction each; `Vec3::min` asks for NaN, too.
+            // One instruction each; `Vec3::min` also handles NaN.
             for axis in 0..3 {
                 low[axis] = low[axis].at_most(point[axis]);
                 high[axis] = high[axis].at_least(point[axis]);
@@ -92,7 +96,7 @@ impl Cells {
         Self { low, count, scale: if size > 0.0 { count as f64 / size } else { 0.0 } }
     }
 
-    /// The place along the curve of the cell of a point.
+    /// The position of a point's cell along the curve.
     fn place(&self, point: Vec3) -> u64 {
         let at = self.scale * (point.as_dvec3() - self.low);
         let [x, y, z] = at.to_array().map(|at| (at as u64).min(self.count - 1));
@@ -100,7 +104,7 @@ impl Cells {
     }
 }
 
-/// 21 bits, which are all that there are, two zeros after each.
+/// Spreads 21 bits, which are all that there are, so that two zeros follow each.
 fn spread(bits: u64) -> u64 {
     let steps = [
         (32, 0x001F_0000_0000_FFFF),

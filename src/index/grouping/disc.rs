@@ -1,4 +1,4 @@
-//! A disc in space, and the dot product of this room.
+//! A disc in space, and the dot product of this module.
 
 use glam::{DVec3, Vec3};
 
@@ -6,7 +6,7 @@ use glam::{DVec3, Vec3};
 #[derive(Clone, Copy, Debug)]
 pub(super) struct SpaceDisc {
     pub(super) center: Vec3,
-    /// Of length 1.
+    /// A unit vector.
     pub(super) normal: Vec3,
     pub(super) radius: f64,
 }

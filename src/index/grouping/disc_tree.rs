@@ -1,11 +1,11 @@
-//! Discs in space, and which of them are near each other.
+//! Find which discs are near each other in space.
 //!
-//! A balanced tree over blocks of [`DISCS`] discs that follow each other along a [curve]: it does
-//! not care how unevenly they are spread, and as each box knows the largest radius in it, nor how
-//! their sizes differ. The tree is searched for a few blocks at a time; each disc of them asks the
-//! boxes that were found, and the discs in those that it may be near, all lanes at once.
-//! What is found depends on the discs alone; the tree leaves no trace but the order in which it is
-//! found.
+//! The discs are divided into blocks of [`DISCS`] discs that follow each other along a [curve], and
+//! a balanced tree stands over the blocks. The tree works however unevenly the discs are spread. It
+//! also works however much their sizes differ, because each box knows the largest radius in it. The
+//! tree is searched for a few blocks at a time. Each disc of these blocks then tests the boxes that
+//! were found, and the discs in the boxes that it may be near, all lanes at once. The result
+//! depends on the discs alone; the tree affects only the order in which neighbours are found.
 
 use super::budget;
 use super::clipped::DiscSamples;
@@ -16,7 +16,8 @@ use crate::frame::Exec;
 use crate::scene::Surfels;
 use glam::{DVec3, Vec3};
 
-/// Discs of one block. Loops over fewer lanes are unrolled before they can become vectors.
+/// How many discs a block has. The compiler unrolls loops over fewer lanes before it can vectorize
+/// them.
 pub(super) const DISCS: usize = 16;
 
 /// Discs in the order of the tree: *places* 0, 1, 2 ...
@@ -24,18 +25,18 @@ pub(super) const DISCS: usize = 16;
 pub(super) struct DiscTree {
     /// The surfel at each place.
     pub(super) surfel: Vec<u32>,
-    /// How many surfels of the tree have a lower index than that at each place.
+    /// For each place, how many surfels of the tree have a lower index than the surfel there.
     pub(super) rank: Vec<u32>,
     /// The squared radius of each rank.
     pub(super) square: Vec<f64>,
     /// The disc at each place.
     pub(super) discs: Vec<SpaceDisc>,
     blocks: Vec<DiscBlock>,
-    /// Boxes around 1, 2, 4 ... blocks, up to the one around all.
+    /// Boxes around 1, 2, 4 ... blocks, up to the box around all.
     levels: Vec<Vec<Bounds>>,
 }
 
-/// Discs side by side; what is left of the last block is NaN, which is near nothing.
+/// Discs side by side. The unused lanes of the last block are NaN, which is near nothing.
 #[derive(Clone, Debug)]
 pub(super) struct DiscBlock {
     x: [f64; DISCS],
@@ -53,10 +54,10 @@ struct Bounds {
 }
 
 impl DiscTree {
-    /// Of all surfels, for groups of them by neighbours that are near by a factor.
+    /// Makes the tree of all surfels, for groups by neighbours that are near by a factor.
     ///
     /// # Errors
-    /// [`crate::Error::Invalid`] if the process may not hold what it takes.
+    /// [`crate::Error::Invalid`] if the process may not hold the memory.
     pub(super) fn of_all(
         surfels: &Surfels,
         factor: f64,
@@ -71,7 +72,7 @@ impl DiscTree {
         Ok(tree)
     }
 
-    /// Of some surfels, by index in ascending order.
+    /// Makes the tree of some surfels, given by ascending indices.
     pub(super) fn new(surfels: &Surfels, members: impl Iterator<Item = u32>, exec: &Exec) -> Self {
         let members: Vec<u32> = members.collect();
         let n = members.len();
@@ -114,8 +115,9 @@ impl DiscTree {
     /// Visits the places j that are near a place i: `|p_i - p_j| < factor (r_i + r_j)`, as the
     /// [module](super) evaluates it.
     ///
-    /// A visit gets a few places at once, of which so many are meant. Those come first that are close
-    /// by in the order of the tree, until a visit returns false. `room` is memory that is used again.
+    /// A visit gets several places at once, and how many of them count. Places that are close by in
+    /// the order of the tree come first, until a visit returns false. `room` is memory that is
+    /// reused.
     #[inline(always)]
     pub(super) fn near(
         &self,
@@ -132,6 +134,7 @@ impl DiscTree {
                 let block = room.found[at * DISCS + left.trailing_zeros() as usize] as usize;
                 left &= left - 1;
                 let near = set_of(&self.blocks[block].near(own, factor));
+                // A disc is not its own neighbour.
                 let others = near & !(u32::from(block == i / DISCS) << (i % DISCS));
                 let first = (block * DISCS) as u32;
                 let [low, high] = [others & 0xFF, others >> BYTE];
@@ -144,13 +147,14 @@ impl DiscTree {
         }
     }
 
-    /// Searches for the blocks that may hold a disc near one of a block.
+    /// Searches for the blocks that may hold a disc near a disc of this block.
     ///
-    /// Neighbouring blocks have much the same around them: the tree is searched for a few at a
-    /// time, from a box around them.
+    /// Neighbouring blocks have much the same surroundings. So the tree is searched for a few
+    /// blocks at a time, from a box around them.
     fn search(&self, block: usize, factor: f64, room: &mut NearBlocks) {
         let level = self.levels.len().min(2) - 1;
         let of = block >> level;
+        // The call before has found the surroundings already.
         if room.of == Some((of, factor)) {
             return;
         }
@@ -163,11 +167,12 @@ impl DiscTree {
         room.boxes.extend(room.found.chunks(DISCS).map(boxes));
     }
 
-    /// The blocks that may hold a disc near one of a box.
+    /// The blocks that may hold a disc near a disc in a box.
     fn blocks_near(&self, bounds: &Bounds, factor: f64, found: &mut Vec<u32>) {
         found.clear();
-        let mut ahead = vec![(self.levels.len() - 1, 0)]; // somebody asks: there is a block
+        let mut ahead = vec![(self.levels.len() - 1, 0)]; // a caller has a place, so there is a block
         while let Some((level, index)) = ahead.pop() {
+            // Nothing below this box can be near.
             if !self.levels[level][index].may_be_near(bounds, factor) {
                 continue;
             }
@@ -182,21 +187,21 @@ impl DiscTree {
     }
 }
 
-/// The blocks that may hold a disc near one of a few blocks, in memory that is used again.
+/// The blocks that may hold a disc near a disc of a few blocks, in memory that is reused.
 #[derive(Debug, Default)]
 pub(super) struct NearBlocks {
-    /// Those first whose number is close.
+    /// The blocks found, closest numbers first.
     found: Vec<u32>,
-    /// The boxes around them, as many side by side as discs are.
+    /// The boxes around these blocks, as many side by side as a block has discs.
     boxes: Vec<BoxLanes>,
-    /// Of which blocks, and near by which factor.
+    /// The blocks that the search was for, and the factor.
     of: Option<(usize, f64)>,
 }
 
-/// Lanes of which one byte tells which are in a set.
+/// How many lanes one byte describes as a set.
 const BYTE: usize = 8;
 
-/// The members of each set of lanes, in ascending order; how many there are is for who asks.
+/// The members of each set of lanes, in ascending order; the caller knows how many there are.
 static MEMBERS: [[u8; BYTE]; 1 << BYTE] = {
     let mut members = [[0; BYTE]; 1 << BYTE];
     let mut set = 0;
@@ -214,7 +219,7 @@ static MEMBERS: [[u8; BYTE]; 1 << BYTE] = {
     members
 };
 
-/// The places of a set of a byte of lanes, the first of which is at a place.
+/// The places of a set of lanes given by a byte; the first lane is at place `first`.
 #[inline(always)]
 fn members(first: u32, set: u32) -> [u32; BYTE] {
     let (members, mut places) = (&MEMBERS[set as usize], [0; BYTE]);
@@ -224,10 +229,10 @@ fn members(first: u32, set: u32) -> [u32; BYTE] {
     places
 }
 
-/// The set of the lanes that have a 1: bit l is lane l.
+/// The set of the lanes that hold a 1: bit l is lane l.
 #[inline(always)]
 fn set_of(flags: &[u8; DISCS]) -> u32 {
-    // The sum of 2^(56 - 7 l): the 1 of byte l comes to bit 56 + l.
+    // The sum of 2^(56 - 7 l): the multiplication moves the 1 of byte l to bit 56 + l.
     const GATHER: u64 = 0x0102_0408_1020_4080;
     let all = u128::from_le_bytes(*flags);
     let low = (all as u64).wrapping_mul(GATHER) >> 56;
@@ -235,7 +240,7 @@ fn set_of(flags: &[u8; DISCS]) -> u32 {
     (low | high << BYTE) as u32
 }
 
-/// Boxes side by side; what is left of the last ones is NaN, which is near nothing.
+/// Boxes side by side. The unused lanes are NaN, which is near nothing.
 #[derive(Clone, Debug)]
 struct BoxLanes {
     low: [[f64; DISCS]; 3],
@@ -244,7 +249,7 @@ struct BoxLanes {
 }
 
 impl BoxLanes {
-    /// Of at most as many boxes as there are lanes.
+    /// Packs boxes into lanes; there must be at most as many boxes as lanes.
     fn of<'a>(boxes: impl Iterator<Item = &'a Bounds>) -> Self {
         let none = [f64::NAN; DISCS];
         let mut lanes = Self { low: [none; 3], high: [none; 3], r: none };
@@ -258,7 +263,7 @@ impl BoxLanes {
         lanes
     }
 
-    /// 1 for each box that [may](Bounds::may_be_near) hold a disc near one, else 0.
+    /// 1 for each box that [may](Bounds::may_be_near) hold a disc near this disc, else 0.
     #[inline(always)]
     fn near(&self, (p, r): (DVec3, f64), factor: f64) -> [u8; DISCS] {
         let (one, mut near) = (Bounds { low: p, high: p, r }, [0; DISCS]);
@@ -291,7 +296,7 @@ pub(super) fn radii(surfels: &Surfels) -> impl Fn(u32) -> f64 {
 }
 
 impl DiscBlock {
-    /// Of at most as many discs as there are lanes.
+    /// Packs discs into lanes; there must be at most as many discs as lanes.
     #[inline(always)]
     pub(super) fn of<'a>(discs: impl Iterator<Item = &'a SpaceDisc>) -> Self {
         let [x, y, z, r] = [[f64::NAN; DISCS]; 4];
@@ -310,7 +315,7 @@ impl DiscBlock {
         (DVec3::new(self.x[lane], self.y[lane], self.z[lane]), self.r[lane])
     }
 
-    /// 1 for each disc that is near one, else 0.
+    /// 1 for each disc that is near this disc, else 0.
     #[inline(always)]
     fn near(&self, one: (DVec3, f64), factor: f64) -> [u8; DISCS] {
         let mut near = [0; DISCS];
@@ -336,8 +341,9 @@ impl Bounds {
         Self { low: self.low.min(other.low), high: self.high.max(other.high), r }
     }
 
-    /// False only if no two discs of these boxes are near: rounding is monotone, so that neither is
-    /// the distance below that of any two discs exceeded, nor the reach above theirs missed.
+    /// False only if no two discs of these boxes are near. Rounding is monotone, so the computed
+    /// gap is never above the distance of any two discs, and the computed reach is never below
+    /// theirs.
     #[inline(always)]
     fn may_be_near(&self, other: &Self, factor: f64) -> bool {
         let gap = |axis: usize| {

@@ -1,4 +1,4 @@
-//! Groups that each cover the surface \[ZP06, section 4.2.2\].
+//! Extend groups so that each covers the surface \[ZP06, section 4.2.2\].
 
 use super::clipped::{area, by_lower};
 use super::disc_tree::DiscTree;
@@ -12,49 +12,50 @@ use crate::scene::{Groups, Surfels};
 use crate::setting::{Field, Slot, Visit, Words};
 use std::f64::consts::PI;
 
-/// How groups are changed so as to cover more of the surface.
+/// How groups are changed to cover more of the surface.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Extension {
-    /// Not at all.
+    /// Leave the groups as they are.
     None,
-    /// Surfels of other groups are added (the paper's extension 1).
+    /// Add surfels of other groups (the paper's extension 1).
     Add {
         /// The most of a surfel that may be covered already, as a part of its area. In [0, 1].
         most: f32,
     },
-    /// Radii are enlarged (extension 2).
+    /// Enlarge the radii (extension 2).
     Enlarge,
 }
 
-/// What [`extend`] did.
+/// The result of [`extend`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Extended {
     /// A: the area of the surface, in square world units.
     pub area: f64,
-    /// How many surfels were added to groups, each counted once for each group.
+    /// How many surfels were added to groups; a surfel counts once for each group that it was added
+    /// to.
     pub added: u64,
-    /// What that is in per cent of the surfels.
+    /// The added surfels in per cent of all surfels.
     pub percent: f64,
-    /// Each group.
+    /// The result for each group.
     pub groups: Vec<GroupCoverage>,
 }
 
-/// What [`extend`] did to a group.
+/// The result of [`extend`] for one group.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GroupCoverage {
-    /// Surfels in the group, those added included.
+    /// How many surfels are in the group, including added ones.
     pub surfels: u64,
-    /// What its radii are multiplied by.
+    /// The factor on the radii of the group.
     pub scale: f32,
-    /// Whether the iteration of eq. 9 converged; true where there was none.
+    /// Whether the iteration of eq. 9 converged; true if there was none.
     pub converged: bool,
     /// The area that the group covers without the extension, eq. 7, as a part of A.
     pub before: f64,
-    /// The same with the extension.
+    /// The same area with the extension.
     pub after: f64,
 }
 
-/// How far a surfel may be covered that is added to a group, if nobody says.
+/// The default of how much of a surfel may be covered already if the surfel is added to a group.
 const MOST: f32 = 0.5;
 
 impl Words for Extension {
@@ -77,7 +78,7 @@ impl Extension {
         }
     }
 
-    /// By which factor those are near whose neighbourhood is kept.
+    /// The factor by which surfels are near whose neighbourhood is kept.
     pub(super) fn reach(&self) -> f64 {
         match self {
             Self::None => 0.0,
@@ -85,7 +86,7 @@ impl Extension {
         }
     }
 
-    /// Whether the numbers are in range.
+    /// Checks that the numbers are in range.
     ///
     /// # Errors
     /// [`Error::Invalid`] if one is not.
@@ -99,17 +100,20 @@ impl Extension {
     }
 }
 
-/// Extends groups, see the [module](super), and measures how much of the surface each covers.
+/// Extends groups, see the [module](super), and measures how much of the surface each group covers.
 ///
-/// What an earlier extension did to the groups is undone first. `progress` is told the name of a
-/// step, how much of it is done, and of how much. The result depends on the surfels, the groups and
-/// the extension alone.
+/// The changes of an earlier extension are undone first. `progress` receives the name of a step,
+/// how much of it is done, and how much there is. The result depends only on the surfels, the
+/// groups and the extension.
 ///
 /// # Errors
-/// [`Error::Invalid`] as [`Extension::check`]; if the groups are of another number of surfels; if
-/// more than 64 pairs a surfel, and a million, overlap at c = 1, or if radii are enlarged in a
-/// group; pairs whose samples are all covered by others are not counted then; if the process may not
-/// hold what it takes.
+/// [`Error::Invalid`] in any of these cases:
+///
+/// - As [`Extension::check`].
+/// - The groups belong to another number of surfels.
+/// - More than 64 pairs a surfel, and a million, overlap at c = 1, or, if radii are enlarged, in a
+///   group; then pairs whose samples are all covered by others are not counted.
+/// - The process may not hold the working memory.
 pub fn extend(
     surfels: &Surfels,
     groups: &Groups,
@@ -123,17 +127,17 @@ pub fn extend(
     Work { surfels, tree: &tree, exec, progress }.extend(groups, extension, None)
 }
 
-/// What groups are extended on.
+/// The input of an extension.
 pub(super) struct Work<'a> {
     pub(super) surfels: &'a Surfels,
-    /// Of all surfels.
+    /// The tree of all surfels.
     pub(super) tree: &'a DiscTree,
     pub(super) exec: &'a Exec,
     pub(super) progress: &'a dyn Fn(&str, u64, u64),
 }
 
 impl Work<'_> {
-    /// Extends groups; `overlaps` is the graph of all that overlap, if it is there.
+    /// Extends groups; `overlaps` is the graph of all overlaps, if it exists already.
     pub(super) fn extend(
         &self,
         groups: &Groups,
@@ -164,7 +168,7 @@ impl Work<'_> {
         Ok((extended, Extended { area: PI * target, added, percent, groups: coverages }))
     }
 
-    /// A divided by pi, and the groups by themselves, with radii enlarged or not.
+    /// A divided by pi, and the coverage of each group, with radii enlarged or not.
     fn measured(&self, groups: &Groups, enlarge: bool) -> Result<(f64, Vec<GroupCoverage>)> {
         let show = |done, of| (self.progress)("measuring the surface", done, of);
         let (target, _) = area(self.tree, &by_lower(self.tree, 1.0, self.exec, &show)?);
@@ -174,6 +178,7 @@ impl Work<'_> {
             let own = (0_u32..).zip(groups.own()).filter(|g| usize::from(*g.1) == k).map(|g| g.0);
             let tree = DiscTree::new(self.surfels, own, self.exec);
             let mut scales = Scales::new(&tree, self.exec);
+            // The search at scale 1 is used again by the larger scales.
             let at_1 = if enlarge {
                 scales.area(1.0)?
             } else {

@@ -1,4 +1,4 @@
-//! The graphs of all c that are multiples of 1/64, from one that has the edges of all of them.
+//! Make the graphs of all c that are multiples of 1/64 from one graph that has all their edges.
 
 use super::color::STEPS;
 use super::disc::{are_near, dot};
@@ -14,20 +14,20 @@ use glam::DVec3;
 use std::borrow::Cow;
 use std::ops::Range;
 
-/// A graph, and of each of its edges the least multiple of 1/64 by which its discs are near, or
+/// A graph, and for each of its edges the least multiple of 1/64 by which its discs are near, or
 /// [`NEVER`].
 pub(super) struct Graded<'a> {
     graph: Cow<'a, Graph>,
-    /// In the order of the rows of each part.
+    /// The grades, in the order of the rows of each part.
     least: Parts<Vec<u8>>,
 }
 
-/// An edge that the rules take away, or whose discs are not near by 1.
+/// An edge that the rules remove, or whose discs are not near by 1.
 const NEVER: u8 = u8::MAX;
 
 impl<'a> Graded<'a> {
-    /// Of a graph that has the edges of all c that are asked for, and maybe some that the rules take
-    /// away.
+    /// Grades a graph that has the edges of every c that may be asked for, and maybe some that the
+    /// rules remove.
     pub(super) fn new(
         graph: Cow<'a, Graph>,
         surfels: &Surfels,
@@ -60,7 +60,7 @@ impl<'a> Graded<'a> {
 }
 
 vectorized!(
-    /// The least steps of the edges of some places.
+    /// The grades of the edges of some places.
     fn least_steps(
         tree: &DiscTree,
         graph: &Graph,
@@ -82,15 +82,17 @@ vectorized!(
     }
 );
 
-/// Of each disc of a block the least multiple of 1/64 by which it is near another, see [`super`], or
-/// [`NEVER`].
+/// For each disc of a block, the least multiple of 1/64 by which it is near another disc, see
+/// [`super`], or [`NEVER`].
 ///
-/// Two discs are near by a multiple well above |d| / (r + r'), and are not by one well below.
-/// Rounding cannot move that border by half a multiple: only the multiple closest to it is asked.
+/// Two discs are near by a multiple well above |d| / (r + r'), and are not near by one well below.
+/// Rounding cannot move that border by half a multiple, so only the multiple closest to it is
+/// tested.
 #[inline(always)]
 fn steps_of(block: &DiscBlock, one: (DVec3, f64)) -> [u32; DISCS] {
-    // Added to a number from 0 to 64 and taken away again, it leaves the whole number closest to that,
-    // which the lower bits of the sum hold. (A conversion that saturates is not made in lanes.)
+    // Adding this to a number from 0 to 64 and subtracting it again leaves the closest whole
+    // number, and the lower bits of the sum hold that number. (A conversion that saturates does not
+    // vectorize.)
     const WHOLE: f64 = 1.5 * (1_u64 << 52) as f64;
     let mut least = [0; DISCS];
     for (lane, least) in least.iter_mut().enumerate() {

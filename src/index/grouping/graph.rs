@@ -19,7 +19,7 @@ pub(super) struct Graph(Parts<Rows>);
 /// The neighbours of the places of a part.
 #[derive(Clone, Debug)]
 pub(super) struct Rows {
-    /// Of each place, and last one whose row starts where all rows end.
+    /// The start of each place's row, and one more that marks where all rows end.
     starts: Vec<Start>,
     neighbour: Vec<u32>,
 }
@@ -31,7 +31,7 @@ struct Start {
     lower: u32,
 }
 
-/// The neighbours of a place: at first those `lower`, which are surfels of a lower index.
+/// The neighbours of a place; the first `lower` of them are surfels of a lower index.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Row<'a> {
     pub(super) all: &'a [u32],
@@ -53,7 +53,7 @@ vectorized!(
         for i in places {
             let mut count = 0;
             tree.near(i, factor, &mut room, |near, so_many| {
-                // All are written, and those that are not meant are written over.
+                // All entries are written; the ones that do not count are overwritten later.
                 if found.len() < count + near.len() {
                     found.resize(2 * (count + near.len()), 0);
                 }
@@ -76,7 +76,7 @@ vectorized!(
     }
 );
 
-/// Those of a list that are kept, moved to where it starts.
+/// Moves the kept entries of a list to its start, and returns them.
 #[inline(always)]
 fn kept(list: &mut [u32], keep: impl Fn(u32) -> bool) -> &[u32] {
     let Some(mut count) = list.iter().position(|&one| !keep(one)) else { return list };
@@ -95,24 +95,25 @@ impl Rows {
         Self { starts, neighbour: Vec::new() }
     }
 
-    /// Makes room for a row of so many neighbours, and for as many at each of the places left: little by
-    /// little rows would be copied again and again.
+    /// Reserves room for a row of this many neighbours, and for as many at each of the remaining
+    /// places. Without the reserve, rows would be copied again and again as memory grows.
     #[inline(always)]
     fn make_room(&mut self, row: usize, places: usize) {
-        // A row may be longer by far than all others.
+        // One row may be far longer than all others, so the guess for the rest is bounded.
         const MOST: usize = 1 << 16;
         if self.neighbour.capacity() - self.neighbour.len() < row {
             self.neighbour.reserve(row.max(MOST.min(row.saturating_mul(places))));
         }
     }
 
-    /// Adds the neighbours of the next place.
+    /// Appends the neighbours of the next place.
     #[inline(always)]
     fn push(&mut self, neighbours: &[u32], is_lower: impl Fn(u32) -> bool) {
         let start = self.neighbour.len();
         self.neighbour.resize(start + neighbours.len(), 0);
         let row = &mut self.neighbour[start..];
-        // Written to both ends of what is free: which of them it is cannot be foreseen.
+        // Each neighbour is written to both ends of the free part, because a branch on which end it
+        // belongs to would be mispredicted.
         let (mut lower, mut above) = (0, row.len());
         for &neighbour in neighbours {
             (row[lower], row[above - 1]) = (neighbour, neighbour);
@@ -123,7 +124,7 @@ impl Rows {
         self.end_row(lower, self.neighbour.len());
     }
 
-    /// The row of the next place, of which so many are lower, goes on to here.
+    /// Ends the row of the next place here; `lower` of its neighbours have a lower index.
     fn end_row(&mut self, lower: usize, end: usize) {
         if let Some(start) = self.starts.last_mut() {
             start.lower = lower as u32;
@@ -131,13 +132,14 @@ impl Rows {
         self.starts.push(Start { at: end as u32, lower: 0 });
     }
 
-    /// Those neighbours of which a grade is at most `most`; there is one for each, in their order. In the
-    /// memory of other rows, if there are any.
+    /// Keeps the neighbours whose grade is at most `most`; `grades` has one grade for each
+    /// neighbour, in their order. Reuses the memory of other rows, if there are any.
     pub(super) fn upto(&self, most: u8, grades: &[u8], room: Option<Self>) -> Self {
         let mut kept = room.unwrap_or_else(|| Self::with_capacity(self.starts.len() - 1));
         kept.starts.truncate(1);
         let count = grades.iter().filter(|&&grade| grade <= most).count();
-        // Written where the next one goes, kept or not: whether it is cannot be foreseen.
+        // Each entry is written where the next one goes, kept or not, because a branch would be
+        // mispredicted.
         let (mut neighbour, mut end) = (mem::take(&mut kept.neighbour), 0);
         neighbour.resize(count + 1, 0);
         let mut keep = |entries: Range<usize>| {
@@ -177,8 +179,8 @@ impl Rows {
 }
 
 impl Row<'_> {
-    /// Visits up to 64 neighbours from one on, by their number from there, their place, and whether
-    /// their surfel has a lower index.
+    /// Visits up to 64 neighbours from index `from` on: with their number from there, their place,
+    /// and whether their surfel has a lower index.
     #[inline(always)]
     pub(super) fn visit_64(&self, from: usize, mut visit: impl FnMut(usize, usize, bool)) {
         let end = self.all.len().min(from + 64);
@@ -189,7 +191,7 @@ impl Row<'_> {
 }
 
 impl Graph {
-    /// Of the pairs of places that are [near](DiscTree::near) and are kept.
+    /// Makes the graph of the pairs of places that are [near](DiscTree::near) and kept.
     pub(super) fn new(
         tree: &DiscTree,
         factor: f64,
@@ -202,7 +204,7 @@ impl Graph {
         Self::of_rows(Self::default(), tree, rows, exec, progress)
     }
 
-    /// Of rows that are made of the places of one part at a time, in the memory of those of another graph.
+    /// Makes the graph from the rows of one part at a time, in the memory of another graph's rows.
     pub(super) fn of_rows(
         room: Self,
         tree: &DiscTree,
@@ -221,7 +223,7 @@ impl Graph {
         rows.row(place)
     }
 
-    /// The rows of the part that begins with a place.
+    /// The rows of the part that begins with this place.
     pub(super) fn part(&self, place: usize) -> &Rows {
         self.0.with(place).0
     }
@@ -231,7 +233,7 @@ impl Graph {
     }
 }
 
-/// The graph of some rules, at their c or another.
+/// The graph of the rules, at their c or another one.
 pub(super) fn conflicts(
     surfels: &Surfels,
     tree: &DiscTree,
@@ -244,7 +246,7 @@ pub(super) fn conflicts(
     Graph::new(tree, f64::from(overlap), keep, exec, progress)
 }
 
-/// Whether modification 1 or 2 takes the edge of two places away.
+/// Whether modification 1 or 2 removes the edge between two places.
 #[inline(always)]
 pub(super) fn relaxed(
     surfels: &Surfels,

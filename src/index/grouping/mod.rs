@@ -1,11 +1,11 @@
-//! Minimal independent groups: surfels that do not overlap share one depth-image \[ZP06, section
-//! 4\].
+//! Divide surfels into minimal independent groups: surfels that do not overlap share one
+//! depth-image \[ZP06, section 4\].
 //!
-//! [`group`] divides the surfels of a scene so that no two of a group overlap; [`extend`] then lets
-//! each group cover the surface. All numbers are f64 made of the f32 of the scene; i and j are
-//! indices of surfels, a dot product is `(x x' + y y') + z z'`.
+//! [`group`] divides the surfels of a scene so that no two surfels of a group overlap. [`extend`]
+//! then makes each group cover the surface. All numbers are f64 converted from the f32 of the
+//! scene. i and j are indices of surfels, and a dot product is `(x x' + y y') + z z'`.
 //!
-//! # The graph (4.1)
+//! # Which surfels conflict: the graph (4.1)
 //!
 //! Nodes are surfels. With `d = p_i - p_j`, surfels i and j are *near by a factor c* if
 //!
@@ -13,41 +13,43 @@
 //!   (d.x d.x + d.y d.y) + d.z d.z  <  m m       where  m = c (r_i + r_j)
 //! ```
 //!
-//! which is eq. 5 for c = 1 and modification 3 for c < 1. `Decided:` r is the radius of a surfel,
-//! and of an ellipse the length of its longer half axis, `sqrt((x x + y y) + z z)`: what lies in
-//! its disc covers it. Surfels that are near by the c of the [`Rules`] have an edge, unless
+//! which is eq. 5 for c = 1 and modification 3 for c < 1. `Decided:` r is the radius of a surfel;
+//! for an ellipse it is the length of its longer half axis, `sqrt((x x + y y) + z z)`, so an
+//! ellipse counts as the disc around it. Surfels that are near by the c of the [`Rules`] have an
+//! edge, unless
 //!
 //! - `opposite` is set and `n_i . n_j < 0` (modification 2), or
 //! - they are [`Coplanar`] (modification 1). `Decided:` that is `n_i . n_j >= cosine`, and for n of
-//!   either `|d . n| <= offset (r_i + r_j)`, and, if surfels have colours,
-//!   no component of the two differs by more than `color`.
+//!   either `|d . n| <= offset (r_i + r_j)`, and, if surfels have colours, no component of the two
+//!   differs by more than `color`.
 //!
-//! # The colouring (4.1)
+//! # How surfels get groups: the colouring (4.1)
 //!
-//! Largest First \[Lei79\]: surfels in the order of their number of edges, the largest first, of
-//! equal ones the lower index first; each gets the smallest colour, from 0 on, that none of its
-//! neighbours has yet. The colour is the group. K is one more than the largest colour, and at most
-//! one more than the largest number of edges. (The paper bounds the chromatic number by the largest
-//! degree alone, which fails for complete graphs.)
+//! Largest First \[Lei79\]: take surfels in the order of their number of edges, the largest first,
+//! among equal ones the lower index first. Each surfel gets the smallest colour, from 0 on, that
+//! none of its neighbours has yet. The colour is the group. K is one more than the largest colour,
+//! and at most one more than the largest number of edges. (The paper bounds the chromatic number by
+//! the largest degree alone, which fails for complete graphs.)
 //!
-//! Low colours are filled first, so that groups are of very different size: of a randomly sampled
-//! surface in four groups (c about 0.15) the first covers all, the second a fifth, the last
-//! nothing.
+//! Low colours are filled first, so groups have very different sizes. For a randomly sampled
+//! surface in four groups (c about 0.15), the first group covers everything, the second a fifth,
+//! the last nothing.
 //!
-//! [`group_into`] looks for the largest c that gives at most a number of groups. `Decided:` it is
-//! bisection that defines the result, as K need not fall with c from one step to the next: of the
-//! multiples of 1/64 up to the c of the rules, c = 0 has no edge and one group, and fits; the first
-//! multiple above the rules' c does not; the middle of the two, rounded down, is tried and takes
-//! the place of one of them until they are neighbours. A graph with too many edges does not fit.
+//! [`group_into`] looks for the largest c that gives at most a number of groups. `Decided:` the
+//! result is defined by bisection, because K need not fall with c from one step to the next. The
+//! candidates are the multiples of 1/64 up to the c of the rules. c = 0 has no edge and one group,
+//! and fits. The first multiple above the rules' c does not fit. The middle of the two, rounded
+//! down, is tried and replaces one of them, until they are neighbours. A graph with too many edges
+//! does not fit.
 //!
-//! # The part of a disc that others cover (4.2.2)
+//! # How much of a disc others cover (4.2.2)
 //!
 //! `Clipped(p_i, r, k)` is the area of disc i that discs of group k overlap. `Decided:` it is
-//! measured on 64 samples of disc i, so that it has one of 65 values and step 2b below can ask for
+//! measured on 64 samples of disc i, so it has one of 65 values and step 2b below can test for
 //! equality. With `q_m = (m + 1/2)/64` and the golden angle g = 2.399963229728653, sample m of the
-//! unit disc is `sqrt(q_m) (cos(m g), sin(m g))`: each stands for the same area. The samples of
-//! disc i lie on axes u and v of its plane, turned by a random multiple of 1/64 of a turn, as
-//! errors would add up where surfels are regular: with n that of i,
+//! unit disc is `sqrt(q_m) (cos(m g), sin(m g))`: each sample stands for the same area. The samples
+//! of disc i lie on axes u and v of its plane. They are turned by a random multiple of 1/64 of a
+//! turn, because errors would add up where surfels are regular. With n the normal of i,
 //!
 //! ```text
 //!   s  = 1, or -1 if n.z < 0        a = -1 / (s + n.z)          b = n.x n.y a
@@ -59,51 +61,55 @@
 //! (Duff et al., *Building an Orthonormal Basis, Revisited*, JCGT 6(1), 2017; products from left to
 //! right, functions from [`crate::number::elementary`], bits from [`crate::number::random`].)
 //!
-//! `Decided:` disc j covers a sample if it is no farther from the centre of j than its radius, in
-//! space as in eq. 5, and `n_i . n_j >= 0`, so that the other side of a thin wall does not count:
+//! `Decided:` disc j covers a sample if the sample is no farther from the centre of j than the
+//! radius of j, in space as in eq. 5, and `n_i . n_j >= 0`, so that the other side of a thin wall
+//! does not count:
 //!
 //! ```text
 //!   (A x_m + B y_m) + r_i r_i q_m  <=  r_j r_j - d . d
 //!   where  A = 2 r_i (d . u),  B = 2 r_i (d . v),  (x_m, y_m) = sample m of the unit disc
 //! ```
 //!
-//! Two walls that face the same way and are less than r apart are taken for one.
+//! Two walls that face the same way and are less than r apart count as one wall.
 //!
-//! `Departs:` eq. 7 subtracts from the discs of a group what the others of the group cover of each,
-//! which takes every overlap away twice, once from either side. Here the covered area is
+//! `Departs:` eq. 7 subtracts from each disc of a group what the others of the group cover of it.
+//! That removes every overlap twice, once from either side. Here the covered area is
 //!
 //! ```text
 //!   sum over the group, in ascending index, of  pi r_i r_i (samples that no j < i of it covers) / 64
 //! ```
 //!
-//! which is the area of the union, up to sampling; and A of eq. 8 is that of all surfels. Both, and
-//! so the ratio of a group to the whole, are off by a few parts in a thousand.
+//! which is the area of the union, up to sampling; and A of eq. 8 is this area for all surfels.
+//! Both areas, and so the ratio of a group to the whole, are off by a few parts in a thousand.
 //!
-//! # Adding surfels (4.2.2, extension 1)
+//! # Add surfels to groups (4.2.2, extension 1)
 //!
-//! For each group k by itself, [`Extension::Add`] goes through the paper's steps 1, 2, 2a and 2b;
-//! "too big" is more than `most` of the area, and of equal priorities the lower index comes first.
-//! `Departs:` no queue is kept, as none is needed. A surfel that is taken out at priority p and has
-//! grown goes back with a larger one, while all others are at p or below: it is taken out again at
-//! once, nothing has changed, and step 2b adds it. So this is what the steps come to: surfels of
-//! other groups in descending order of what the group covered of them at the beginning; each is
-//! added if the group, with what has been added to it, covers at most `most` of it.
+//! For each group k separately, [`Extension::Add`] follows the paper's steps 1, 2, 2a and 2b. "too
+//! big" is more than `most` of the area, and among equal priorities the lower index comes first.
+//! `Departs:` there is no queue, because none is needed. Take a surfel that is taken out of the
+//! queue at priority p and has grown. It goes back with a larger priority, while all others are at
+//! p or below. So it is taken out again at once, nothing has changed, and step 2b adds it. The
+//! steps therefore reduce to this: visit surfels of other groups in descending order of how much
+//! the group covered of them at the beginning. Add a surfel if the group, including the surfels
+//! added so far, covers at most `most` of it.
 //!
-//! # Enlarging radii (4.2.2, extension 2)
+//! # Enlarge the radii of groups (4.2.2, extension 2)
 //!
-//! For each group by itself, [`Extension::Enlarge`] iterates eq. 9 from scale 1. `Decided:` radii
-//! may differ, all of a group are multiplied by one scale s, and n pi r^2 is the sum of `pi r_i^2`:
+//! For each group separately, [`Extension::Enlarge`] iterates eq. 9 from scale 1. `Decided:` radii
+//! may differ, all radii of a group are multiplied by one scale s, and n pi r^2 is the sum of
+//! `pi r_i^2`:
 //!
 //! ```text
 //!   s' = sqrt((A / pi + s s (R - U)) / R)
 //!   where  R = sum of r_i r_i,  U = covered area at radii s r_i, divided by pi s s
 //! ```
 //!
-//! s' < 1 becomes 1. It ends when |s' - s| <= [`SMALL_STEP`] s': the group has converged.
-//! `Decided:` it has not if s' reaches [`MAX_SCALE`], which then is its scale, or after
-//! [`MAX_STEPS`] steps. As a group covers all, clipping grows as fast as the area, and each step
-//! gains a part of what is still open: the iteration ends at about 99 % of A. It fails for the last
-//! groups of a colouring, which may be a handful of surfels. The scale is rounded to f32 once.
+//! s' < 1 becomes 1. The iteration ends when |s' - s| <= [`SMALL_STEP`] s': the group has
+//! converged. `Decided:` the group has not converged if s' reaches [`MAX_SCALE`], which then is its
+//! scale, or after [`MAX_STEPS`] steps. When a group covers nearly everything, clipping grows as
+//! fast as the area, and each step gains only a part of the rest: the iteration ends at about 99 %
+//! of A. It fails for the last groups of a colouring, which may be a handful of surfels. The scale
+//! is rounded to f32 once.
 
 mod add;
 mod budget;
@@ -145,7 +151,7 @@ use graph::Graph;
 pub struct Grouping {
     /// Which surfels may not share a group.
     pub rules: Rules,
-    /// The most groups, see [`group_into`]; none: as many as the rules take.
+    /// The most groups, see [`group_into`]; none means as many as the rules need.
     pub count: Option<usize>,
     /// How groups are made to cover the surface.
     pub extension: Extension,
@@ -168,7 +174,7 @@ impl Fields for Grouping {
 }
 
 impl Grouping {
-    /// Whether the numbers are in range.
+    /// Checks that the numbers are in range.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] if one is not.
@@ -178,9 +184,9 @@ impl Grouping {
         self.count.map_or(Ok(()), check_count)
     }
 
-    /// Makes the groups, and tells what was found and what the extension did.
+    /// Makes the groups, and reports what was found and what the extension did.
     ///
-    /// `progress` is told the name of a step, how much of it is done, and of how much.
+    /// `progress` receives the name of a step, how much of it is done, and how much there is.
     ///
     /// # Errors
     /// As [`group()`], [`group_into`] and [`extend()`].
@@ -195,8 +201,8 @@ impl Grouping {
         self.count.map_or(Ok(()), check_count)?;
         let factor = f64::from(self.rules.overlap).at_least(self.extension.reach());
         let tree = DiscTree::of_all(surfels, factor, exec, progress)?;
-        // To be extended by surfels, groups need the graph of all that overlap, which has the edges
-        // of every other one. If it has too many, there may be groups all the same.
+        // To add surfels, the extension needs the graph of all overlaps, which contains the edges
+        // of every other graph. If it has too many edges, the groups may still succeed.
         let overlaps = match self.extension {
             Extension::Add { .. } => Graph::new(&tree, 1.0, |_, _| true, exec, progress).map(Some),
             Extension::None | Extension::Enlarge => Ok(None),

@@ -1,4 +1,4 @@
-//! What discs that overlap cover of each other, all radii as they are.
+//! What overlapping discs cover of each other, with all radii as they are.
 
 use super::disc_tree::DiscTree;
 use super::graph::Graph;
@@ -15,9 +15,11 @@ pub(super) struct Overlaps<'a> {
 }
 
 impl Overlaps<'_> {
-    /// For each set and place i, what those discs j cover for which `by(i, j, lower)` has bit 0 set, bit 1
-    /// and so on; `lower` tells whether the surfel at j has the lower index. Of the first `COUNTED` sets the
-    /// samples are counted that are left open, of the `TOLD` sets that follow all that are covered are told.
+    /// For each set and each place i, finds what the discs j of the set cover. Disc j belongs to
+    /// set 0 if bit 0 of `by(i, j, lower)` is set, to set 1 if bit 1 is set, and so on; `lower`
+    /// tells whether the surfel at j has the lower index. For the first `COUNTED` sets the result
+    /// is how many samples they leave open. For the next `TOLD` sets the result is which samples
+    /// they cover.
     pub(super) fn covered<const COUNTED: usize, const TOLD: usize>(
         &self,
         by: impl Fn(usize, usize, bool) -> u32 + Sync + Send,
@@ -31,22 +33,22 @@ impl Overlaps<'_> {
 /// What is covered of each place.
 pub(super) struct Covered<const COUNTED: usize, const TOLD: usize>(Parts<Sets<COUNTED, TOLD>>);
 
-/// What is covered of the places of a part. Sets stand side by side, as who asks for one does not ask for
-/// the others.
+/// What is covered of the places of a part. Sets are stored separately, because a caller that reads
+/// one set does not read the others.
 struct Sets<const COUNTED: usize, const TOLD: usize> {
     open: Vec<[u8; COUNTED]>,
     covered: [Vec<u64>; TOLD],
 }
 
 impl<const COUNTED: usize, const TOLD: usize> Covered<COUNTED, TOLD> {
-    /// How many samples of a place each set leaves open that is counted.
+    /// How many samples of a place each counted set leaves open.
     #[inline(always)]
     pub(super) fn open(&self, place: usize) -> [u8; COUNTED] {
         let (part, place) = self.0.with(place);
         part.open[place]
     }
 
-    /// The samples of a place that a set covers, of those that are told.
+    /// The samples of a place that a told set covers.
     #[inline(always)]
     pub(super) fn told(&self, set: usize, place: usize) -> u64 {
         let (part, place) = self.0.with(place);
@@ -75,6 +77,7 @@ vectorized!(
                 row.visit_64(from, |number, j, lower| {
                     chosen |= u64::from(by(i, j, lower) != 0) << number;
                 });
+                // Most places have no neighbour in any set, and need no samples.
                 if chosen == 0 {
                     continue;
                 }

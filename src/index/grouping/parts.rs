@@ -1,17 +1,17 @@
-//! What threads find out about the places of a tree, left in the parts in which they find it: to
-//! copy it together would be work for one of them.
+//! Results of parallel jobs over the places of a tree. The results stay in the parts that each job
+//! produced, because copying them together would be work for one thread.
 
 use super::disc_tree::{DISCS, DiscTree};
 use crate::error::Result;
 use crate::frame::Exec;
 use std::ops::Range;
 
-/// Blocks of a part.
+/// How many blocks a part has.
 const BLOCKS: usize = 64;
-/// Places of a part.
+/// How many places a part has.
 const PLACES: usize = BLOCKS * DISCS;
 
-/// Something for each part of a tree.
+/// One value for each part of a tree.
 #[derive(Clone, Debug)]
 pub(super) struct Parts<T>(Vec<T>);
 
@@ -24,7 +24,7 @@ impl<T> Default for Parts<T> {
 impl<T: Send> Parts<T> {
     /// Runs a job for the places of each part, in parallel.
     ///
-    /// `progress` gets how many places are done, and of how many.
+    /// `progress` receives how many places are done, and how many there are.
     pub(super) fn of(
         tree: &DiscTree,
         exec: &Exec,
@@ -34,7 +34,7 @@ impl<T: Send> Parts<T> {
         Self::in_place_of(Self::default(), tree, exec, progress, |places, _| job(places))
     }
 
-    /// [`Parts::of`], in the memory of those of before, of which each job gets its own.
+    /// [`Parts::of`], reusing memory: each job gets its own part of `before`.
     pub(super) fn in_place_of(
         before: Self,
         tree: &DiscTree,
@@ -61,7 +61,7 @@ impl<T: Send> Parts<T> {
 }
 
 impl<T> Parts<T> {
-    /// The part that a place is in, and which one the place is of that part.
+    /// The part that contains a place, and the index of the place in that part.
     #[inline(always)]
     pub(super) fn with(&self, place: usize) -> (&T, usize) {
         (&self.0[place / PLACES], place % PLACES)
@@ -69,7 +69,7 @@ impl<T> Parts<T> {
 }
 
 impl<T: Copy> Parts<Vec<T>> {
-    /// What there is of a place.
+    /// The value of a place.
     #[inline(always)]
     pub(super) fn at(&self, place: usize) -> T {
         let (part, place) = self.with(place);

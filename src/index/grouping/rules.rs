@@ -1,4 +1,4 @@
-//! Which surfels may not share a group: the rules of the graph.
+//! Rules that say which surfels may not share a group.
 
 use crate::error::{Error, Result};
 use crate::setting::{Field, Slot, Visit};
@@ -10,23 +10,25 @@ pub struct Rules {
     pub overlap: f32,
     /// Whether surfels with `n_i . n_j < 0` never conflict (the paper's modification 2).
     pub opposite: bool,
-    /// Which surfels are virtually co-planar and so never conflict (modification 1); none: all may.
+    /// Which surfels are virtually co-planar and so never conflict (modification 1); none means
+    /// that any may conflict.
     pub coplanar: Option<Coplanar>,
 }
 
-/// When two surfels are virtually co-planar and of one colour.
+/// When two surfels count as virtually co-planar and as one colour.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Coplanar {
     /// The least `n_i . n_j`. In [0, 1].
     pub cosine: f32,
-    /// The most that either centre is off the other's plane, as a part of `r_i + r_j`. In [0, 1].
+    /// The largest distance of either centre from the other's plane, as a part of `r_i + r_j`. In
+    /// [0, 1].
     pub offset: f32,
-    /// The most that any component of the colours differs. In [0, inf].
+    /// The largest difference of any component of the colours. In [0, inf].
     pub color: f32,
 }
 
 impl Default for Rules {
-    /// c = 1, nothing relaxed: groups do not overlap.
+    /// c = 1, no modification: groups do not overlap.
     fn default() -> Self {
         Self { overlap: 1.0, opposite: false, coplanar: None }
     }
@@ -53,7 +55,7 @@ impl Rules {
         self.coplanar = parts.map(|[cosine, offset, color]| Coplanar { cosine, offset, color });
     }
 
-    /// Whether the numbers are in range.
+    /// Checks that the numbers are in range.
     ///
     /// # Errors
     /// [`Error::Invalid`] if one is not.

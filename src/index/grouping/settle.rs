@@ -1,31 +1,31 @@
-//! Decisions of which each waits for some of its neighbours.
+//! Make decisions in parallel where each decision waits for some of its neighbours.
 //!
-//! Surfels are coloured, or added to a group, one after the other, in an order that has nothing to
-//! do with where they lie. But a decision depends on the neighbours that come before it alone. So
-//! places are decided in the order of the tree, where neighbours are close together in memory, and
-//! each first has those decided that it waits for: the outcome is that of the order.
+//! Surfels are coloured, or added to a group, one after the other, in an order that is unrelated to
+//! their positions. But a decision depends only on the neighbours that come before it. So places
+//! are decided in the order of the tree, where neighbours are close together in memory. Each place
+//! first decides the places that it waits for, so the outcome is the outcome of the original order.
 //!
-//! Threads share nothing but the outcomes, each of which is one value whoever finds it. A thread
-//! that needs an outcome that is not there finds it itself.
+//! Threads share nothing but the outcomes. An outcome has one value, whichever thread finds it. A
+//! thread that needs a missing outcome finds it itself.
 
 use super::graph::Row;
 use crate::frame::Exec;
 use std::ops::Range;
 
-/// Places of one job.
+/// How many places one job has.
 const JOB: usize = 1 << 12;
 
 /// A place that is being decided.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Open {
     pub(super) place: usize,
-    /// How many of its neighbours have been asked, 64 at a time.
+    /// How many of its neighbours have been looked at, 64 at a time.
     pub(super) asked: usize,
-    /// Which of the last 64 it waits for: none is asked twice but for these.
+    /// Which of the last 64 neighbours it waits for; only these are looked at again.
     pub(super) waits: u64,
-    /// Which of the last 64 are decided, if who decides has yet to look at them.
+    /// Which of the last 64 neighbours are decided and still have to be evaluated.
     pub(super) decided: u64,
-    /// What all came to.
+    /// What all neighbours so far add up to.
     pub(super) mask: u64,
 }
 
@@ -34,18 +34,18 @@ impl Open {
         Self { place, asked: 0, waits: 0, decided: 0, mask: 0 }
     }
 
-    /// The first of some of the last 64 neighbours.
+    /// The first of the marked ones among the last 64 neighbours.
     #[inline(always)]
     pub(super) fn first_of(&self, some: u64, row: &Row<'_>) -> Option<usize> {
         (some != 0).then(|| row.all[self.asked - 64 + some.trailing_zeros() as usize] as usize)
     }
 }
 
-/// Decides all of `count` places, as often as there are `questions`, which have nothing to do with each
+/// Decides all of `count` places, once for each of the `questions`, which are independent of each
 /// other.
 ///
-/// `step` goes on with a place and a question; it ends with the place decided, or with a neighbour that
-/// is open and that must be decided before.
+/// `step` continues with a place and a question. It returns none when the place is decided, or else
+/// an undecided neighbour that must be decided first.
 pub(super) fn settle(
     count: usize,
     questions: usize,
@@ -55,7 +55,8 @@ pub(super) fn settle(
 ) {
     let job = |places: Range<usize>| {
         let mut waiting = Vec::new();
-        // All questions of these places before other places: their rows are at hand.
+        // All questions of these places come before other places, because their rows are in the
+        // cache.
         for question in 0..questions {
             for place in places.clone() {
                 waiting.push(Open::new(place));

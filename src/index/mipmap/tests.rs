@@ -44,7 +44,7 @@ fn samples(surfels: &Surfels, cell: f64) -> Vec<([f64; 9], f64)> {
 
 /// The mean of all samples around a surfel.
 fn around(surfels: &Surfels, i: usize, reach: f64) -> Option<Vec3> {
-    // The greatest power of two that is not greater, by search.
+    // The greatest power of two that is not greater, found by search.
     let mut power = 1.0;
     while power > reach {
         power /= 2.0;
@@ -68,7 +68,7 @@ fn around(surfels: &Surfels, i: usize, reach: f64) -> Option<Vec3> {
     (sums[3] > 0.0).then(|| [0, 1, 2].map(|c| (sums[c] / sums[3]) as f32 + 0.0).into())
 }
 
-/// The page, as it is written: every sample of the grid for every surfel.
+/// The module page, as it is written: every sample of the grid for every surfel.
 fn naive(surfels: &Surfels, levels: usize) -> Vec<Vec3> {
     let mut made = Vec::new();
     for i in 0..surfels.len() {
@@ -91,7 +91,7 @@ fn any_surfels() -> impl Strategy<Value = Surfels> {
             |i: u64, from: u64| Vec3::new(unit(i, from), unit(i, from + 1), unit(i, from + 2));
         let each = || 0..n;
         let radius = |i: u64| {
-            // Of sizes that differ by up to 2^16.
+            // Sizes that differ by up to 2^16.
             let power = 1_u32 << ((unit(i, 6) * 16.0) as u32 * spread / 60);
             (0.5 + unit(i, 7)) / power as f32
         };
@@ -135,7 +135,7 @@ proptest! {
     }
 }
 
-/// A board of side 1 in two colours, and another behind it that faces the other way.
+/// A board of side 1 in two colours, and another board behind it that faces the other way.
 fn boards() -> Surfels {
     let side = 64_u32;
     let at = |i: u32| (i as f32 + 0.5) / side as f32 - 0.5;

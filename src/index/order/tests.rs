@@ -25,7 +25,7 @@ fn walk(points: &[Vec3], camera: &Camera) -> Vec<u32> {
     BackToFront::new(&surfels(points), &Exec::sequential()).walk(camera)
 }
 
-/// Where an order has each point, or nothing if it is no permutation.
+/// The position of each point in an order, or none if the order is no permutation.
 fn ranks(order: &[u32], count: usize) -> Option<Vec<usize>> {
     let mut ranks = vec![usize::MAX; count];
     for (rank, &id) in order.iter().enumerate() {
@@ -36,8 +36,8 @@ fn ranks(order: &[u32], count: usize) -> Option<Vec<usize>> {
     (order.len() == count).then_some(ranks)
 }
 
-/// Checks an order against the page of the module, node by node, without walking anything.
-/// `high_is_near` of (axis, plane).
+/// Checks an order against the module page, node by node, without walking anything. `high_is_near`
+/// gets (axis, plane).
 fn check(
     points: &[Vec3],
     mut node: Vec<usize>,
@@ -64,7 +64,7 @@ fn check(
     let (far, near) = if high_near { (&node, &high) } else { (&high, &node) };
     prop_assert!(far.iter().all(|&i| ranks[i] < ranks[own]), "the far half is first");
     prop_assert!(near.iter().all(|&i| ranks[own] < ranks[i]), "the near half is last");
-    // The law, which knows centres and a plane but no halves.
+    // The law, which uses centres and a plane but no halves.
     let all = || node.iter().chain(&high);
     let low_last = all().filter(|&&i| at(i, axis) < plane).map(|&i| ranks[i]).max();
     let low_first = all().filter(|&&i| at(i, axis) < plane).map(|&i| ranks[i]).min();
@@ -116,8 +116,8 @@ proptest! {
         check(&points, all(), &order.unwrap(), &|axis, _| row[axis] > 0.0)?;
     }
 
-    /// Knows no tree: whatever axis-aligned planes are used, a point may only come before another
-    /// if along some axis the eye is not strictly beyond it, seen from the other.
+    /// Uses no tree: whatever axis-aligned planes are used, a point may come before another only if
+    /// along some axis the eye is not strictly beyond it, as seen from the other point.
     #[test]
     fn no_point_is_drawn_before_one_that_it_could_hide(
         seed in any::<u64>(),
@@ -169,7 +169,7 @@ proptest! {
         let mut points = points;
         points.retain(|p| p.abs().max_element() < 1e6);
         points.push(Vec3::ZERO);
-        // A component of 0 has a tie rule of its own.
+        // A component of 0 has its own tie rule.
         let looking = looking.map(|c| if c == 0.0 { 1.0 } else { c });
         let far = -1e9 * looking;
         prop_assert_eq!(

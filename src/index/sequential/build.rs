@@ -11,10 +11,10 @@ use crate::scene::{Cloud, Surfels};
 use glam::Vec3;
 use std::ops::Range;
 
-/// Subtrees of up to so many surfels are built by one job.
+/// Subtrees of up to this many surfels are built by one job.
 const JOB: usize = 1 << 13;
 
-/// The bits of `far` that do not count in a band: all of the mantissa but two.
+/// The bits of `far` that a band ignores: all of the mantissa except two.
 const BAND: u32 = 21;
 
 /// An upper estimate of the memory that a surfel takes while the list is built.
@@ -27,7 +27,7 @@ struct Node {
     near: f32,
     far: f32,
     gap: f32,
-    /// The place of a leaf in the tree; none for an inner node.
+    /// The place of a leaf in the tree; [`NONE`] for an inner node.
     leaf: u32,
     disc: Disc,
 }
@@ -51,12 +51,12 @@ pub(super) fn build(surfels: &Surfels, most: f32, exec: &Exec) -> Result<(Surfel
     listed(surfels, &ids, nodes, exec)
 }
 
-/// The surfels in the order of the leaves of the tree.
+/// The surfels in the order of the tree's leaves.
 fn sorted(points: &[Vec3], exec: &Exec) -> Vec<u32> {
     let mut entries: Vec<_> =
         points.iter().zip(0..).map(|(&point, id)| Entry { point, id }).collect();
     let mut parts = vec![&mut entries[..]];
-    // The last is the longest: a high half is never shorter than its low half.
+    // The last part is the longest, because a high half is never shorter than its low half.
     while parts.last().is_some_and(|part| part.len() > JOB) {
         parts = exec.ordered(parts, halves).into_iter().flatten().collect();
     }
@@ -64,7 +64,7 @@ fn sorted(points: &[Vec3], exec: &Exec) -> Vec<u32> {
     entries.into_iter().map(|entry| entry.id).collect()
 }
 
-/// Halves a range of two or more.
+/// Halves a range of two or more surfels.
 fn halves(entries: &mut [Entry]) -> [&mut [Entry]; 2] {
     let (middle, _) = divide(entries);
     let (low, high) = entries.split_at_mut(middle);
@@ -101,14 +101,14 @@ fn grown(leaves: &Leaves, exec: &Exec) -> Vec<Node> {
         let root = grow(leaves, range, &mut nodes, None);
         (nodes, root)
     });
-    // Above the parts there are fewer nodes than parts.
+    // There are fewer nodes above the parts than parts.
     nodes.reserve_exact(parts.iter().map(|(nodes, _)| nodes.len() + 1).sum());
     let mut rest = Rest { parts: parts.into_iter(), exec };
     grow(leaves, all, &mut nodes, Some(&mut rest));
     nodes
 }
 
-/// The subtrees of one job each.
+/// Collects the subtrees, each for one job.
 fn jobs(range: Range<usize>, to: &mut Vec<Range<usize>>) {
     if range.len() <= JOB {
         to.push(range);
@@ -117,7 +117,7 @@ fn jobs(range: Range<usize>, to: &mut Vec<Range<usize>>) {
     }
 }
 
-/// What the nodes above the jobs are built of and by.
+/// The subtrees that the upper nodes join, and the threads that measure these nodes.
 struct Rest<'a> {
     parts: std::vec::IntoIter<Part>,
     exec: &'a Exec,
@@ -134,6 +134,7 @@ fn grow(
     if range.len() <= JOB
         && let Some((part, root)) = rest.as_mut().and_then(|rest| rest.parts.next())
     {
+        // A job has built this subtree; its parents are counted from where it is appended.
         let parent = |node: Node| if node.parent == NONE { NONE } else { node.parent + at as u32 };
         nodes.extend(part.into_iter().map(|node| Node { parent: parent(node), ..node }));
         return root;
@@ -164,14 +165,14 @@ fn grow(
     own
 }
 
-/// Nodes in the order of the list.
+/// Puts the nodes into the order of the list.
 fn listed(
     surfels: &Surfels,
     ids: &[u32],
     nodes: Vec<Node>,
     exec: &Exec,
 ) -> Result<(Surfels, Sequential)> {
-    // Bits of floats that are not negative ascend as the floats do.
+    // The bits of floats that are not negative ascend as the floats do.
     let key = |(node, i): (&Node, u64)| u64::from(!node.far.to_bits() >> BAND) << 32 | i;
     let mut keys: Vec<u64> = nodes.iter().zip(0..).map(key).collect();
     exec.sort(&mut keys);

@@ -1,4 +1,4 @@
-//! The discs of the tree: what they stand for, and how well.
+//! The discs of the tree: the surfels that they stand for, and their errors.
 
 use super::{larger, longer, up};
 use crate::frame::Exec;
@@ -8,10 +8,10 @@ use crate::scene::cloud::half_axes;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
-/// So many surfels are measured by one job.
+/// How many surfels one job measures.
 const CHUNK: usize = 1 << 14;
 
-/// What is shorter than this part of the weights has cancelled: 2^-16.
+/// A sum of normals shorter than this part of the weights, 2^-16, has cancelled.
 const CANCELLED: f64 = 1.0 / 65_536.0;
 
 /// The least error of an inner node: 2^-149, the least f32 above 0.
@@ -28,7 +28,7 @@ pub(super) struct Disc {
 }
 
 impl Disc {
-    /// A surfel as it is.
+    /// Takes a surfel as it is.
     pub(super) fn of(surfels: &Surfels, surfel: u32) -> Self {
         let i = surfel as usize;
         Self {
@@ -63,13 +63,13 @@ impl Sums {
     }
 }
 
-/// A child, as its parent needs it.
+/// A child, with what its parent needs.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Child {
     pub(super) sums: Sums,
     pub(super) center: Vec3,
     pub(super) normal: Vec3,
-    /// How far it reaches from its centre.
+    /// How far the child reaches from its centre.
     pub(super) radius: f64,
     pub(super) error: f32,
 }
@@ -79,12 +79,12 @@ pub(super) struct Child {
 pub(super) struct Leaves {
     pub(super) discs: Vec<Disc>,
     pub(super) tangents: Option<Vec<[Vec3; 2]>>,
-    /// How much a component of a colour may differ.
+    /// The largest allowed difference of a component of a colour.
     pub(super) most: f32,
 }
 
 impl Leaves {
-    /// A surfel as a child.
+    /// Turns a surfel into a child.
     pub(super) fn child(&self, place: usize) -> Child {
         let Disc { position, normal, radius, color, opacity } = self.discs[place];
         let r = f64::from(radius);
@@ -105,7 +105,7 @@ impl Leaves {
         Child { sums, center: position, normal, radius, error: 0.0 }
     }
 
-    /// The node of some children, and of the surfels of a range: as a child, and its disc.
+    /// Makes the node over some children and over the surfels of a range: as a child, and its disc.
     pub(super) fn parent(
         &self,
         children: &[Child],
@@ -133,11 +133,12 @@ impl Leaves {
         (Child { sums, center: position, normal, radius: f64::from(radius), error }, disc)
     }
 
-    /// How badly a disc stands for the surfels of a range.
+    /// The error of a disc against the surfels of a range.
     fn error(&self, disc: &Disc, range: Range<usize>, exec: Option<&Exec>) -> f64 {
         let axes = axes(disc.normal);
         let measure = |range| self.measure(disc, &axes, range);
         let measured = match exec {
+            // Only the few large nodes near the root are worth measuring in parallel.
             Some(exec) if range.len() > CHUNK => {
                 let starts = range.clone().step_by(CHUNK);
                 let chunks = starts.map(|start| start..range.end.min(start + CHUNK)).collect();
@@ -199,8 +200,9 @@ fn axes(normal: Vec3) -> [DVec3; 5] {
     [normal.as_dvec3(), u, v, (u + v) * HALF_ROOT, (u - v) * HALF_ROOT]
 }
 
-/// How far a disc or an ellipse reaches from its centre along a unit vector. By the cross product:
-/// `1 - cos^2` would turn rounding errors of parallel normals into a thousandth of the radius.
+/// How far a disc or an ellipse reaches from its centre along a unit vector. It uses the cross
+/// product, because `1 - cos^2` would turn rounding errors of parallel normals into a thousandth of
+/// the radius.
 fn half_extent(disc: &Disc, tangents: Option<[Vec3; 2]>, axis: DVec3) -> f64 {
     match tangents {
         None => f64::from(disc.radius) * disc.normal.as_dvec3().cross(axis).length(),

@@ -19,8 +19,8 @@ fn built(surfels: &Surfels) -> (Surfels, Sequential) {
     Sequential::new(surfels, &Exec::sequential()).unwrap()
 }
 
-/// Surfels that lie in grids and at the same places, that look opposite ways, of sizes far apart;
-/// discs or ellipses.
+/// Surfels in grids and at the same places, facing opposite ways, with very different sizes; discs
+/// or ellipses.
 fn any_surfels() -> impl Strategy<Value = Surfels> {
     let coordinate = || prop_oneof![2 => (-3_i8..=3).prop_map(f32::from), 3 => -4.0_f32..4.0];
     let position = prop_oneof![
@@ -139,7 +139,7 @@ proptest! {
         let (nodes, tree) = built(&surfels);
         let eye = DVec3::from(eye) * if close { 0.1 } else { 1.0 };
         let mut distances = distances(&nodes, eye);
-        // Wrong by up to 2^-22 of themselves, as the distances of a coarser number are.
+        // Wrong by up to 2^-22 of themselves, as the distances of a less precise number type are.
         for (distance, off) in distances.iter_mut().zip(off.iter().cycle()) {
             *distance *= 1.0 + off / 4_194_304.0;
         }
@@ -179,8 +179,8 @@ proptest! {
         let Some(parent) = tree.parent(node) else { return Ok(()) };
         let [p, q] = [parent, node].map(|i| nodes.position()[i].as_dvec3());
         prop_assume!((p - q).length() > 0.0);
-        // The eye is on the line of both centres behind the parent's, which is just not good
-        // enough; and distances are as wrong as they may be.
+        // The eye is on the line of both centres behind the parent's centre, and the parent is just
+        // not good enough; distances are as wrong as they may be.
         let mut distances = distances(&nodes, p + (p - q).normalize() * away);
         for (i, distance) in distances.iter_mut().enumerate() {
             *distance *= 1.0 + if i == node { 1.0 } else { -1.0 } / 4_194_304.0;
@@ -263,7 +263,7 @@ proptest! {
     }
 }
 
-/// Surfels of a sphere or of a square of side 2, at places of a low discrepancy.
+/// Surfels of a sphere or of a square of side 2, at places of a low-discrepancy sequence.
 fn sampled(count: usize, on_sphere: bool) -> Surfels {
     let (mut position, mut normal) = (Vec::new(), Vec::new());
     for i in 0..count as u64 {
@@ -335,7 +335,8 @@ fn a_colour_that_differs_keeps_a_plane_from_collapsing() {
 #[test]
 fn coincident_surfels_are_one_but_at_a_threshold_of_zero() {
     for n in [1, 2, 3, 5, 1000] {
-        // A normal a little too long makes the extents larger than the disc: no error is left.
+        // A normal that is a little too long makes the extents larger than the disc: no error is
+        // left.
         let long = Vec3::X * (1.0 + 1.0 / 2_097_152.0);
         let (normal, radius) = (Some(vec![long; n]), Some(vec![0.5; n]));
         let position = vec![Vec3::new(0.1, 0.7, -3.3); n];

@@ -1,4 +1,4 @@
-//! From the numbers of a file to a plane of the crate, and how exactly it is stored.
+//! Convert the numbers of a file to a plane of the crate, and say how exactly the file stores them.
 
 use super::Wanted;
 use super::files::{Kind, Numbers};
@@ -10,14 +10,14 @@ use crate::method::Holds;
 use crate::number::Real;
 use crate::verdict::client::Storage;
 
-/// What a product, a division by t and storing may lose in `f32`: shading languages promise a
-/// division to 2.5 units in the last place.
+/// How much a product, a division by t and storing may lose in `f32`, because shading languages
+/// promise a division only to 2.5 units in the last place.
 const DIVISION: Loss = Loss { relative: 4.0 * F32_STEP, least: 0.0 };
-/// What the power of an encoding as sRGB may lose in `f32`, of codes up to 1: shading languages
+/// How much the power of the sRGB encoding may lose in `f32`, for codes up to 1. Shading languages
 /// compute it as exp2(y log2(x)), each to a few units in the last place.
 const POWER: Loss = Loss { relative: 32.0 * F32_STEP, least: 32.0 * F32_STEP };
 
-/// A plane of the crate.
+/// Converts the numbers of a file to a plane of the crate.
 pub(super) fn plane(
     wanted: &Wanted,
     kind: Kind,
@@ -61,7 +61,7 @@ pub(super) fn plane(
     }
 }
 
-/// That no key is given that means nothing to the plane.
+/// Refuses keys that mean nothing to the plane or its file.
 fn check_keys(wanted: &Wanted, kind: Kind) -> Reason<()> {
     let Wanted { keys, row, .. } = wanted;
     let (is_depth, is_raw) = (wanted.is_depth(), kind == Kind::Raw);
@@ -101,7 +101,7 @@ fn check_keys(wanted: &Wanted, kind: Kind) -> Reason<()> {
 /// The planes that hold unit vectors.
 const UNIT: [&str; 2] = ["normal", "projection.normal"];
 
-/// That the encoding is one of what the plane holds.
+/// Refuses an encoding that does not fit what the plane holds.
 fn check_encoding(wanted: &Wanted) -> Reason<()> {
     let holds = wanted.row.holds;
     match wanted.keys.encoding {
@@ -116,7 +116,7 @@ fn check_encoding(wanted: &Wanted) -> Reason<()> {
     }
 }
 
-/// The two numbers of unit vectors, from -1 to 1, and 0 until they are decoded.
+/// The two numbers of unit vectors, from -1 to 1, and a third that is 0 until they are decoded.
 fn octahedral(keys: &PlaneKeys, numbers: Scaled) -> (Vec<Vec<f64>>, Storage) {
     let whole = keys.range.is_none() && numbers.format.is_unorm();
     let range = if whole { Some([-1.0, 1.0]) } else { keys.range };
@@ -128,10 +128,10 @@ fn octahedral(keys: &PlaneKeys, numbers: Scaled) -> (Vec<Vec<f64>>, Storage) {
     (components, storage)
 }
 
-/// The surfels of a plane.
+/// The surfel indices of a plane.
 fn indices(keys: &PlaneKeys, format: Format, numbers: &Numbers) -> Reason<Vec<u32>> {
     let base = f64::from(keys.id_base.unwrap_or(0));
-    // What nobody draws: all bits set, or what lies before the first.
+    // By default an empty pixel has all bits set, or the number before the first surfel.
     let empty = keys.empty.unwrap_or(match (base > 0.0, numbers.file) {
         (true, _) => base - 1.0,
         (_, Format::I32) => -1.0,
@@ -142,7 +142,7 @@ fn indices(keys: &PlaneKeys, format: Format, numbers: &Numbers) -> Reason<Vec<u3
     wholes(format, numbers, NO_ID.into(), &id)
 }
 
-/// Whole numbers up to `most`, each as `whole` says.
+/// Whole numbers up to `most`, each passed through `whole`.
 fn wholes(
     format: Format,
     numbers: &Numbers,
@@ -160,14 +160,14 @@ fn wholes(
     let wholes = numbers.components[0].iter().enumerate().map(|(i, &value)| {
         let (x, y) = (i % width, i / width);
         let found = whole(value);
-        // Casts truncate and saturate, and take NaN to 0.
+        // A cast truncates, saturates, and turns NaN into 0; the round trip exposes all three.
         if f64::from(found as u32) != found || found > most {
             return Err(format!(
                 "{value} at pixel ({x}, {y}) is no whole number from 0 to {most}; say what is `empty`, \
                  and the `id_base`"
             ));
         }
-        // Beyond these, neighbours are one number.
+        // From here on two different numbers may have been stored as one.
         let all = numbers.file.most_whole().at_most(format.most_whole());
         if value >= all && found < f64::from(NO_ID) {
             return Err(format!(
@@ -180,19 +180,19 @@ fn wholes(
     wholes.collect()
 }
 
-/// Whether a stored number is the one of empty pixels.
+/// Whether a stored number marks an empty pixel.
 fn is(value: f64, empty: f64) -> bool {
     value == empty || (value.is_nan() && empty.is_nan())
 }
 
-/// Numbers as they passed through a format.
+/// Numbers and the format that they passed through.
 struct Scaled {
     components: Vec<Vec<f64>>,
-    /// How they passed.
+    /// The format that they passed through.
     format: Format,
-    /// How exact they are as they are.
+    /// How exact they are as they stand.
     storage: Storage,
-    /// What rounds a number as those of the file were.
+    /// The format that rounds a number as the file's numbers were rounded.
     stored: Format,
 }
 
@@ -210,9 +210,11 @@ impl Scaled {
             }
             None => 1.0,
         };
+        // An integer file stores codes of `format`, so that format decides the rounding.
         let stored = if file.is_whole() { format } else { file };
         if file.is_whole() {
             for (i, value) in components.iter_mut().flat_map(|c| c.iter_mut().enumerate()) {
+                // A larger code shows that `format` is wrong.
                 if *value > codes {
                     let (x, y) = (i % width as usize, i / width as usize);
                     let word = format.word();
@@ -230,14 +232,14 @@ impl Scaled {
         Ok(Self { components, format, storage, stored })
     }
 
-    /// Each number as `value` says.
+    /// Applies `value` to each number.
     fn map(mut self, value: impl Fn(f64) -> f64) -> Vec<Vec<f64>> {
         self.components.iter_mut().flatten().for_each(|number| *number = value(*number));
         self.components
     }
 }
 
-/// Depths t.
+/// Converts stored numbers to depths t.
 fn depths(keys: &PlaneKeys, numbers: Scaled) -> Reason<(Vec<Vec<f64>>, Storage)> {
     let meaning = keys.depth.meaning.unwrap_or_default();
     if keys.range.is_some() && meaning != Meaning::T {
@@ -250,7 +252,7 @@ fn depths(keys: &PlaneKeys, numbers: Scaled) -> Reason<(Vec<Vec<f64>>, Storage)>
         Meaning::Inverse => (0.0, inverse(1.0, format)),
         Meaning::NearOver => (0.0, inverse(near, format)),
         Meaning::ZBuffer => {
-            // Of floats that of numbers near 1, where a depth buffer has nearly all.
+            // For floats, take the step near 1, because nearly all of a depth buffer lies there.
             let step = match (format, format.codes()) {
                 (_, Some(codes)) => 1.0 / codes,
                 (Format::F16, _) => F16_LOSS.relative,
@@ -261,6 +263,7 @@ fn depths(keys: &PlaneKeys, numbers: Scaled) -> Reason<(Vec<Vec<f64>>, Storage)>
         Meaning::ReversedZ => {
             let storage = match format.codes() {
                 Some(codes) => Storage::DepthBuffer { step: 1.0 / codes, near, far },
+                // v is at most scale / t, so the relative error of a float is no larger.
                 None => inverse(1.0 / (1.0 / near - 1.0 / far), format),
             };
             (0.0, storage)
@@ -281,12 +284,12 @@ fn depths(keys: &PlaneKeys, numbers: Scaled) -> Reason<(Vec<Vec<f64>>, Storage)>
     Ok((components, storage))
 }
 
-/// A number in its range, if it has one.
+/// Maps a number from [0, 1] to its range, if there is one.
 fn ranged(v: f64, range: Option<[f64; 2]>) -> f64 {
     range.map_or(v, |[low, high]| low + v * (high - low))
 }
 
-/// The depths of 0 and 1, as far as a meaning has them.
+/// The depths that 0 and 1 stand for, as far as a meaning has them.
 fn ends(keys: &PlaneKeys, meaning: Meaning) -> Reason<(f64, f64)> {
     let far = || keys.depth.far.ok_or("far");
     let found = match (meaning, keys.depth.near.ok_or("near")) {
@@ -307,16 +310,16 @@ fn ends(keys: &PlaneKeys, meaning: Meaning) -> Reason<(f64, f64)> {
     Err(format!("meaning is {word}, but near = {near} and far = {far} cannot be"))
 }
 
-/// Of `scale / t`.
+/// How exactly `scale / t` is stored.
 fn inverse(scale: f64, format: Format) -> Storage {
     let Loss { relative, least } = format.loss(DIVISION);
     Storage::Inverse { scale, relative, least }
 }
 
-/// Of `(t - near) / (far - near)`.
+/// How exactly `(t - near) / (far - near)` is stored.
 fn linear(near: f64, far: f64, format: Format) -> Storage {
     match format {
-        // Not relative: the difference keeps what t and near had lost.
+        // An absolute error, because the difference keeps the errors of t and near.
         Format::F32 => Storage::Steps(F32_STEP * near.at_least(far)),
         Format::F16 => {
             let Loss { relative, least } = F16_LOSS;
@@ -326,11 +329,11 @@ fn linear(near: f64, far: f64, format: Format) -> Storage {
     }
 }
 
-/// Linear light.
+/// Converts stored numbers to linear light.
 fn colors(keys: &PlaneKeys, kind: Kind, numbers: Scaled) -> Reason<(Vec<Vec<f64>>, Storage)> {
     let usual = if kind == Kind::Png { Encoding::Srgb } else { Encoding::Linear };
     match (keys.encoding.unwrap_or(usual), keys.range) {
-        // Colours in two numbers have been refused.
+        // `check_encoding` has refused octahedral colours.
         (Encoding::Linear | Encoding::Octahedral, range) => {
             let storage = numbers.storage;
             Ok((numbers.map(|v| ranged(v, range)), storage))

@@ -1,4 +1,4 @@
-//! The files of planes, each read once.
+//! Read the files of planes, each once.
 
 use super::format::Format;
 use super::parse::PlaneKeys;
@@ -12,17 +12,17 @@ use crate::method::Holds;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
-/// The numbers of a plane as a file has them, row by row as they lie there.
+/// The numbers of a plane in the file's order of rows.
 #[derive(Clone, Debug)]
 pub(super) struct Numbers {
     pub(super) size: [u32; 2],
-    /// One, or three.
+    /// One component, or two or three.
     pub(super) components: Vec<Vec<f64>>,
     /// How the file stores them.
     pub(super) file: Format,
 }
 
-/// What a file is, by its extension.
+/// The kind of a file, by its extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Kind {
     Exr,
@@ -48,11 +48,11 @@ impl Kind {
 #[derive(Debug)]
 pub(super) struct Picture {
     pub(super) image: Image,
-    /// How it stores the channels, by name.
+    /// The stored format of each channel, by name.
     formats: BTreeMap<String, Format>,
 }
 
-/// The files that were read.
+/// The pictures that were read so far.
 #[derive(Debug)]
 pub(super) struct Files<'e> {
     exec: &'e Exec,
@@ -64,7 +64,7 @@ impl<'e> Files<'e> {
         Self { exec, pictures: BTreeMap::new() }
     }
 
-    /// The picture at `path`, an EXR or a PNG.
+    /// The picture at `path`, an EXR or a PNG; read on the first call.
     pub(super) fn picture(&mut self, path: &Path, kind: Kind) -> Result<&Picture> {
         if !self.pictures.contains_key(path) {
             let picture = if kind == Kind::Png { png(path)? } else { self.exr(path)? };
@@ -87,7 +87,7 @@ impl<'e> Files<'e> {
         Ok(Picture { image: exr::read_with(path, self.exec)?, formats })
     }
 
-    /// The numbers of a plane; those of a raw file have this size.
+    /// The numbers of a plane; `size` is for a raw file.
     pub(super) fn numbers(
         &mut self,
         wanted: &Wanted,
@@ -108,6 +108,7 @@ impl<'e> Files<'e> {
                 raw::read(path, key, keys, format, components, size)
             }
             Kind::Npy => {
+                // The name does not matter: only the number of components does.
                 let image = npy::read(path, "v")?;
                 let names: Vec<String> =
                     image.channels.iter().map(|(name, _)| name.clone()).collect();
@@ -125,6 +126,7 @@ impl<'e> Files<'e> {
                 let picture = self.picture(path, kind)?;
                 let names = picture.names(wanted, keys, kind).map_err(refused)?;
                 let mut numbers = picture.numbers(&names).map_err(refused)?;
+                // A PNG has stored whole numbers as codes of colours.
                 if matches!(row.holds, Holds::Index | Holds::Count) {
                     numbers.as_codes();
                 }
@@ -135,7 +137,7 @@ impl<'e> Files<'e> {
 }
 
 impl Picture {
-    /// The channels of a plane.
+    /// The names of a plane's channels in this file.
     fn names(&self, wanted: &Wanted, keys: &PlaneKeys, kind: Kind) -> Reason<Vec<String>> {
         let components = wanted.channels().len();
         if let Some(names) = &keys.channel {
@@ -153,7 +155,7 @@ impl Picture {
         if kind == Kind::Exr || names.iter().all(has) {
             return Ok(names);
         }
-        // A PNG has no names but those of its colours, which it may have for anything.
+        // A PNG has only the names of its colours, whatever its numbers mean.
         let colors = ["R", "G", "B"].map(str::to_owned);
         let [red, green, blue] = colors.each_ref().map(|name| self.image.channel(name));
         match components {
@@ -185,7 +187,7 @@ impl Picture {
                 return Err(format!("the channel `{name}` is {}, another is not", format.word()));
             }
             components.push(match values {
-                // Of a PNG: its codes, which `f32` had rounded.
+                // A PNG's codes, before they were rounded to `f32`.
                 Values::Float(values) if format.is_unorm() => {
                     values.iter().map(|&v| format.nearest(v.into())).collect()
                 }
@@ -199,7 +201,7 @@ impl Picture {
 }
 
 impl Numbers {
-    /// What a PNG has as the codes of colours, as whole numbers.
+    /// Turns a PNG's colours back into whole codes, for indices and counts.
     fn as_codes(&mut self) {
         if let (true, Some(codes)) = (self.file.is_unorm(), self.file.codes()) {
             let values = self.components.iter_mut().flatten();
@@ -208,7 +210,7 @@ impl Numbers {
         }
     }
 
-    /// The other row first.
+    /// Reverses the order of rows.
     pub(super) fn flip(&mut self) {
         let width = self.size[0] as usize;
         for component in &mut self.components {

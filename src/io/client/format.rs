@@ -1,4 +1,4 @@
-//! The numbers of a file: how they are stored, and what that may have lost.
+//! Decode the number formats of files, and say how much each may have lost.
 
 use crate::number::Real;
 use crate::setting::Words;
@@ -19,9 +19,9 @@ pub(super) enum Format {
     U16,
     U32,
     I32,
-    /// Three numbers in 32 bits, the first in the low ones, and two bits for an opacity.
+    /// Three numbers in 32 bits, the first in the low bits, and two bits for an opacity.
     Rgb10a2,
-    /// Three floats in 32 bits, without a sign, the first in the low ones.
+    /// Three floats in 32 bits, without a sign, the first in the low bits.
     Rg11b10,
 }
 
@@ -45,13 +45,13 @@ impl Words for Format {
 
 /// A unit in the last place of 1 in `f32`.
 pub(super) const F32_STEP: f64 = 1.0 / 8_388_608.0;
-/// What `f16` may lose of a number, and at the least.
+/// How much `f16` may lose of a number: a fraction, and at least this much.
 pub(super) const F16_LOSS: Loss = Loss { relative: 1.0 / 1024.0, least: 1.0 / 16_777_216.0 };
 
-/// What the float of 10 bits may lose, the coarsest of three.
+/// How much the float of 10 bits may lose, the coarsest of the three.
 const F10_LOSS: Loss = Loss { relative: 1.0 / 32.0, least: 1.0 / 524_288.0 };
 
-/// How far off a stored number is: `relative` of itself, at least `least`.
+/// How far off a stored number may be: the fraction `relative` of it, and at least `least`.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Loss {
     pub(super) relative: f64,
@@ -59,7 +59,7 @@ pub(super) struct Loss {
 }
 
 impl Format {
-    /// How many bytes a number has in a raw file, or three packed ones.
+    /// How many bytes one number takes in a raw file, or three packed ones together.
     pub(super) fn bytes(self) -> u64 {
         match self {
             Self::Unorm8 | Self::Snorm8 | Self::U8 => 1,
@@ -73,12 +73,11 @@ impl Format {
         matches!(self, Self::Rgb10a2 | Self::Rg11b10)
     }
 
-    /// The number of these bits, of which the format takes the low ones; of packed ones that of a
-    /// component.
+    /// Decodes the low bits to a number; of packed numbers, the given component.
     pub(super) fn number(self, bits: u32, component: usize) -> f64 {
         match self {
             Self::Rgb10a2 => f64::from(bits >> (10 * component) & 0x3FF) / 1023.0,
-            // The exponent is that of `f16`; the mantissa lacks 4 bits, in the last number 5.
+            // The exponent has the bits of `f16`; the mantissa lacks 4 bits, in the last number 5.
             Self::Rg11b10 => {
                 let [bits, missing] = match component {
                     0 | 1 => [bits >> (11 * component) & 0x7FF, 4],
@@ -91,7 +90,7 @@ impl Format {
             Self::Unorm8 => f64::from(bits as u8) / 255.0,
             Self::Unorm16 => f64::from(bits as u16) / 65_535.0,
             Self::Unorm24 => f64::from(bits & 0xFF_FFFF) / 16_777_215.0,
-            // Two codes are -1.
+            // Two codes mean -1.
             Self::Snorm8 => (f64::from(bits as u8 as i8) / 127.0).at_least(-1.0),
             Self::Snorm16 => (f64::from(bits as u16 as i16) / 32_767.0).at_least(-1.0),
             Self::U8 => f64::from(bits as u8),
@@ -106,13 +105,14 @@ impl Format {
         match (self, self.codes()) {
             (Self::F32, _) => f64::from(value as f32),
             (Self::F16, _) => f16::from_f64(value).to_f64(),
+            // The file holds -1 as all bits set.
             (Self::U32, _) if (-2_147_483_648.0..0.0).contains(&value) => value + 4_294_967_296.0,
             (_, Some(codes)) => (value * codes).round() / codes,
             (_, None) => value,
         }
     }
 
-    /// The code of 1, where the codes are equal steps of a number.
+    /// The code of 1, if the codes are equal steps of a number.
     pub(super) fn codes(self) -> Option<f64> {
         match self {
             Self::Unorm8 => Some(255.0),
@@ -125,7 +125,7 @@ impl Format {
         }
     }
 
-    /// Whether its numbers are whole: indices and counts.
+    /// Whether the format holds whole numbers: indices and counts.
     pub(super) fn is_whole(self) -> bool {
         matches!(self, Self::U8 | Self::U16 | Self::U32 | Self::I32)
     }
@@ -134,7 +134,7 @@ impl Format {
         matches!(self, Self::Unorm8 | Self::Unorm16 | Self::Unorm24 | Self::Rgb10a2)
     }
 
-    /// The whole number below which no two are one.
+    /// Below this number all whole numbers are told apart.
     pub(super) fn most_whole(self) -> f64 {
         match self {
             Self::F16 => 2048.0,
@@ -143,7 +143,7 @@ impl Format {
         }
     }
 
-    /// Whether numbers that passed through this format can lie in a file of another.
+    /// Whether a file of format `file` can hold numbers that passed through this format.
     pub(super) fn fits(self, file: Self) -> bool {
         match file {
             _ if self == file => true,
@@ -155,7 +155,7 @@ impl Format {
         }
     }
 
-    /// The storage of numbers that are stored as they are, times `scale`.
+    /// How exactly numbers are stored, after a multiplication by `scale`.
     pub(super) fn storage(self, scale: f64) -> Storage {
         match (self, self.codes()) {
             (_, Some(codes)) => Storage::Steps(scale.abs() / codes),
@@ -168,8 +168,8 @@ impl Format {
         }
     }
 
-    /// What storing may lose of a number that is computed from another; of `f32`, which loses
-    /// nothing that counts beside the computation, as given.
+    /// How much storing may lose of a number that is computed from another. `f32` loses nothing
+    /// that counts beside the computation, so its loss is `single`.
     pub(super) fn loss(self, single: Loss) -> Loss {
         match (self, self.codes()) {
             (_, Some(codes)) => Loss { relative: 0.0, least: 1.0 / codes },

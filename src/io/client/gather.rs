@@ -1,4 +1,4 @@
-//! From what a TOML file says to the planes of a client.
+//! Turn a TOML file's description into the planes of a client.
 
 use super::convert;
 use super::files::{Files, Kind, Numbers};
@@ -14,17 +14,17 @@ use crate::method::{Holds, PlaneRow, Stage};
 use crate::verdict::client::{Client, Storage};
 use std::path::{Path, PathBuf};
 
-/// A plane that is looked for.
+/// A plane to look for.
 #[derive(Clone, Debug)]
 pub(super) struct Wanted {
-    /// What the TOML file calls it, as it is written there.
+    /// The key of the plane, as the TOML file spells it.
     pub(super) key: String,
     /// The name of the plane.
     pub(super) name: String,
     pub(super) row: &'static PlaneRow,
-    /// What is said of it, and of all depths.
+    /// The keys of the plane, completed by the keys for all depths.
     pub(super) keys: PlaneKeys,
-    /// What is said of it alone.
+    /// The depth keys of this plane alone.
     pub(super) own_depth: DepthKeys,
 }
 
@@ -36,17 +36,17 @@ impl Wanted {
         Self { key, name: name.into(), row, keys, own_depth }
     }
 
-    /// Whether it holds depths t.
+    /// Whether the plane holds depths t.
     pub(super) fn is_depth(&self) -> bool {
         self.row.holds == Holds::Scalar && (self.name == "Z" || self.name.ends_with(".Z"))
     }
 
-    /// Whether it holds unit vectors in two numbers a pixel.
+    /// Whether the plane holds unit vectors in two numbers a pixel.
     pub(super) fn is_octahedral(&self) -> bool {
         self.keys.encoding == Some(Encoding::Octahedral)
     }
 
-    /// The names that the crate has for its channels; of two numbers those of the first two.
+    /// The crate's names for the channels; the first two for vectors in two numbers.
     pub(super) fn channels(&self) -> Vec<String> {
         let mut channels = self.row.holds.channels(&self.name);
         channels.truncate(if self.is_octahedral() { 2 } else { 3 });
@@ -54,14 +54,14 @@ impl Wanted {
     }
 }
 
-/// A plane that was read.
+/// A plane after reading.
 struct Read {
     wanted: Wanted,
     samples: Samples<f64>,
     storage: Storage,
 }
 
-/// The client that the file at `path` describes, of these stages.
+/// Reads the planes of these stages that the file at `path` describes.
 pub(super) fn client(
     path: &Path,
     sidecar: &Sidecar,
@@ -79,6 +79,7 @@ pub(super) fn client(
             return Err(Error::format(path, what));
         }
         let image = &files.picture(file, Kind::Exr)?.image;
+        // // A name in [planes] wins over a channel of the common file.
         wanted.extend(in_picture(image, &wanted, stages, sidecar.depth));
         unknown = left(image, &wanted, file);
     }
@@ -99,12 +100,13 @@ pub(super) fn client(
     Ok(client)
 }
 
-/// The planes that the TOML file names.
+/// The planes that the TOML file lists.
 fn named(sidecar: &Sidecar, stages: &[Stage]) -> Reason<Vec<Wanted>> {
     let mut all: Vec<Wanted> = Vec::new();
     for (key, keys) in &sidecar.planes {
         let row_of = |name: &str| stages.iter().find_map(|stage| stage.row(name));
-        // The colours of NPY and EXR files: `RGB` of the picture, `attributes.RGB` of a stage.
+        // Colours as NPY and EXR files name them: `RGB` for the picture, `attributes.RGB` for a
+        // stage.
         let color = if key == "RGB" { Some("") } else { key.strip_suffix(".RGB") };
         let color = color.and_then(|name| Some((name, row_of(name)?)));
         let color = color.filter(|(_, row)| row.holds == Holds::Color);
@@ -121,18 +123,19 @@ fn named(sidecar: &Sidecar, stages: &[Stage]) -> Reason<Vec<Wanted>> {
     Ok(all)
 }
 
-/// The names of the planes of these stages, as a TOML file has them.
+/// The names of all planes of these stages, as a TOML file spells them.
 fn names(stages: &[Stage]) -> String {
     let rows = stages.iter().flat_map(|stage| stage.leaves);
     let names = rows.map(|row| if row.name.is_empty() { "RGB" } else { row.name });
     names.collect::<Vec<_>>().join(", ")
 }
 
-/// The other planes that a picture has by the names of the crate.
+/// The further planes that a picture holds under the crate's names.
 fn in_picture(image: &Image, wanted: &[Wanted], stages: &[Stage], all: DepthKeys) -> Vec<Wanted> {
     let mut found: Vec<Wanted> = Vec::new();
     for row in stages.iter().flat_map(|stage| stage.leaves) {
         for (channel, _) in &image.channels {
+            // // One of three channels stands for the plane, so that it is found once.
             let name = match row.holds {
                 Holds::Color if channel == COLOR[0] => Some(""),
                 Holds::Color => channel.strip_suffix(".R"),
@@ -150,7 +153,7 @@ fn in_picture(image: &Image, wanted: &[Wanted], stages: &[Stage], all: DepthKeys
     found
 }
 
-/// The channels of a picture that no plane takes from it.
+/// The channels of a picture that no plane uses.
 fn left(image: &Image, wanted: &[Wanted], file: &Path) -> Vec<String> {
     let of_it = |wanted: &&Wanted| wanted.keys.file.as_deref().is_none_or(|of| of == file);
     let taken = wanted
@@ -162,7 +165,7 @@ fn left(image: &Image, wanted: &[Wanted], file: &Path) -> Vec<String> {
     names.filter(|name| !taken.contains(name)).cloned().collect()
 }
 
-/// The planes, raw ones last: others have a size of their own.
+/// Reads the planes; raw files last, because the other files know their own size.
 fn read(
     path: &Path,
     sidecar: &Sidecar,
@@ -197,7 +200,7 @@ fn read(
     Ok(planes)
 }
 
-/// Where a plane is.
+/// The file of a plane.
 fn file_of(wanted: &Wanted, sidecar: &Sidecar) -> Reason<(PathBuf, Kind)> {
     let key = &wanted.key;
     let file = wanted.keys.file.as_ref().or(sidecar.file.as_ref());
@@ -210,7 +213,7 @@ fn file_of(wanted: &Wanted, sidecar: &Sidecar) -> Reason<(PathBuf, Kind)> {
     Ok((file.clone(), kind))
 }
 
-/// The plane of these numbers.
+/// Turns the numbers of a file into a plane.
 fn turned(sidecar: &Sidecar, wanted: Wanted, kind: Kind, mut numbers: Numbers) -> Reason<Read> {
     if sidecar.upwards {
         numbers.flip();
@@ -220,8 +223,8 @@ fn turned(sidecar: &Sidecar, wanted: Wanted, kind: Kind, mut numbers: Numbers) -
     Ok(Read { wanted, samples, storage })
 }
 
-/// The client of these planes, colours divided by alpha where they were multiplied by it, vectors
-/// decoded where they are two numbers.
+/// Joins the planes into a client. Premultiplied colours are divided by alpha, and vectors in two
+/// numbers are decoded.
 fn joined(mut planes: Vec<Read>) -> Result<Client> {
     let mut radii = Vec::new();
     for i in 0..planes.len() {
@@ -259,7 +262,7 @@ fn joined(mut planes: Vec<Read>) -> Result<Client> {
     radii.into_iter().try_fold(client, |client, (name, off)| client.within(&name, off))
 }
 
-/// The plane that a key of another needs.
+/// Finds the plane that a key of another plane needs.
 fn other<'a>(
     planes: &'a [Read],
     wanted: &Wanted,

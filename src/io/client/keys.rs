@@ -1,17 +1,17 @@
-//! Tables of a TOML file, key by key: what is wrong is said with the full name of the key.
+//! Read the tables of a TOML file key by key; every error names the key in full.
 
 use crate::io::Reason;
 use crate::setting::Words;
 use std::path::PathBuf;
 use toml::{Table, Value};
 
-/// A table whose keys are taken one by one; what is left in the end is unknown.
+/// A table whose keys are taken one by one; keys that remain at the end are unknown.
 #[derive(Debug)]
 pub(super) struct Keys {
-    /// The name of the table and a dot; empty of the file itself.
+    /// The name of the table and a dot; empty for the file itself.
     prefix: String,
     table: Table,
-    /// The keys that were asked for.
+    /// The keys that were asked for, listed if an unknown one is found.
     known: Vec<&'static str>,
 }
 
@@ -30,7 +30,7 @@ impl Keys {
         self.table.remove(key)
     }
 
-    /// The value of a key, by a conversion that none other than `wanted` passes.
+    /// The value of a key, if `convert` accepts it; otherwise an error that asks for `wanted`.
     fn typed<T>(
         &mut self,
         key: &'static str,
@@ -106,13 +106,14 @@ impl Keys {
         })
     }
 
-    /// A table in this one; an empty one if there is none.
+    /// A table inside this one; empty if there is none.
     pub(super) fn table(&mut self, key: &'static str) -> Reason<Self> {
         let table = self.typed(key, "a table", |value| value.as_table().cloned())?;
         Ok(self.inner(key, table.unwrap_or_default()))
     }
 
-    /// The tables of any names in this one; a path stands for a table with just `file`.
+    /// The tables inside this one, whatever their names; a path stands for a table with only
+    /// `file`.
     pub(super) fn tables(mut self) -> Reason<Vec<(String, Self)>> {
         let names: Vec<String> = self.table.keys().cloned().collect();
         let tables = names.into_iter().map(|name| {
@@ -138,14 +139,14 @@ impl Keys {
         Self { prefix: format!("{}{key}.", self.prefix), table, known: Vec::new() }
     }
 
-    /// That no key is left.
+    /// Checks that no key is left.
     pub(super) fn done(self) -> Reason<()> {
         let Some((key, value)) = self.table.iter().next() else { return Ok(()) };
         let place = match self.prefix.strip_suffix('.') {
             Some(table) => format!("{table}: "),
             None => String::new(),
         };
-        // [planes.visibility.Z] is a table Z in a plane `visibility`.
+        // TOML reads [planes.visibility.Z] as a table `Z` inside a plane `visibility`.
         let quoted = match self.prefix.strip_prefix("planes.").and_then(|of| of.strip_suffix('.')) {
             Some(plane) if value.is_table() => {
                 format!("; quote a name that has a dot: [planes.\"{plane}.{key}\"]")
@@ -157,7 +158,7 @@ impl Keys {
     }
 }
 
-/// An integer is a number too.
+/// Accepts an integer as a number too.
 fn number(value: &Value) -> Option<f64> {
     value.as_float().or_else(|| value.as_integer().map(|whole| whole as f64))
 }

@@ -1,53 +1,54 @@
-//! What the author of another renderer hands to `splatref verify`: planes in files, and a TOML file
-//! that says how to read them.
+//! Give `splatref verify` the planes of another renderer: files of planes, and a TOML file that says
+//! how each file stores its numbers.
 //!
-//! One EXR with the crate's channel names and types needs no TOML file: [`read`] takes it as it is, the
-//! channels that are `HALF` as [`Storage::Half`]. Anything else is one TOML file beside the files of
-//! planes, in which every key has a default; but there must be a plane. An example of everything:
+//! One EXR with the crate's channel names and types needs no TOML file. [`read`] takes the EXR as
+//! it is, and its `HALF` channels as [`Storage::Half`]. For any other files, write one TOML file
+//! and put it beside them. Every key has a default, but there must be at least one plane. This
+//! example uses everything:
 //!
 //! ```toml
 #![doc = include_str!("example.toml")]
 //! ```
 //!
-//! # The file itself
+//! # Keys of the whole file
 //!
-//! | key | values, the default first | what |
+//! | key | values, the default first | meaning |
 //! |---|---|---|
-//! | `file` | a path | an EXR whose channels are planes by the crate's names; a plane without a `file` of its own is looked for in it |
-//! | `profile` | `"gpu"`, `"ieee"` | what is promised of operations, [`Client::rounding`] |
-//! | `accumulator` | `"f32"`, `"f16"` | how sums are stored between two additions, [`Client::accumulator`] |
-//! | `ties` | `"lowest"`, `"last"`, `"any"` | which of equally near fragments is the nearest one, [`Client::ties`] |
-//! | `origin` | `"top-left"`, `"bottom-left"` | whether rows run down or up, in all files; nothing else is turned over: not the rows that a plane holds as numbers, nor vectors |
-//! | `records` | a path | the projected splats, [`Client::records`]: records of 96 bytes as `splatref project` writes them ([`SplatRecord`](crate::splat::record::SplatRecord)), one a surfel that is drawn, in any order |
-//! | `size` | \[width, height\] | of raw files; without it they have that of the other planes, or that of the camera |
-//! | `[depth]` | `meaning`, `near`, `far` | of every plane of depths that does not say otherwise |
-//! | `[planes.NAME]` | the table below; a path alone is its `file` | a plane by its name in [`crate::method::planes`]; the picture is `RGB`. A name that has a dot is quoted: `[planes."visibility.Z"]`. A colour may be called `resolved` or `"resolved.RGB"` |
+//! | `file` | a path | an EXR whose channels are planes by the crate's names; a plane without its own `file` is looked for in this EXR |
+//! | `profile` | `"gpu"`, `"ieee"` | the precision that the client's arithmetic promises, [`Client::rounding`] |
+//! | `accumulator` | `"f32"`, `"f16"` | how the client stores sums between two additions, [`Client::accumulator`] |
+//! | `ties` | `"lowest"`, `"last"`, `"any"` | which of several equally near fragments wins, [`Client::ties`] |
+//! | `origin` | `"top-left"`, `"bottom-left"` | whether rows run down or up, in all files; only the order of rows changes, not row numbers stored in a plane, nor vectors |
+//! | `records` | a path | the projected splats, [`Client::records`]: records of 96 bytes as `splatref project` writes them ([`SplatRecord`](crate::splat::record::SplatRecord)), one for each drawn surfel, in any order |
+//! | `size` | \[width, height\] | size of raw files; by default the size of the other planes, or of the camera's picture |
+//! | `[depth]` | `meaning`, `near`, `far` | defaults for every plane of depths |
+//! | `[planes.NAME]` | the table below; a path alone is its `file` | a plane by its name in [`crate::method::planes`]; the picture is `RGB`. Quote a name that has a dot: `[planes."visibility.Z"]`. A colour may be called `resolved` or `"resolved.RGB"` |
 //!
-//! Paths are relative to the TOML file. Keys that are not here are refused, and so are keys that mean
-//! nothing to a plane. All planes must have one size.
+//! Paths are relative to the TOML file. The reader refuses unknown keys, and keys that mean nothing
+//! to the plane they are given for. All planes must have one size.
 //!
-//! # A plane
+//! # Keys of one plane
 //!
-//! | key | values, the default first | what |
+//! | key | values, the default first | meaning |
 //! |---|---|---|
-//! | `file` | that of all planes | `.exr`, `.npy`, `.png`, `.raw` or `.bin` |
-//! | `channel` | the crate's names | a channel of an EXR or a PNG, or three: `["r", "g", "b"]`; two of octahedral vectors. A PNG has `R`, `G`, `B` and `A`; one number a pixel is taken from a grey one without asking |
-//! | `format` | see below | how the numbers are stored in a raw file; in others, what they passed through |
-//! | `offset`, `row_stride`, `pixel_stride` | 0, tight, tight | bytes in a raw file before the first pixel, from row to row, from pixel to pixel |
-//! | `empty` | see below | of depths and indices: the number of an empty pixel, as it is stored (rounded to what the file can hold); `nan` is any NaN |
-//! | `id_base` | 0 | of indices: the number of the first surfel |
-//! | `premultiplied` | `false`, `true` | of colours: multiplied by the plane `A` of their layer (`A` of the picture, `blended.A` of `blended`), which must be there; linear light is divided by it, and left alone where it is 0 |
-//! | `encoding` | `"linear"` (of a PNG `"srgb"`), `"srgb"` | of colours, see [`crate::io::srgb`] |
-//! | | `"octahedral"` | of `normal` and `projection.normal`: unit vectors in two numbers, see below |
-//! | `range` | \[0, 1\] | of unorm and `rgb10a2`: which numbers 0 and 1 mean; `[-1, 1]` of the components of normals. Depths must be t |
-//! | `meaning`, `near`, `far` | those of `[depth]` | of depths |
+//! | `file` | the `file` of the whole TOML file | `.exr`, `.npy`, `.png`, `.raw` or `.bin` |
+//! | `channel` | the crate's names | a channel of an EXR or a PNG, or three: `["r", "g", "b"]`; two for octahedral vectors. A PNG has `R`, `G`, `B` and `A`; a grey PNG needs no `channel` for a plane of one number a pixel |
+//! | `format` | see below | raw files: how the numbers are stored; other files: the format that the numbers passed through |
+//! | `offset`, `row_stride`, `pixel_stride` | 0, tight, tight | raw files: bytes before the first pixel, from row to row, from pixel to pixel |
+//! | `empty` | see below | depths and indices: the number of an empty pixel, as it is stored (rounded to a number that the file can hold); `nan` is any NaN |
+//! | `id_base` | 0 | indices: the number of the first surfel |
+//! | `premultiplied` | `false`, `true` | colours: whether they are multiplied by the plane `A` of their layer (`A` of the picture, `blended.A` of `blended`), which must be there; the reader divides linear light by it, and leaves the colour alone where it is 0 |
+//! | `encoding` | `"linear"` (PNG: `"srgb"`), `"srgb"` | colours, see [`crate::io::srgb`] |
+//! | | `"octahedral"` | `normal` and `projection.normal`: unit vectors in two numbers, see below |
+//! | `range` | \[0, 1\] | unorm and `rgb10a2`: the numbers that 0 and 1 stand for; `[-1, 1]` for the components of normals. Depths must be t |
+//! | `meaning`, `near`, `far` | from `[depth]` | depths, see below |
 //!
-//! A raw file is little-endian and holds one number a pixel, or three next to each other, row by row.
-//! Without `offset` and strides it must be just as long as its pixels; with one of them, long enough.
-//! [`crate::io::npy`] says which arrays are read, [`crate::io::exr`] which EXR; `io::png` how PNG is, with
-//! the feature `cli`.
+//! A raw file is little-endian and holds one number a pixel, or three next to each other, row by
+//! row. Without `offset` and strides the file must be exactly as long as its pixels; with one of
+//! them, at least as long. See [`crate::io::npy`] for the arrays that are read, [`crate::io::exr`]
+//! for the EXR files, and `io::png` (with the feature `cli`) for PNG.
 //!
-//! # Formats
+//! # Formats, and how far each lets a number be off
 //!
 //! | format | number | may lie off by |
 //! |---|---|---|
@@ -59,17 +60,22 @@
 //! | `rg11b10` | three floats without a sign in 32 bits, of 11, 11 and 10, the first in the low ones; 5 are the exponent | 2^-5 of itself, at least 2^-19 |
 //! | `u8`, `u16`, `u32`, `i32` | itself; indices and counts only | nothing |
 //!
-//! The default is what the file has: `FLOAT`, `HALF` and `UINT` of an EXR are `f32`, `f16` and `u32`;
-//! floats of an NPY are `f32`, integers `u32`, -1 as all bits set; a PNG has `unorm8` or `unorm16`, and
-//! its codes where indices or counts are wanted. A raw file has `f32`, of indices `u32`, of counts `u8`.
-//! Numbers in an integer type must say what they passed through: `unorm8`, `unorm16`, `unorm24`. A format
-//! that the file cannot hold is refused. Indices and counts may be floats that are whole, below 2^24 in
-//! `f32` and 2^11 in `f16`. A number that its format could not hold, a colour beyond 1 in unorm, is judged
-//! as it is stored.
+//! If you give no `format`, the file decides:
+//!
+//! - EXR: `FLOAT`, `HALF` and `UINT` are `f32`, `f16` and `u32`.
+//! - NPY: floats are `f32`, integers `u32`, -1 as all bits set.
+//! - PNG: `unorm8` or `unorm16`; for indices and counts, its codes.
+//! - Raw: `f32`, for indices `u32`, for counts `u8`.
+//!
+//! If an integer type stores other numbers than indices and counts, say which format they passed
+//! through: `unorm8`, `unorm16`, `unorm24`. A format that the file cannot hold is refused. Indices
+//! and counts may be whole floats, below 2^24 in `f32` and 2^11 in `f16`. A number that its format
+//! could not hold, such as a colour beyond 1 in unorm, is judged as it is stored.
 //!
 //! # Depths
 //!
-//! `Z` and all that ends in `.Z`, of one number a pixel. With near n and far f:
+//! These rules apply to `Z` and to every name that ends in `.Z`, if the plane has one number a
+//! pixel. With near n and far f:
 //!
 //! | `meaning` | stored is v | `empty` | may lie off by, in v |
 //! |---|---|---|---|
@@ -77,19 +83,19 @@
 //! | `"1/t"` | 1 / t | 0 | a step; 2^-10 v in `f16`, at least 2^-24; 2^-21 v in `f32` |
 //! | `"near/t"` | n / t | 0 | the same |
 //! | `"z-buffer"` | f (t - n) / (t (f - n)) | 1 | a step; 2^-10 in `f16`, 2^-23 in `f32` |
-//! | `"reversed-z"` | 1 less that | 0 | a step; in floats as `1/t`, of v + n / (f - n) |
+//! | `"reversed-z"` | 1 - (the number of `"z-buffer"`) | 0 | a step; in floats as `1/t`, for v + n / (f - n) |
 //! | `"linear"` | (t - n) / (f - n) | 1 | a step; as `f16`; in `f32` 2^-23 of the greater of n and f, in t |
 //!
-//! t is that of the crate: along the view direction, in world units. `"1/t"` in `f32` allows for the
-//! division, as exact as shading languages promise it. `far` may be `inf`, but not of `"linear"`, which
-//! is also what a depth buffer holds under an orthographic camera, and where n may lie behind f. A
-//! surface at the far end that has the number of an empty pixel is taken for one.
+//! t is the crate's depth: along the view direction, in world units. `"1/t"` in `f32` allows for
+//! the division, to the precision that shading languages promise. `far` may be `inf`, except for
+//! `"linear"`. A depth buffer under an orthographic camera is `"linear"` too; there n may lie
+//! behind f. A surface at the far end that has the number of an empty pixel counts as empty.
 //!
 //! # Normals
 //!
-//! Three components from -1 to 1, or with `encoding = "octahedral"` the two numbers u and v of the
-//! `oct` of Cigolle et al., "A Survey of Efficient Representations for Independent Unit Vectors", JCGT
-//! 3(2), 2014, in any format but the packed ones:
+//! A normal is three components from -1 to 1. With `encoding = "octahedral"` it is the two numbers
+//! u and v of `oct` from Cigolle et al., "A Survey of Efficient Representations for Independent
+//! Unit Vectors", JCGT 3(2), 2014, in any format but the packed ones:
 //!
 //! ```text
 //!   w         = 1 - |u| - |v|
@@ -97,23 +103,30 @@
 //!   normal    = (x, y, w) / |(x, y, w)|
 //! ```
 //!
-//! in the space of the plane, which is that of the world of `normal`. Of unorm the `range` is [-1, 1] if
-//! none is given. They are `X` and `Y` of an EXR, `R` and `G` of a PNG, if no `channel` is given; an NPY
-//! is not read. With r, what the format may lose of u and v and 2^-20 for the encoding, d = sqrt(6) r and
-//! l = |(x, y, w)|, a component may lie off by 2 d / (2 l - d), and 2^-19 for the length that is
-//! forgotten: about 3 to 4 r. The null vector has no code. So the plane `Z` beside it must be there
-//! (`projection.Z` of `projection.normal`), and where that is +inf the vector is not read. Numbers beyond
-//! the square are NaN.
+//! The normal is in the space of its plane; for the plane `normal` this is world space. For unorm
+//! the default `range` is [-1, 1]. Without a `channel`, u and v are `X` and `Y` of an EXR, `R` and
+//! `G` of a PNG; an NPY is not read.
+//!
+//! How far a component may be off follows from r, the sum of what the format may lose of u and v
+//! and 2^-20 for the encoding. With d = sqrt(6) r and l = |(x, y, w)|, a component may lie off by
+//! 2 d / (2 l - d), and by 2^-19 more because the encoding forgets the length: about 3 to 4 r in all.
+//!
+//! The null vector has no code. Therefore the plane `Z` beside the normals must be there
+//! (`projection.Z` for `projection.normal`), and where that is +inf the vector is not read. Numbers
+//! beyond the square are NaN.
 //!
 //! # Indices
 //!
-//! `empty` is `0xFFFF_FFFF` if absent (-1 as `i32`), and `id_base - 1` if there is an `id_base` above 0.
-//! Other numbers must be whole and not below the base.
+//! If you give no `empty`, it is `0xFFFF_FFFF` (-1 as `i32`), or `id_base - 1` if there is an
+//! `id_base` above 0. All other numbers must be whole, and at least the base.
 //!
 //! # Colours
 //!
-//! `"srgb"` is decoded to linear light, and so is what storing may have lost: a step; 2^-10 v in `f16`;
-//! 2^-18 v in `f32`, for the power of a shading language; in floats at least 2^-18.
+//! The reader decodes `"srgb"` to linear light, together with what storing may have lost:
+//!
+//! - integer codes: a step;
+//! - `f16`: 2^-10 v, at least 2^-18;
+//! - `f32`: 2^-18 v, at least 2^-18, because shading languages compute the power inexactly.
 
 mod convert;
 mod files;
@@ -140,7 +153,7 @@ use gather::Wanted;
 use parse::Sidecar;
 use std::path::{Path, PathBuf};
 
-/// What a file says of a client's planes; nothing but this file is read yet.
+/// A description of a client's planes. Only the description itself has been read, no plane yet.
 #[derive(Clone, Debug)]
 pub struct Description {
     path: PathBuf,
@@ -148,11 +161,12 @@ pub struct Description {
 }
 
 impl Description {
-    /// The file at `path`: an `.exr`, which is the planes, or a `.toml` as above.
+    /// Opens the file at `path`: an `.exr` that holds the planes, or a `.toml` as above.
     ///
     /// # Errors
-    /// [`Error::Usage`] if the file is of another kind. [`Error::Io`] if a TOML file cannot be read,
-    /// [`Error::Format`] if it has an unknown key, a value of the wrong type or what cannot be.
+    /// [`Error::Usage`] if the file is of another kind. [`Error::Io`] if a TOML file cannot be
+    /// read, [`Error::Format`] if it has an unknown key, a value of the wrong type, or an
+    /// impossible value.
     pub fn open(path: &Path) -> Result<Self> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
         let sidecar = match extension.as_deref() {
@@ -176,26 +190,26 @@ impl Description {
         self.sidecar.files()
     }
 
-    /// Reads the planes of these stages; `size` is that of the camera's picture.
+    /// Reads the planes of these stages; `size` is the size of the camera's picture.
     ///
     /// # Errors
-    /// [`Error::Io`] if a file cannot be read. [`Error::Format`] if one is not what it should be, if
-    /// what is said does not fit the files, and if there is no plane of these stages.
+    /// [`Error::Io`] if a file cannot be read. [`Error::Format`] if a file is malformed, if the
+    /// description does not fit the files, or if no plane belongs to these stages.
     pub fn client(&self, stages: &[Stage], size: [u32; 2], exec: &Exec) -> Result<Client> {
         gather::client(&self.path, &self.sidecar, stages, size, exec)
     }
 }
 
-/// Reads the planes of these stages that the file at `path` has or describes: [`Description::open`],
-/// then [`Description::client`].
+/// Reads the planes of these stages from the file at `path`: [`Description::open`], then
+/// [`Description::client`].
 ///
 /// # Errors
-/// As these.
+/// The errors of these two.
 pub fn read(path: &Path, stages: &[Stage], size: [u32; 2], exec: &Exec) -> Result<Client> {
     Description::open(path)?.client(stages, size, exec)
 }
 
-/// Whether there may be planes of so many numbers in `f64`, as a file has them and as they mean it.
+/// Checks that the process may hold a plane of this size in `f64` twice: as stored, and converted.
 fn ask([width, height]: [u32; 2], components: usize) -> Reason<()> {
     let pixels = u64::from(width) * u64::from(height);
     memory::try_ask(pixels.saturating_mul(16 * components as u64), || {

@@ -1,4 +1,4 @@
-//! From text to a [`Sidecar`].
+//! Parse the text of a TOML file into a [`Sidecar`].
 
 use super::format::Format;
 use super::keys::Keys;
@@ -8,7 +8,7 @@ use crate::setting::Words;
 use crate::verdict::client::{Rounding, Storage, Ties};
 use std::path::{Path, PathBuf};
 
-/// What a TOML file says; nothing else is read yet.
+/// The contents of a TOML file; no other file has been read yet.
 #[derive(Clone, Debug)]
 pub(super) struct Sidecar {
     pub(super) file: Option<PathBuf>,
@@ -17,10 +17,10 @@ pub(super) struct Sidecar {
     pub(super) ties: Ties,
     pub(super) upwards: bool,
     pub(super) size: Option<[u32; 2]>,
-    /// The projected splats.
+    /// The file of the projected splats.
     pub(super) records: Option<PathBuf>,
     pub(super) depth: DepthKeys,
-    /// By the names that the file has for them.
+    /// The planes, by their names in the file.
     pub(super) planes: Vec<(String, PlaneKeys)>,
 }
 
@@ -32,7 +32,7 @@ pub(super) struct DepthKeys {
     pub(super) far: Option<f64>,
 }
 
-/// What is said of a plane.
+/// The keys of one plane.
 #[derive(Clone, Debug, Default)]
 pub(super) struct PlaneKeys {
     pub(super) file: Option<PathBuf>,
@@ -49,7 +49,7 @@ pub(super) struct PlaneKeys {
     pub(super) depth: DepthKeys,
 }
 
-/// What a number says of the depth t.
+/// What a stored number means in terms of the depth t.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) enum Meaning {
     #[default]
@@ -78,12 +78,12 @@ impl Meaning {
     }
 }
 
-/// What numbers say of a colour, or of a unit vector.
+/// How a colour, or a unit vector, is encoded.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Encoding {
     Linear,
     Srgb,
-    /// Of unit vectors, in two numbers.
+    /// For unit vectors, in two numbers.
     Octahedral,
 }
 
@@ -114,7 +114,7 @@ impl Words for Accumulator {
 }
 
 impl Sidecar {
-    /// A picture by itself.
+    /// The description of a picture without a TOML file.
     pub(super) fn of_picture(path: &Path) -> Self {
         Self {
             file: Some(path.to_owned()),
@@ -129,12 +129,12 @@ impl Sidecar {
         }
     }
 
-    /// What the text of the file at `path` says; files are looked for beside it.
+    /// Parses the text of the file at `path`; other files are relative to its folder.
     pub(super) fn parse(text: &str, path: &Path) -> Result<Self> {
         let table = text.parse::<toml::Table>();
         let table = table.map_err(|error| input::no_toml(path, text, &error))?;
         let mut read = Self::of_keys(Keys::new(table)).map_err(|what| Error::format(path, what))?;
-        // Joining keeps a path that is absolute.
+        // `join` keeps an absolute path as it is.
         let folder = path.parent().unwrap_or(Path::new(""));
         let files = read.planes.iter_mut().map(|(_, plane)| &mut plane.file);
         for file in files.chain([&mut read.file, &mut read.records]).flatten() {
@@ -143,7 +143,7 @@ impl Sidecar {
         Ok(read)
     }
 
-    /// The files that are named.
+    /// All files that the description names.
     pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
         let planes = self.planes.iter().filter_map(|(_, plane)| plane.file.as_deref());
         planes.chain(self.file.as_deref()).chain(self.records.as_deref())
@@ -191,7 +191,7 @@ impl DepthKeys {
         Ok(read)
     }
 
-    /// These, and where they say nothing, those.
+    /// These keys, completed by the `other` ones.
     pub(super) fn or(self, other: Self) -> Self {
         Self {
             meaning: self.meaning.or(other.meaning),

@@ -1,4 +1,4 @@
-//! Raw files: numbers at fixed distances, little-endian.
+//! Read raw files: little-endian numbers at fixed distances.
 
 use super::files::Numbers;
 use super::format::Format;
@@ -8,7 +8,7 @@ use crate::io::{Reason, input};
 use std::io::{Seek, SeekFrom};
 use std::path::Path;
 
-/// Where the numbers of a plane are in a file.
+/// Where the numbers of a plane lie in a file.
 #[derive(Clone, Copy, Debug)]
 struct Layout {
     size: [u32; 2],
@@ -17,11 +17,11 @@ struct Layout {
     offset: u64,
     row: u64,
     pixel: u64,
-    /// Whether the file has nothing else.
+    /// Whether the file must hold nothing else.
     alone: bool,
 }
 
-/// Reads the plane that `name` is in the TOML file, of this size.
+/// Reads a plane of this size; `name` is its name in the TOML file.
 pub(super) fn read(
     path: &Path,
     name: &str,
@@ -44,7 +44,7 @@ pub(super) fn read(
     Ok(Numbers { size, components: components.collect(), file: format })
 }
 
-/// How many bytes the numbers of a pixel have.
+/// How many bytes the numbers of one pixel take.
 fn pixel_bytes(format: Format, components: usize) -> u64 {
     if format.is_packed() { format.bytes() } else { format.bytes() * components as u64 }
 }
@@ -72,7 +72,8 @@ impl Layout {
         Ok(Self { size, components, format, offset, row, pixel, alone })
     }
 
-    /// How many bytes of a file of this length there are from the first number to the last.
+    /// How many bytes lie between the first number and the end of the last; an error if the file's
+    /// length does not fit.
     fn span(&self, length: u64) -> Reason<u64> {
         let Self { size: [width, height], components, format, offset, .. } = *self;
         let pixel = pixel_bytes(format, components);
@@ -92,7 +93,7 @@ impl Layout {
         ))
     }
 
-    /// One number of each pixel, of bytes that are all there.
+    /// One component of every pixel; the caller has checked that all bytes are there.
     fn component(&self, bytes: &[u8], component: usize) -> Vec<f64> {
         let step = self.format.bytes() as usize;
         let [width, height] = self.size.map(u64::from);

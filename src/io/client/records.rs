@@ -1,4 +1,4 @@
-//! Projected splats: records of 96 bytes, as `splatref project` writes them.
+//! Read projected splats: records of 96 bytes, as `splatref project` writes them.
 
 use crate::error::{Error, Result};
 use crate::io::input;

@@ -1,14 +1,14 @@
-//! Colours that were multiplied by their alpha, divided by it.
+//! Divide premultiplied colours by their alpha.
 
 use super::format::F32_STEP;
 use crate::frame::Plane;
 use crate::number::Real;
 use crate::verdict::client::Storage;
 
-/// The colours, and how far off each is.
+/// The divided colours, and how far off each may be.
 ///
-/// Where alpha is 0 a colour stays. Off by as much as the product and alpha may be; a product of
-/// `f32` was rounded once more than a colour.
+/// Where alpha is 0 the colour stays as it is. The error combines the errors of the product and of
+/// alpha. A product in `f32` was rounded once more than a plain colour.
 pub(super) fn straight(
     (colors, storage): (&Plane<[f64; 3]>, Storage),
     (alphas, alpha_storage): (&Plane<f64>, Storage),
@@ -32,7 +32,7 @@ pub(super) fn straight(
     (Plane::from_values(width, height, values), Plane::from_values(width, height, radii))
 }
 
-/// How far off an alpha is, and the least that it may be.
+/// How far off an alpha may be, and the least value that it may have.
 fn off(alpha: f64, storage: Storage) -> (f64, f64) {
     let radius = storage.radius(alpha);
     (radius, alpha - radius)

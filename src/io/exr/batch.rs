@@ -1,24 +1,24 @@
-//! Blocks that are worked on at once.
+//! Choose how many blocks are worked on at once.
 
 use crate::frame::Exec;
 use exr::meta::header::Header;
 use exr::prelude::Vec2;
 
-/// The blocks of a batch have about so many bytes, if they are small: enough to keep threads busy.
+/// Small blocks share a batch of about this many bytes: enough to keep all threads busy.
 const BYTES: u64 = 4 << 20;
-/// A thread has at least so many blocks of a batch, for none to wait long for another.
+/// Blocks of a batch for each thread, at least; enough that threads rarely wait for each other.
 const BLOCKS_A_THREAD: u64 = 4;
-/// More than one block only as long as they have no more bytes than these: those of 16 lines of the
-/// widest picture with all stages have 100 MB each.
+/// A batch of more than one block has at most this many bytes, because 16 lines of the widest
+/// picture with all stages take 100 MB in each block.
 const MOST: u64 = 256 << 20;
 
-/// How many blocks of a part are worked on at once. What a file holds does not depend on it.
+/// How many blocks of a part are worked on at once. The contents of a file do not depend on it.
 pub(super) fn blocks(header: &Header, exec: &Exec) -> u64 {
     let bytes = block_bytes(header).max(1);
     (BYTES / bytes).max(BLOCKS_A_THREAD * exec.threads() as u64).min((MOST / bytes).max(1))
 }
 
-/// The most bytes that the pixels of a block of a part take.
+/// The most bytes that the pixels of one block take.
 pub(super) fn block_bytes(header: &Header) -> u64 {
     let Vec2(columns, rows) = header.max_block_pixel_size();
     let Vec2(width, height) = header.layer_size;
@@ -26,7 +26,7 @@ pub(super) fn block_bytes(header: &Header) -> u64 {
     pixels.saturating_mul(header.channels.bytes_per_pixel as u64)
 }
 
-/// The most bytes that the blocks of two batches take, one in work and one done.
+/// The most bytes that the blocks of two batches take: one in work and one done.
 pub(super) fn most_bytes(header: &Header, exec: &Exec) -> u64 {
     let count = blocks(header, exec).min(header.chunk_count as u64);
     2_u64.saturating_mul(count).saturating_mul(block_bytes(header))

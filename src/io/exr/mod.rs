@@ -1,9 +1,13 @@
-//! EXR files: [`write()`] stores every plane of a frame exactly, [`read()`] takes any flat EXR.
+//! Store every plane of a frame exactly with [`write()`], and read any flat EXR with [`read()`].
 //!
-//! The `exr` crate serves the format: its header and its blocks. What this module adds is that a
-//! frame is written from where it lies, that the bytes of a file are a function of the frame, that
-//! a lying header is refused before anything is allocated, and that blocks are compressed and
-//! decompressed in parallel, on the threads of an [`Exec`](crate::frame::Exec).
+//! The `exr` crate handles the format itself: the header and the blocks. This module adds four
+//! things:
+//!
+//! - A frame is written directly from where it lies in memory.
+//! - The bytes of a file are a function of the frame.
+//! - A header that promises too much is refused before anything is allocated.
+//! - Blocks are compressed and decompressed in parallel, on the threads of an
+//!   [`Exec`](crate::frame::Exec).
 
 mod batch;
 mod read;
@@ -17,10 +21,10 @@ use crate::setting::Words;
 pub use read::{read, read_header, read_with};
 pub use write::{pending, write};
 
-/// The name of the one text attribute that a file of this crate carries.
+/// The name of the one text attribute in files of this crate.
 pub const ATTRIBUTE: &str = "splatref";
 
-/// What the header of an EXR file promises.
+/// The contents of an EXR file's header.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct PictureHeader {
     /// Width in pixels, at least 1.
@@ -35,12 +39,12 @@ pub struct PictureHeader {
     pub text: Option<String>,
 }
 
-/// How the blocks of a written file are compressed; none of the ways loses a bit.
+/// How the blocks of a written file are compressed; every way is lossless.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Compression {
-    /// Runs of equal bytes, line by line. The mantissas of a picture are noise, of which deflate
-    /// saves little and for which it takes long. In the bench `files`, one scene of one size, this file
-    /// is 10 % larger than by deflate, 17 % with all stages, and written sooner.
+    /// Runs of equal bytes, line by line. Deflate saves little and takes long, because the
+    /// mantissas of a picture are noise. In the bench `files`, one scene of one size, this file is
+    /// 10 % larger than by deflate, 17 % with all stages, and written sooner.
     #[default]
     Rle,
     /// Deflate, 16 lines at a time, as most programs write EXR files.

@@ -1,4 +1,4 @@
-//! File to image, trusting nothing.
+//! Read an EXR file into an image, and trust nothing in it.
 
 use super::{ATTRIBUTE, ChannelType, PictureHeader, batch};
 use crate::frame::Exec;
@@ -21,26 +21,29 @@ use std::panic::{self, AssertUnwindSafe};
 use std::path::Path;
 use std::sync::Once;
 
-/// Deflate gives at most 1032 bytes for one, PXR24 drops one byte in four before it: 1376.
+/// Deflate expands one byte to at most 1032; PXR24 drops one byte in four before deflate: 1376.
 const MOST_EXPANSION: u64 = 1376;
-/// A block has an entry of 8 bytes in the table of offsets, and its place and size in 8 more.
+/// The least that a block takes: 8 bytes in the table of offsets, and 8 more for its place and
+/// size.
 const LEAST_BLOCK: u64 = 16;
 
-/// Reads every channel of the flat EXR file at `path`, whoever wrote it, on one thread.
+/// Reads every channel of the flat EXR file at `path`, on one thread. Any program may have written
+/// the file.
 ///
-/// Scan lines or tiles, of which only the full resolution is read; compressed in any way but DWA
-/// and HTJ2K; one part or several. A channel of a file with several parts is called `part.channel`.
-/// `HALF` values are widened exactly (a signalling NaN becomes quiet); all other bits are kept.
+/// The file may have scan lines or tiles, one part or several, and any compression but DWA and
+/// HTJ2K. If it has several resolutions, only the full one is read. In a file with several parts, a
+/// channel is called `part.channel`. `HALF` values are widened exactly (a signalling NaN becomes
+/// quiet); all other bits are kept.
 ///
-/// Memory beside the file's own bytes: the planes, at most 1376 bytes (twice that for `HALF`) for a
-/// byte of the file, the most that any compression of the format can hold; and two batches of a few
-/// blocks a thread.
+/// Memory holds the bytes of the file, the planes, and two batches of a few blocks a thread. The
+/// planes take at most 1376 bytes (twice that for `HALF`) for each byte of the file, because no
+/// compression of the format can hold more.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read. [`Error::Format`] if it is not an EXR, is damaged,
-/// promises more than its bytes can hold, or is of a kind that has no planes to compare: deep data,
-/// subsampled channels, a data window that is not the display window, parts of different sizes, two
-/// channels of one name.
+/// [`Error::Io`] if the file cannot be read. [`Error::Format`] if the file is not an EXR, is
+/// damaged, promises more than its bytes can hold, or has no planes to compare. This last case
+/// covers deep data, subsampled channels, a data window that is not the display window, parts of
+/// different sizes, and two channels of one name.
 pub fn read(path: &Path) -> Result<Image> {
     read_with(path, &Exec::sequential())
 }
@@ -55,17 +58,17 @@ pub fn read_with(path: &Path, exec: &Exec) -> Result<Image> {
     guarded(|| decode(&bytes, exec)).map_err(|what| Error::format(path, what))
 }
 
-/// Reads what the header of the EXR file at `path` promises, and no pixel.
+/// Reads the header of the EXR file at `path`, and no pixel.
 ///
 /// # Errors
-/// As [`read()`], as far as the header tells.
+/// As [`read()`], as far as the header shows.
 pub fn read_header(path: &Path) -> Result<PictureHeader> {
     let (file, length) = open(path)?;
     guarded(|| Ok(summary(&metadata(BufReader::new(file), length)?)))
         .map_err(|what| Error::format(path, what))
 }
 
-/// The file at its start, known to begin as an EXR does, and its length.
+/// Opens a file that begins as an EXR does; returns it, rewound, and its length.
 fn open(path: &Path) -> Result<(File, u64)> {
     let start = || -> std::io::Result<(File, u64, [u8; 4])> {
         let (mut file, length) = input::open(path)?;
@@ -84,7 +87,7 @@ fn open(path: &Path) -> Result<(File, u64)> {
     Ok((file, length))
 }
 
-/// Runs a decoder; its panic, of which there is none known, becomes a reason instead of a message.
+/// Runs a decoder, and turns a panic into an error without printing a message. No panic is known.
 pub(super) fn guarded<T>(decode: impl FnOnce() -> Reason<T>) -> Reason<T> {
     thread_local!(static SILENT: Cell<bool> = const { Cell::new(false) });
     static HOOK: Once = Once::new();
@@ -96,7 +99,7 @@ pub(super) fn guarded<T>(decode: impl FnOnce() -> Reason<T>) -> Reason<T> {
             }
         }));
     });
-    // One may run inside another: a block inside its file, where there is one thread.
+    // Calls may nest: on one thread, a block is decoded inside its file.
     let outside = SILENT.replace(true);
     let result = panic::catch_unwind(AssertUnwindSafe(decode));
     SILENT.set(outside);
@@ -104,7 +107,7 @@ pub(super) fn guarded<T>(decode: impl FnOnce() -> Reason<T>) -> Reason<T> {
         .unwrap_or_else(|_| Err("damaged in a way the decoder gives up on; write it again".into()))
 }
 
-/// The header, if a file of `length` bytes can hold what it promises.
+/// Parses the header, and checks that a file of `length` bytes can hold what the header promises.
 fn metadata(read: impl Read, length: u64) -> Reason<MetaData> {
     let meta = MetaData::read_from_buffered(read, true).map_err(|e| reason("header", e))?;
     MetaData::validate(&meta.headers, true).map_err(|e| reason("header", e))?;
@@ -113,6 +116,7 @@ fn metadata(read: impl Read, length: u64) -> Reason<MetaData> {
     for header in &meta.headers {
         let Vec2(width, height) = header.layer_size;
         let (data, display) = (header.data_window(), header.shared_attributes.display_window);
+        // A part of another size has no pixel-by-pixel counterpart.
         if data != display || header.layer_size != meta.headers[0].layer_size {
             return Err(format!(
                 "header: a data window of {width} x {height} pixels at ({}, {}) is not the display \
@@ -127,6 +131,7 @@ fn metadata(read: impl Read, length: u64) -> Reason<MetaData> {
             Compression::Uncompressed => 1,
             _ => MOST_EXPANSION,
         };
+        // A lower bound of the bytes that these pixels take in the file.
         needed = needed.saturating_add(bytes.div_ceil(expansion));
         blocks = blocks.saturating_add(header.chunk_count as u64);
     }
@@ -144,7 +149,7 @@ fn metadata(read: impl Read, length: u64) -> Reason<MetaData> {
     }
 }
 
-/// The part of a checked header that this crate speaks of.
+/// The part of a checked header that this crate uses.
 fn summary(meta: &MetaData) -> PictureHeader {
     let mut channels = Vec::new();
     for part in &meta.headers {
@@ -160,7 +165,7 @@ fn summary(meta: &MetaData) -> PictureHeader {
     channels.sort_by(|a, b| a.0.cmp(&b.0));
     let first = &meta.headers[0];
     PictureHeader {
-        // Less than 2^30 each: the exr crate has checked the windows.
+        // Both are less than 2^30, because the exr crate has checked the windows.
         width: first.layer_size.width() as u32,
         height: first.layer_size.height() as u32,
         channels,
@@ -169,7 +174,7 @@ fn summary(meta: &MetaData) -> PictureHeader {
     }
 }
 
-/// The attribute of this crate.
+/// The text of this crate's attribute.
 fn text(part: &PartHeader) -> Option<String> {
     match part.own_attributes.other.get(&ExrText::from_slice_unchecked(ATTRIBUTE.as_bytes()))? {
         AttributeValue::Text(text) => Some(utf8(text)),
@@ -185,12 +190,12 @@ fn full_name(meta: &MetaData, part: &PartHeader, channel: &ExrText) -> String {
     }
 }
 
-/// A text of a file, which may hold any bytes.
+/// A text of a file as UTF-8; the file may hold any bytes.
 fn utf8(text: &ExrText) -> String {
     String::from_utf8_lossy(text.as_slice()).into_owned()
 }
 
-/// An error of the exr crate as where, what, and what to do.
+/// Describes an error of the exr crate: where, what, and the remedy.
 fn reason(place: &str, error: exr::error::Error) -> String {
     match error {
         exr::error::Error::NotSupported(what) => {
@@ -201,7 +206,7 @@ fn reason(place: &str, error: exr::error::Error) -> String {
     }
 }
 
-/// A whole file.
+/// Decodes a whole file.
 pub(super) fn decode(bytes: &[u8], exec: &Exec) -> Reason<Image> {
     let mut rest = bytes;
     let meta = metadata(&mut rest, bytes.len() as u64)?;
@@ -222,8 +227,8 @@ pub(super) fn decode(bytes: &[u8], exec: &Exec) -> Reason<Image> {
     Ok(Image { width, height, channels, text })
 }
 
-/// The planes of a part, whose table of offsets is the next of `rest`: a batch of blocks is copied
-/// to them while the next is decompressed.
+/// Decodes the planes of a part; the table of its offsets is next in `rest`. One batch of blocks is
+/// copied to the planes while the next is decompressed.
 fn decode_part(
     bytes: &[u8],
     rest: &mut &[u8],
@@ -262,7 +267,8 @@ fn decode_part(
     }
 }
 
-/// A block, given its index, its place and where its bytes begin; none of a lower resolution.
+/// Decodes a block from its index, its place and the offset of its bytes; `None` for a lower
+/// resolution.
 fn decode_block(
     bytes: &[u8],
     meta: &MetaData,
@@ -276,7 +282,7 @@ fn decode_block(
     }
     let chunk = chunk(bytes, u64::from_le_bytes(offset), meta, part, location)
         .map_err(|what| format!("{}: {what}", place()))?;
-    // Guarded here too: this may be another thread.
+    // Guard here too, because this may run on another thread.
     guarded(|| {
         UncompressedBlock::decompress_chunk(chunk, meta, true)
             .map(Some)
@@ -284,7 +290,7 @@ fn decode_block(
     })
 }
 
-/// The planes of a part, all 0.
+/// The planes of a part, filled with 0.
 fn empty_planes(header: &PartHeader) -> Vec<Values> {
     let pixels = header.layer_size.area();
     let plane = |sample_type| match sample_type {
@@ -294,11 +300,11 @@ fn empty_planes(header: &PartHeader) -> Vec<Values> {
     header.channels.list.iter().map(|channel| plane(channel.sample_type)).collect()
 }
 
-/// The compressed block that the table of offsets places at byte `offset`, if it is the expected
-/// one.
+/// The compressed block at byte `offset`, where the table of offsets places it; an error if another
+/// block is there.
 ///
-/// Read here and not by the exr crate, whose reader allocates what a block claims to be, loses its
-/// place after a small gap between blocks, and takes a block twice.
+/// This is not left to the exr crate, because its reader allocates as much as a block claims, loses
+/// its place after a small gap between blocks, and accepts a block twice.
 fn chunk(
     bytes: &[u8],
     offset: u64,
@@ -332,7 +338,7 @@ fn chunk(
     }
     let size = usize::try_from(number()?).map_err(|_| early())?;
     if size as u64 > batch::block_bytes(header) {
-        // Every thread holds the bytes of a block.
+        // Each thread holds the bytes of a block, so a false size must not pass.
         return Err(format!(
             "byte {offset}: a block of {size} bytes, more than its pixels have; write the file again"
         ));
@@ -359,7 +365,7 @@ fn take<const N: usize>(rest: &mut &[u8]) -> Option<[u8; N]> {
     Some(*first)
 }
 
-/// A file that was cut.
+/// The error for a file that was cut.
 fn ends_early(place: &str) -> String {
     format!("{place}: the file ends too early; write it again")
 }

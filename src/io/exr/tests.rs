@@ -1,4 +1,4 @@
-//! Round trips, files of others, hostile files.
+//! Check round trips, files of other programs, and hostile files.
 
 use super::*;
 use crate::Error;
@@ -50,7 +50,7 @@ fn frame(width: u32, height: u32) -> Frame<f32> {
     Frame { width, height, planes: planes.into() }
 }
 
-/// The channels as bits, which NaN does not hide.
+/// The channels as bits, so that NaN compares equal to itself.
 fn bits(image: &Image) -> Vec<(&str, Vec<u32>)> {
     let of = |values: &Values| match values {
         Values::Float(values) => values.iter().map(|v| v.to_bits()).collect(),
@@ -59,7 +59,7 @@ fn bits(image: &Image) -> Vec<(&str, Vec<u32>)> {
     image.channels.iter().map(|(name, values)| (name.as_str(), of(values))).collect()
 }
 
-/// A file of given bytes in a folder that goes when dropped.
+/// A file of these bytes, in a folder that is removed on drop.
 fn file(bytes: &[u8]) -> (tempfile::TempDir, PathBuf) {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.exr");
@@ -103,7 +103,7 @@ fn every_bit_comes_back() {
     }
 }
 
-/// The bytes of a file, whose planes come back.
+/// The bytes of a written file, after checking that its planes come back.
 fn written(frame: &Frame<f32>, compression: Compression, exec: &Exec) -> Vec<u8> {
     let (_folder, path) = file(b"");
     pending(&path, frame, "text", compression, exec).unwrap().put().unwrap();
@@ -112,7 +112,7 @@ fn written(frame: &Frame<f32>, compression: Compression, exec: &Exec) -> Vec<u8>
     std::fs::read(&path).unwrap()
 }
 
-/// The hashes change if a codec gives other bytes, as a new version of a library may.
+/// The hashes change if a codec gives different bytes, as a new version of a library may.
 #[test]
 fn bytes_are_a_function_of_frame_text_and_compression() {
     let hashes = Compression::WORDS.iter().map(|(name, compression)| {
@@ -130,7 +130,7 @@ fn bytes_are_a_function_of_frame_text_and_compression() {
 
 #[test]
 fn threads_change_neither_bytes_nor_planes() {
-    // More than a batch of every kind.
+    // Enough for more than one batch of every kind.
     let frame = frame(700, 600);
     for (_, compression) in Compression::WORDS {
         let alone = written(&frame, *compression, &Exec::sequential());
@@ -147,7 +147,7 @@ fn of_several_damaged_blocks_the_first_is_named() {
     let exec = Exec::new(3, 32).unwrap();
     pending(&path, &frame(64, 512), "", Compression::Zip, &exec).unwrap().put().unwrap();
     let mut bytes = std::fs::read(&path).unwrap();
-    // From the second eighth on all is lost, but for the header and the table.
+    // From the second eighth on everything is lost; the header and the table stay.
     let from = bytes.len() / 8;
     bytes[from..].fill(0x55);
     let (_folder, path) = file(&bytes);
@@ -172,7 +172,7 @@ fn the_header_alone_tells_the_channels() {
     assert_eq!(header.channels.len(), 9);
     assert_eq!(header.channels[3], ("Z".into(), ChannelType::Float));
     assert_eq!(header.channels[5], ("id".into(), ChannelType::Uint));
-    // No pixel is read: their damage does not matter to it, but to `read` it does.
+    // `read_header` reads no pixel, so damage to pixels matters only to `read`.
     let middle = bytes.len() * 3 / 4;
     let mut damaged = bytes;
     damaged[middle..].fill(0x55);
@@ -292,14 +292,14 @@ fn every_compression_and_tiling_is_read() {
     }
 }
 
-/// `bytes` with the one `from` in it replaced by `to`.
+/// `bytes` with the only `from` in it replaced by `to`.
 fn patched(bytes: &[u8], from: &[u8], to: &[u8]) -> Vec<u8> {
     let places: Vec<usize> = (0..bytes.len()).filter(|&i| bytes[i..].starts_with(from)).collect();
     let [place] = places[..] else { panic!("{} places", places.len()) };
     [&bytes[..place], to, &bytes[place + from.len()..]].concat()
 }
 
-/// The line that refuses a file.
+/// The line of a file's refusal.
 fn refusal(bytes: &[u8]) -> String {
     let (_folder, path) = file(bytes);
     let error = read(&path).unwrap_err();
@@ -373,7 +373,8 @@ fn mutated_files_never_panic_and_never_give_more_than_they_hold() {
         for bytes in &files {
             let mut bytes = bytes.clone();
             for _ in 0..=random(&mut state) % 3 {
-                // Half of the changes in the first 600 bytes: the header and the table of offsets.
+                // Half of the changes are in the first 600 bytes: the header and the table of
+                // offsets.
                 let end = if random(&mut state).is_multiple_of(2) { 600 } else { bytes.len() };
                 let place = random(&mut state) as usize % end.min(bytes.len());
                 match random(&mut state) % 5 {

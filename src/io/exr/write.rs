@@ -1,4 +1,4 @@
-//! Frame to file.
+//! Write a frame to an EXR file.
 
 use super::{ATTRIBUTE, Compression, batch, zip};
 use crate::frame::named::LONGEST_NAME;
@@ -19,25 +19,25 @@ use exr::prelude::Compression as Codec;
 use std::io::{self, Seek, Write};
 use std::path::Path;
 
-/// Writes all channels of `frame` and `text`, the attribute [`ATTRIBUTE`], to the file at `path`, on
-/// one thread and by the default [`Compression`].
+/// Writes all channels of `frame` to the file at `path`, and `text` as the attribute [`ATTRIBUTE`].
+/// It uses one thread and the default [`Compression`].
 ///
-/// One part of scan lines, lossless: [`ChannelData::Float`] as `FLOAT`, [`ChannelData::Index`] and
-/// [`ChannelData::Count`] as `UINT`.
+/// The file has one part of scan lines, without loss: [`ChannelData::Float`] as `FLOAT`,
+/// [`ChannelData::Index`] and [`ChannelData::Count`] as `UINT`.
 ///
 /// # Errors
 /// [`Error::Invalid`] if the frame has no channel, no pixel, a plane of another size, or a channel
-/// name that is empty, longer than 31 bytes or given twice; [`Error::Io`] if the file cannot be
-/// written, and then nothing is left of it.
+/// name that is empty, longer than 31 bytes or given twice. [`Error::Io`] if the file cannot be
+/// written; then nothing of it is left.
 pub fn write(path: &Path, frame: &Frame<f32>, text: &str) -> Result<()> {
     pending(path, frame, text, Compression::default(), &Exec::sequential())?.put()
 }
 
-/// [`write()`] up to the moment when the file is put in its place, for files that belong together.
+/// Does all of [`write()`] except to put the file in its place, for files that belong together.
 ///
 /// The bytes of the file are a function of `frame`, `text` and `compression`. The planes are not
-/// copied: beside them stand two batches of a few blocks a thread, one that is compressed and one
-/// that is written.
+/// copied. Beside them, memory holds two batches of a few blocks a thread: one is compressed while
+/// the other is written.
 ///
 /// # Errors
 /// As [`write()`].
@@ -61,7 +61,7 @@ pub fn pending(
     })
 }
 
-/// What the exr crate would panic at, or write although other readers refuse it.
+/// Refuses frames that would make the exr crate panic, or write a file that other readers refuse.
 fn check(frame: &Frame<f32>, channels: &[Channel<'_>]) -> Result<()> {
     let (width, height) = (frame.width, frame.height);
     if width == 0 || height == 0 || channels.is_empty() {
@@ -90,7 +90,7 @@ fn check(frame: &Frame<f32>, channels: &[Channel<'_>]) -> Result<()> {
     Ok(())
 }
 
-/// The header of the one part.
+/// The header of the only part.
 fn header(
     frame: &Frame<f32>,
     channels: &[Channel<'_>],
@@ -105,7 +105,8 @@ fn header(
         ChannelDescription::named(bytes(&channel.name), sample_type)
     });
     let size = (frame.width as usize, frame.height as usize);
-    // One custom attribute: the exr crate keeps them in a HashMap, whose order would be random.
+    // Only one custom attribute, because the exr crate keeps them in a HashMap, whose order is
+    // random.
     let attributes = LayerAttributes {
         other: std::iter::once((bytes(ATTRIBUTE), AttributeValue::Text(bytes(text)))).collect(),
         ..LayerAttributes::default()
@@ -121,12 +122,13 @@ fn header(
         .with_attributes(attributes)
 }
 
-/// A text as its UTF-8 bytes, which is what EXR means by text since version 3.
+/// A text as UTF-8 bytes, which EXR expects since version 3.
 fn bytes(text: &str) -> ExrText {
     ExrText::from_slice_unchecked(text.as_bytes())
 }
 
-/// Header and blocks, in the order of the lines: a batch is written while the next is compressed.
+/// Writes header and blocks, in the order of lines: one batch is written while the next is
+/// compressed.
 fn encode(
     write: &mut (impl Write + Seek + Send),
     headers: Headers,
@@ -153,7 +155,7 @@ fn encode(
     })
 }
 
-/// The blocks of a batch, each with its index.
+/// Compresses the blocks of a batch, each with its index.
 fn compress(
     batch: Vec<(usize, BlockIndex)>,
     meta: &MetaData,
@@ -172,7 +174,7 @@ fn compress(
     compressed.into_iter().collect()
 }
 
-/// What the exr crate would make of a block, but for the level.
+/// Makes the same chunk as the exr crate, except for the level of compression.
 fn zip_chunk(UncompressedBlock { index, data }: UncompressedBlock) -> exr::error::Result<Chunk> {
     let lines = CompressedScanLineBlock {
         // The data window begins at 0.
@@ -183,7 +185,8 @@ fn zip_chunk(UncompressedBlock { index, data }: UncompressedBlock) -> exr::error
     Ok(Chunk { layer_index: 0, compressed_block: CompressedBlock::ScanLine(lines) })
 }
 
-/// One line of one channel, as bytes of this machine's order; the exr crate turns them if need be.
+/// Fills one line of one channel, in the byte order of this machine; the exr crate swaps bytes if
+/// necessary.
 fn fill(line: LineRefMut<'_>, channels: &[Channel<'_>]) {
     let place = line.location;
     // The blocks are as wide as the picture: the line starts at x = 0.

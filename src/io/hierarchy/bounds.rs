@@ -1,4 +1,4 @@
-//! The file of bounds, see the [module](super): what bounds the surfels and the triangles of each node.
+//! The file with the bounds of each node's surfels and triangles, see the [module](super).
 
 use super::bytes::{Hash, Reader, Writer};
 use super::read::Hierarchy;
@@ -16,7 +16,7 @@ const OF_A_NODE: u64 = 32;
 const FILE: &str = "bounds";
 
 impl Hierarchy {
-    /// The bounds of all nodes: those of the file, or of the nodes, which are read one at a time.
+    /// The bounds of all nodes: from the file, or computed from the nodes, one at a time.
     pub(super) fn bounds(
         &self,
         exec: &Exec,

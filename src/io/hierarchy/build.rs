@@ -1,4 +1,4 @@
-//! Makes the folder of a hierarchy, or goes on with one, see the [module](super).
+//! Make the folder of a hierarchy, or resume an unfinished one, see the [module](super).
 
 use super::bytes::Hash;
 use super::gather::{below, gather};
@@ -15,28 +15,31 @@ use crate::source::hierarchy::{Flaws, Settings, Traversal, approximate};
 use std::io::Write;
 use std::path::Path;
 
-/// What became of a scene.
+/// A summary of what was built.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Built {
     /// Name, triangles and flaws of each geometry.
     pub geometries: Vec<(String, u64, Flaws)>,
-    /// Nodes with enough triangles to be approximated.
+    /// Nodes that have enough triangles to be approximated.
     pub nodes: u32,
-    /// Of these, those that were there already.
+    /// How many of these were already in the folder.
     pub found: u32,
-    /// Of these, those of which no pixel sees anything.
+    /// How many of these no pixel sees.
     pub unseen: u32,
 }
 
-/// Makes the hierarchy of a scene in a folder, whose parent is there; or goes on with what is there. Models are taken as their triangles,
-/// in the order of [`SceneFile::models`] and [`SceneFile::geometries`].
+/// Makes the hierarchy of a scene in a folder, or resumes an unfinished one. The parent of the
+/// folder must exist. Models are taken as their triangles, in the order of [`SceneFile::models`]
+/// and [`SceneFile::geometries`].
 ///
-/// `progress` is told the name of a step, how much of it is done, and of how much: of "surfels" how many.
+/// `progress` gets the name of a step, how much of it is done, and the total; for "surfels" both
+/// are numbers of surfels.
 ///
 /// # Errors
-/// Those of [`SceneFile::load_polygons`]; [`Error::Usage`] if no surfel or no
-/// picture is asked for; [`Error::Format`] if the folder is of something else; [`Error::Io`] if it cannot be written
-/// to; as [`crate::source::candidates::candidates`], and if the process may not hold what one node needs.
+/// The errors of [`SceneFile::load_polygons`] and [`crate::source::candidates::candidates`].
+/// [`Error::Usage`] if you ask for no surfel or no picture. [`Error::Format`] if the folder holds
+/// something else. [`Error::Io`] if the folder cannot be written to. Also an error if the process
+/// may not hold what one node needs.
 pub fn build(
     file: &SceneFile,
     folder: &Path,
@@ -45,30 +48,30 @@ pub fn build(
     progress: &dyn Fn(&str, u64, u64),
 ) -> Result<Built> {
     let mut work = Work::begin(file, folder, settings, exec, progress)?;
-    // What is below comes first.
+    // Children have larger numbers, so this order makes them first.
     for node in (0..work.wanted.len() as u32).rev() {
         work.make(node)?;
     }
     work.finish()
 }
 
-/// A hierarchy in the making: the index grows.
+/// A hierarchy in the making. The index grows as nodes are made.
 pub(super) struct Work<'a> {
     hierarchy: Hierarchy,
     settings: &'a Settings,
     exec: &'a Exec,
     progress: &'a dyn Fn(&str, u64, u64),
-    /// How many surfels each node is to have.
+    /// How many surfels to make for each node.
     pub(super) wanted: Vec<u32>,
     made: Vec<bool>,
-    /// Of the nodes that are made, as they were wanted; and of all.
+    /// Surfels wanted by the nodes that are made, and by all nodes.
     surfels: u64,
     total: u64,
     built: Built,
 }
 
 impl<'a> Work<'a> {
-    /// Writes the geometries; nothing is approximated yet.
+    /// Writes the geometries; no node is approximated yet.
     pub(super) fn begin(
         file: &SceneFile,
         folder: &Path,
@@ -90,6 +93,7 @@ impl<'a> Work<'a> {
             .map(|model| (model.source.name(), model))
             .chain(file.geometries.iter().map(|one| (one.name.clone(), &one.model)))
             .collect();
+        // Check every model before the folder is made.
         for (name, model) in &models {
             check(name, model)?;
             check_properties(model, &settings.properties)?;
@@ -128,7 +132,8 @@ impl<'a> Work<'a> {
         })
     }
 
-    /// Makes the surfels of a node, unless they are there; bottom-up those of what is below it first.
+    /// Makes the surfels of a node, unless they are in the folder; bottom-up, makes the nodes below
+    /// first.
     pub(super) fn make(&mut self, node: u32) -> Result<()> {
         let at = node as usize;
         let count = self.wanted[at];
@@ -149,6 +154,7 @@ impl<'a> Work<'a> {
             let Settings { traversal, .. } = *self.settings;
             let drawn = |side| gather(&self.hierarchy, node, side, traversal);
             let (before, total) = (self.surfels, self.total);
+            // Only the sampler counts surfels; other steps have other totals.
             let picks = |_: &str, done, of| {
                 if of == u64::from(count) {
                     (self.progress)("surfels", before + done, total);
@@ -156,6 +162,7 @@ impl<'a> Work<'a> {
             };
             let cloud = approximate(&drawn, count, self.settings, self.exec, &picks)?;
             surfels::write(folder, &hash, node, &cloud)?;
+            // Read it back, because the estimate comes from the normals as stored.
             header = surfels::header(folder, &hash, node, further)?;
         }
         let Some(header) = header else {
@@ -171,7 +178,7 @@ impl<'a> Work<'a> {
         Ok(())
     }
 
-    /// The nearest nodes below that are approximated.
+    /// Makes the nearest approximated nodes below.
     fn make_below(&mut self, node: u32) -> Result<()> {
         for child in below(&self.hierarchy, node) {
             if self.wanted[child as usize] > 0 {
@@ -192,7 +199,7 @@ impl<'a> Work<'a> {
     }
 }
 
-/// An error that says of which geometry it is.
+/// Adds the name of the geometry to an error.
 fn named(name: &str, error: Error) -> Error {
     match error {
         Error::Invalid(what) if !what.starts_with(name) => {
@@ -202,7 +209,7 @@ fn named(name: &str, error: Error) -> Error {
     }
 }
 
-/// Whether a model can be approximated.
+/// Refuses a model that cannot be approximated.
 fn check(name: &str, model: &Model) -> Result<()> {
     let what = match &model.source {
         Source::Shape { .. } => "a shape has surfels of its own and no triangles to approximate",
@@ -213,7 +220,7 @@ fn check(name: &str, model: &Model) -> Result<()> {
     Err(Error::Invalid(format!("{name}: {what}")))
 }
 
-/// The header of a geometry, which is written if it is not there.
+/// The header of a geometry's file; writes the file if it is missing.
 fn geometry(
     file: &SceneFile,
     model: &Model,
@@ -232,6 +239,7 @@ fn geometry(
     let loaded = alone.load_polygons(properties, exec, progress)?;
     let triangles = &loaded.scene.primitives.triangles;
     let hash = mesh::hash(triangles);
+    // A damaged file is treated as missing, and written again.
     if let Ok(Some(header)) = mesh::read(folder, number) {
         if header.hash != hash {
             return Err(refused(folder, "another geometry"));
@@ -239,6 +247,7 @@ fn geometry(
         return Ok(header);
     }
     mesh::write(folder, number, &hash, triangles, loaded.dropped_primitives)?;
+    // Another process may have replaced the file meanwhile.
     match mesh::read(folder, number)? {
         Some(header) if header.hash == hash => Ok(header),
         _ => Err(refused(folder, "another geometry")),

@@ -1,12 +1,12 @@
-//! Numbers as bytes, and back.
+//! Convert numbers to bytes and back.
 
 use crate::io::Reason;
 use glam::{DMat3, DVec3, Vec3};
 
-/// The SHA-256 of something.
+/// A SHA-256 hash.
 pub(super) type Hash = [u8; 32];
 
-/// Bytes that grow.
+/// A growing buffer of bytes.
 #[derive(Default)]
 pub(super) struct Writer(pub(super) Vec<u8>);
 
@@ -31,7 +31,7 @@ impl Writer {
         v.to_array().into_iter().for_each(|float| self.float(float));
     }
 
-    /// The length, then the bytes.
+    /// Writes the length, then the bytes.
     pub(super) fn text(&mut self, text: &str) {
         self.words(&[text.len() as u32]);
         self.bytes(text.as_bytes());
@@ -42,7 +42,7 @@ impl Writer {
     }
 }
 
-/// Bytes that are read from the front.
+/// Bytes, read from the front.
 pub(super) struct Reader<'a>(pub(super) &'a [u8]);
 
 impl Reader<'_> {

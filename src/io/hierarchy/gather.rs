@@ -1,4 +1,5 @@
-//! What a node is approximated of: triangles of its own, surfels or triangles of what is below.
+//! Gather the input of a node's approximation: its own triangles, and surfels or triangles from
+//! below.
 
 use super::index::{NONE, Node, Object};
 use super::read::Hierarchy;
@@ -10,28 +11,29 @@ use crate::source::hierarchy::{Part, Traversal};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
-/// Where something is shown, and in which colour.
+/// A place and a colour in which something is shown.
 #[derive(Clone, Copy)]
 struct Shown {
     place: Similarity,
     color: Option<Vec3>,
 }
 
-/// The triangles that the pictures of one node show.
+/// The triangles in the pictures of one node.
 struct Gather<'a> {
     hierarchy: &'a Hierarchy,
     bottom_up: bool,
-    /// The side of a pixel of the pictures.
+    /// The side of a pixel in the pictures.
     pixel: f64,
-    /// Whether the node is one over the objects, which may show something again.
+    /// Whether this is a node over the objects; then several objects may show the same thing.
     upper: bool,
     all: Gathered,
-    /// What objects show more than once: triangles and surfels, by their nodes.
+    /// Triangles and surfels that objects may show again, by their nodes.
     parts: BTreeMap<u32, Part>,
     surfels: BTreeMap<u32, Cloud>,
 }
 
-/// What pictures of a node with this side show. What is below has its surfels already, if they are drawn.
+/// The triangles that pictures of `side` pixels show of a node. Bottom-up, the nodes below must
+/// have their surfels already.
 pub(super) fn gather(
     hierarchy: &Hierarchy,
     node: u32,
@@ -52,7 +54,8 @@ pub(super) fn gather(
     gather.all.finish()
 }
 
-/// The nodes below a node, as its pictures show them: the roots of its objects' geometries, then its children.
+/// The nodes below a node, in the order of its pictures: the roots of its objects' geometries, then
+/// its children.
 pub(super) fn below(hierarchy: &Hierarchy, node: u32) -> Vec<u32> {
     let Node { objects, children, .. } = &hierarchy.nodes()[node as usize];
     let own = &hierarchy.objects()[objects.start as usize..objects.end as usize];
@@ -69,7 +72,7 @@ impl Hierarchy {
 }
 
 impl Gather<'_> {
-    /// The triangles of a node, and what is drawn of what is below.
+    /// Adds the own triangles of a node, and what stands for the nodes below.
     fn triangles(&mut self, node: u32, shown: &Shown) -> Result<()> {
         let Node { geometry, triangles, objects, children, .. } =
             self.hierarchy.nodes()[node as usize].clone();
@@ -89,6 +92,7 @@ impl Gather<'_> {
 
     fn child(&mut self, node: u32, shown: &Shown) -> Result<()> {
         let Node { surfels, estimate, .. } = self.hierarchy.nodes()[node as usize];
+        // Top-down, or without surfels, the triangles below stand for themselves.
         if !self.bottom_up || surfels == 0 {
             return self.triangles(node, shown);
         }
@@ -112,13 +116,14 @@ impl Gather<'_> {
         };
         let squares: Vec<[Vec3; 3]> = (0..count as usize).map(placed).collect();
         self.all.squares(&squares, cloud, (half * scale) as f32)?;
+        // A node of a geometry is shown once, so its surfels need not stay in memory.
         if !self.upper {
             self.surfels.remove(&node);
         }
         Ok(())
     }
 
-    /// The own triangles of a node, kept where objects may show them again.
+    /// The own triangles of a node, kept if other objects may show them again.
     fn part(&mut self, node: u32) -> Result<Part> {
         if !self.upper {
             return self.hierarchy.part(node);

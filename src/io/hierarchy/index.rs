@@ -16,7 +16,7 @@ const HEADER: u64 = 80;
 const OF_A_NODE: u64 = 88;
 const OF_AN_OBJECT: u64 = 136;
 const OF_A_GEOMETRY: u64 = 80;
-/// An index that is none.
+/// The index that stands for "none".
 pub const NONE: u32 = u32::MAX;
 
 /// A node of a hierarchy.
@@ -26,25 +26,26 @@ pub struct Node {
     pub parent: u32,
     /// The nodes below, in the same tree.
     pub children: Range<u32>,
-    /// The geometry of whose tree it is, in whose coordinates; [`NONE`] of the tree over the objects.
+    /// The geometry that the tree belongs to, and whose coordinates it has; [`NONE`] for the tree
+    /// over the objects.
     pub geometry: u32,
     /// The corner with the least coordinates of the box around the triangles here and below.
     pub low: Vec3,
-    /// The other corner.
+    /// The corner with the greatest coordinates.
     pub high: Vec3,
-    /// Triangles here and below, as often as objects show them.
+    /// Number of triangles here and below, counted once for each object that shows them.
     pub below: u64,
-    /// Its own triangles, which are in none below.
+    /// Number of its own triangles, which are in no node below.
     pub triangles: u32,
-    /// Vertices of its own triangles.
+    /// Number of vertices of its own triangles.
     pub vertices: u32,
-    /// Where they begin in the file of the geometry.
+    /// Where its triangles begin in the file of the geometry.
     pub(super) offset: u64,
     /// Its own objects, as a range of [`super::Hierarchy::objects`].
     pub objects: Range<u32>,
-    /// Its surfels; 0 if it is not approximated.
+    /// Number of its surfels; 0 if it is not approximated.
     pub surfels: u32,
-    /// How densely they cover.
+    /// How densely its surfels cover.
     pub estimate: Estimate,
 }
 
@@ -55,29 +56,29 @@ pub struct Object {
     pub number: u32,
     /// Its geometry.
     pub geometry: u32,
-    /// The node over objects whose own it is; [`NONE`] if it moves.
+    /// The node over objects that it belongs to; [`NONE`] if it moves.
     pub node: u32,
-    /// Linear RGB in the place of the geometry's.
+    /// Linear RGB that replaces the geometry's colours.
     pub color: Option<Vec3>,
-    /// Whether it is elsewhere in another frame.
+    /// Whether it changes its place in other frames.
     pub moves: bool,
-    /// Where it is in frame 0.
+    /// Its place in frame 0.
     pub place: Similarity,
 }
 
-/// A geometry.
+/// A geometry and its tree.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Geometry {
     /// The nodes of its tree, the root first.
     pub nodes: Range<u32>,
-    /// What its vertices have.
+    /// Which attributes its vertices have.
     pub kind: Kind,
-    /// What is wrong with it.
+    /// The flaws of its triangles.
     pub flaws: Flaws,
     pub(super) hash: Hash,
 }
 
-/// All of it.
+/// The whole contents of the index.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct Index {
     pub(super) hash: Hash,
@@ -142,6 +143,7 @@ impl Index {
         let properties = rest.word()?;
         let [n, o, g] = [nodes, objects, geometries].map(u64::from);
         let length = HEADER + n * OF_A_NODE + o * OF_AN_OBJECT + g * OF_A_GEOMETRY;
+        // Names follow, of any length; `rest` must be empty after them.
         let long = if properties == 0 { length } else { length.max(bytes.len() as u64) };
         if long != bytes.len() as u64 {
             return Err(format!(
@@ -164,7 +166,7 @@ impl Index {
         Ok(index)
     }
 
-    /// Whether all that refers to something refers to what can be there.
+    /// Checks that every reference leads to something that can be there.
     fn check(&self) -> Reason<()> {
         if !is_color(self.fill) {
             return Err("the colour of what has none is none".into());
@@ -198,7 +200,7 @@ impl Index {
         Ok(())
     }
 
-    /// Whether the nodes are trees, by levels, one after the other.
+    /// Checks that the nodes form trees, level by level, one tree after the other.
     fn check_trees(&self) -> Reason<()> {
         let mut trees = vec![(0..self.upper, NONE)];
         trees.extend((0..).zip(&self.geometries).map(|(i, geometry)| (geometry.nodes.clone(), i)));
@@ -211,6 +213,7 @@ impl Index {
             if next as usize > self.nodes.len() {
                 return Err("there are fewer nodes than the trees have".into());
             }
+            // Children come level by level, so each node's children begin where the last ones end.
             let mut child = range.start + 1;
             for number in range.clone() {
                 let node = &self.nodes[number as usize];
@@ -275,7 +278,7 @@ pub(super) fn read_flaws(from: &mut Reader<'_>) -> Reason<Flaws> {
     })
 }
 
-/// A range by its start and its length.
+/// A range, from its start and its length.
 pub(super) fn range(start: u32, length: u32) -> Reason<Range<u32>> {
     Ok(start..start.checked_add(length).ok_or("a range ends beyond 32 bits")?)
 }

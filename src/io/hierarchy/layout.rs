@@ -1,4 +1,4 @@
-//! The nodes of all trees in their order, before any of them has surfels.
+//! Number the nodes of all trees before any node has surfels.
 
 use super::bytes::Hash;
 use super::index::{Geometry, Index, NONE, Node, Object};
@@ -11,7 +11,8 @@ use crate::source::hierarchy::octree::{Branch, Item, around};
 use crate::source::hierarchy::{BOUND, Settings, octree};
 use glam::Vec3;
 
-/// Nodes, objects and geometries as the index has them, and how many surfels each node is to have.
+/// Nodes, objects and geometries in the order of the index, and how many surfels to make for each
+/// node.
 #[derive(Default)]
 pub(super) struct Layout {
     upper: u32,
@@ -22,7 +23,7 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    /// The tree over the objects.
+    /// Starts with the tree over the objects.
     pub(super) fn over(
         all: &[scene::Object],
         geometries: &[Header],
@@ -72,7 +73,7 @@ impl Layout {
     }
 }
 
-/// An object that rests, for the tree; with the root of its geometry.
+/// An object that does not move, as an item of the tree; `root` is the root of its geometry.
 fn item(object: &scene::Object, root: Option<&Node>) -> Result<Item> {
     let (low, high) = root.map(|root| (root.low, root.high)).unwrap_or_default();
     let (low, high) = placed((low, high), &object.motion.at(0));

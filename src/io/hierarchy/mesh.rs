@@ -17,22 +17,22 @@ use std::path::{Path, PathBuf};
 const MAGIC: &[u8; 16] = b"splatref mesh 1\n";
 const HEADER: u64 = 88;
 const OF_A_NODE: u64 = 56;
-/// Bytes of a triangle, of place and normal of a vertex, of its colour, and of any other number.
+/// Bytes in the file: a triangle, a vertex's position and normal, its colour, any other number.
 const TRIANGLE: u64 = 12;
 const VERTEX: u64 = 24;
 const COLOR: u64 = 12;
 const NUMBER: u64 = 4;
-/// Bytes of the largest of both in memory, beside those of the file.
+/// How many times the bytes of the file a loaded block may take in memory.
 const IN_MEMORY: u64 = 2;
 
-/// What the vertices of a geometry have beside places and normals.
+/// Which attributes vertices of a geometry have beside positions and normals.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Kind {
     /// Colours.
     pub colored: bool,
     /// Opacities.
     pub veiled: bool,
-    /// So many further properties.
+    /// Number of further properties.
     pub properties: u32,
 }
 
@@ -57,16 +57,16 @@ impl Kind {
     }
 }
 
-/// What a file says of its geometry, but for its triangles.
+/// The contents of a geometry's file, without its triangles.
 pub(super) struct Header {
     pub(super) hash: Hash,
     pub(super) kind: Kind,
     pub(super) flaws: Flaws,
-    /// By their numbers in the geometry; without surfels.
+    /// Nodes by their numbers in the geometry; without surfels.
     pub(super) nodes: Vec<Node>,
 }
 
-/// Where a geometry is.
+/// The path of a geometry's file.
 pub(super) fn path(folder: &Path, geometry: u32) -> PathBuf {
     folder.join(format!("mesh-{geometry}"))
 }
@@ -109,7 +109,7 @@ pub(super) fn hash(triangles: &Triangles) -> Hash {
     hash.finalize().into()
 }
 
-/// Makes the tree of a geometry and writes both.
+/// Makes the tree of a geometry, and writes tree and triangles.
 pub(super) fn write(
     folder: &Path,
     geometry: u32,
@@ -163,7 +163,8 @@ fn size(node: &Node, kind: Kind) -> u64 {
     vertices.saturating_add(u64::from(node.triangles) * TRIANGLE)
 }
 
-/// The header of the file of a geometry, if there is a file; its nodes have the number of the geometry.
+/// Reads the header of a geometry's file, if there is a file; its nodes get the number of the
+/// geometry.
 pub(super) fn read(folder: &Path, geometry: u32) -> Result<Option<Header>> {
     let path = path(folder, geometry);
     if !path.exists() {
@@ -232,7 +233,7 @@ fn records_of(
     Ok(all)
 }
 
-/// The triangles of a node, as the index says.
+/// Reads the triangles of a node, from where the index says they are.
 pub(super) fn part(
     folder: &Path,
     hash: &Hash,
@@ -256,6 +257,7 @@ pub(super) fn part(
     file.read_exact(&mut start).map_err(io)?;
     let format = |what: String| Error::format(&path, what);
     let (header, _) = beginning(&mut Reader(&start)).map_err(format)?;
+    // The hash says whether the offsets of the index belong to this file.
     if header.hash != *hash || header.kind != kind {
         return Err(format("the geometry is not that of the index".into()));
     }

@@ -1,32 +1,39 @@
-//! Hierarchies of surfel approximations as folders \[BJFM19, 3.4\].
+//! Approximate a large scene by a hierarchy of surfels in a folder, and load only what a view needs
+//! \[BJFM19, 3.4\].
 //!
-//! What is in them is defined by [`crate::source::hierarchy`]. [`build()`] makes a folder, and goes on with one that was
-//! begun; [`Hierarchy`] reads it: the index at once, surfels and triangles a node at a time, of a view
-//! only those of the nodes that it [draws](Hierarchy::needed_by).
+//! [`build()`] makes the folder; run it again to resume after an interruption. [`Hierarchy`] reads
+//! the folder. It reads the index at once, and surfels and triangles one node at a time. For a view
+//! it reads only the nodes that the view [draws](Hierarchy::needed_by).
+//! [`crate::source::hierarchy`] defines the approximation.
 //!
-//! # The tree
+//! # How nodes form trees
 //!
-//! A scene has geometries and objects that show them. Each geometry has a tree of *nodes* over its triangles
-//! ([`mod@crate::source::hierarchy::octree`], bound [`BOUND`]) in its own coordinates, however many objects show it. A tree of the same
-//! kind over the objects, in world coordinates, lies above these trees: its items are the objects that rest, by the boxes
-//! around them, and weigh as much as the triangles of their geometries. The box of an object is that around the eight corners
-//! of its geometry's box in their places, in f64, its corners rounded to `f32` and one `f32` outwards. Objects that move are in no node: they "should
-//! \[be generated\] seperately from the static scene parts".
+//! A scene has geometries, and objects that show them. Each geometry has a tree of *nodes* over its
+//! triangles ([`mod@crate::source::hierarchy::octree`], bound [`BOUND`]). The tree is in the
+//! geometry's own coordinates, however many objects show it.
 //!
-//! Nodes are numbered from 0: those of the tree over the objects, then those of geometry 0, of geometry 1, ... A node of the
-//! first tree with one object here and below has no surfels, because the object's geometry has them.
+//! Above these trees lies one more tree of the same kind, over the objects, in world coordinates.
+//! Its items are the objects that do not move, with the boxes around them. An object weighs as much
+//! as the triangles of its geometry. To get the box of an object, take the box of its geometry and
+//! place its eight corners, in f64. The object's box is the box around these eight points, its
+//! corners rounded to `f32` and moved one `f32` outwards. Moving objects are in no node: they
+//! "should \[be generated\] seperately from the static scene parts".
 //!
-//! # Files
+//! Nodes are numbered from 0: first the nodes over the objects, then the nodes of geometry 0, of
+//! geometry 1, ... A node over objects with only one object here and below has no surfels, because
+//! the object's geometry has them.
 //!
-//! Numbers are little-endian, without gaps. Indices that are none are `0xFFFF_FFFF`. Hashes are SHA-256.
+//! # Files in the folder
 //!
-//! | file | | |
+//! Numbers are little-endian, without gaps. An absent index is `0xFFFF_FFFF`. Hashes are SHA-256.
+//!
+//! | file | contents | |
 //! |---|---|---|
-//! | `plan` | `"splatref hierarchy 1\n"`, 64 hexadecimal digits, `"\n"` | written first: the hash of what is computed |
+//! | `plan` | `"splatref hierarchy 1\n"`, 64 hexadecimal digits, `"\n"` | written first: the hash of the settings and the scene |
 //! | `mesh-N` | the tree and the triangles of geometry N, a decimal number | |
 //! | `surfels-N` | the surfels of node N, if it is approximated | |
-//! | `bounds` | what bounds the surfels and the triangles of each node | written before the index; not needed |
-//! | `index` | all nodes, objects and geometries | written last: the hierarchy is whole |
+//! | `bounds` | the bounds of each node's surfels and triangles | written before the index; optional |
+//! | `index` | all nodes, objects and geometries | written last: the hierarchy is complete |
 //!
 //! **mesh-N**
 //!
@@ -43,9 +50,10 @@
 //!                 of each own triangle u32 of its three vertices, counted from 0 in the node
 //! ```
 //!
-//! Nodes are counted from 0 in the geometry. A node without children has as its first child the number that it would have, see
-//! [`mod@crate::source::hierarchy::octree`]. The colours are linear. The kind is 1 if vertices have colours, plus 2 if they have
-//! opacities, plus 4 times the number of further properties.
+//! Nodes are counted from 0 in the geometry. For a node without children, "first child" is the
+//! number that its first child would have, see [`mod@crate::source::hierarchy::octree`]. The
+//! colours are linear. The kind is 1 if vertices have colours, plus 2 if they have opacities, plus
+//! 4 times the number of further properties.
 //!
 //! **surfels-N**
 //!
@@ -60,7 +68,8 @@
 //!     f32 of each further property          4 each, in the order of the index
 //! ```
 //!
-//! The codes of a unit normal, in f64, and the normal of codes, where sign is 1 for 0:
+//! These formulas encode a unit normal to two codes, and decode the codes to a normal. They are in
+//! f64, and sign is 1 for 0:
 //!
 //! ```text
 //!   s = (|x| + |y|) + |z|      a = x / s      b = y / s
@@ -72,12 +81,17 @@
 //!   (x, y, z) divided by sqrt((x x + y y) + z z), each rounded to f32 once, plus 0
 //! ```
 //!
-//! A node of which no pixel sees anything has a file too, with the count, `p_m` and `r_m` 0, so that nobody looks again.
+//! A node that no pixel sees has a file too, so that a later run does not look again. Its count,
+//! `p_m` and `r_m` are 0.
 //!
-//! A normal is at most 1e-4 off. Colours are clamped to \[0, 1\], encoded by [`crate::io::srgb`], and rounded as
-//! floor(255 c + 1/2). An opacity o is floor(255 o + 1/2), and where a vertex of a geometry has one, code / 255 is that of a surfel, rounded to f32
-//! once; else the code is 255, and surfels have none. `Decided:` Table 1 has 20 bytes a surfel (494.79 MB for 24.74 M) and does not say which. `Decided:` light above 1 is cut, as
-//! it is in the paper's bytes. What has no colours has that of the scene's material. The estimate is that of the surfels as they are in the file.
+//! A normal is at most 1e-4 off. Colours are clamped to \[0, 1\], encoded by [`crate::io::srgb`],
+//! and rounded as floor(255 c + 1/2). An opacity o is floor(255 o + 1/2). If any geometry of the
+//! hierarchy has opacities, a surfel's opacity is code / 255, rounded to f32 once; otherwise the
+//! code is 255, and surfels have no opacity. Vertices without a colour have the colour of the
+//! scene's material. The estimate is computed from the surfels as they are in the file.
+//!
+//! `Decided:` Table 1 has 20 bytes a surfel (494.79 MB for 24.74 M) and does not say which.
+//! `Decided:` light above 1 is cut, as it is in the paper's bytes.
 //!
 //! **index**
 //!
@@ -99,10 +113,16 @@
 //!   of each further property: u32 bytes of its name, the name in UTF-8
 //! ```
 //!
-//! Here nodes are those of all trees, and so are their first children, of nodes without children too. Where the own triangles of a node
-//! begin is counted in bytes from the beginning of the file, also if it has none. What a node has none of is 0: of a node over
-//! objects triangles, vertices and where they begin; of a node of a geometry the first object and the objects; of a node without surfels their
-//! number, `p_m` and `r_m`. Objects are in the order of their nodes, in a node as in the scene, then those that move.
+//! Here nodes are counted over all trees; so are first children, for nodes without children too.
+//! Where a node's own triangles begin is counted in bytes from the beginning of the file, even if
+//! the node has none. Fields that do not apply are 0:
+//!
+//! - for a node over objects: triangles, vertices and where they begin;
+//! - for a node of a geometry: the first object and the objects;
+//! - for a node without surfels: their number, `p_m` and `r_m`.
+//!
+//! Objects are in the order of their nodes, and within a node as in the scene; moving objects come
+//! last.
 //!
 //! **bounds**
 //!
@@ -114,51 +134,71 @@
 //!                 f64 radius                8
 //! ```
 //!
-//! The box is that of [`Scene::bounds`](crate::scene::Scene::bounds) around the node's surfels, as they are in the file, and its own triangles, not those
-//! below; the radius is that of [`Scene::bounding_sphere`](crate::scene::Scene::bounding_sphere) around both, surfels having the radius
-//! `r_m` sqrt(`p_m` / n) with which all of a node cover. A node that has neither has 0. No number is -0. `Decided:` a file of its own: the index is what it was, and
-//! where the bounds are missing, as in folders of earlier versions, the same numbers are computed from all other files.
+//! The box is [`Scene::bounds`](crate::scene::Scene::bounds) of the node's surfels, as they are in
+//! the file, and its own triangles, without what is below. The radius is
+//! [`Scene::bounding_sphere`](crate::scene::Scene::bounding_sphere) of both. Here surfels have the
+//! radius `r_m` sqrt(`p_m` / n), with which all surfels of a node cover. A node that has neither
+//! has 0. No number is -0.
 //!
-//! # Which hash is of what
+//! `Decided:` the bounds are in a file of their own, so that the index did not have to change.
+//! Where the file is missing, as in folders of earlier versions, the same numbers are computed from
+//! all other files.
 //!
-//! - `plan`: `"splatref hierarchy 1\n"`; the settings (u32 most, side; u8 sampler: 0 greedy, 1 the paper's, 2 as shipped, 3 random; u8 1 if
-//!   bottom-up; u64 seed; u32 directions: 0 cube, 1 box, else 2 + their number and f64 x y z of each); the f32 colour of what has none; u64 geometries; u64 objects, of each
-//!   u64 geometry, u64 keys, of each key u32 frame and f64 rotation by columns, scale, translation; u8 1 and f32 r g b of its colour, or u8 0; of each further property u32 bytes of its name, the
-//!   name.
-//! - a geometry: u64 vertices, of each f32 position and normal; u8 1 and f32 colours of all, or u8 0; u64 triangles, of each u32 x 3;
-//!   if there are opacities u8 1 and f32 of each vertex; of each further property u8 2, u32 bytes of its name, the name, f32 of each vertex.
-//! - the hierarchy: the hash of `plan`, those of the geometries.
+//! # What each hash covers
 //!
-//! # Interruption
+//! - `plan`, in this order:
+//!   - `"splatref hierarchy 1\n"`;
+//!   - the settings: u32 most, side; u8 sampler: 0 greedy, 1 the paper's, 2 as shipped, 3 random;
+//!     u8 1 if bottom-up; u64 seed; u32 directions: 0 cube, 1 box, else 2 + their number and f64 x
+//!     y z of each;
+//!   - the f32 colour of triangles without one; u64 geometries;
+//!   - u64 objects, and of each: u64 geometry; u64 keys, of each key u32 frame and f64 rotation by
+//!     columns, scale, translation; u8 1 and f32 r g b of its colour, or u8 0;
+//!   - of each further property u32 bytes of its name, the name.
+//! - a geometry, in this order:
+//!   - u64 vertices, of each f32 position and normal; u8 1 and f32 colours of all, or u8 0;
+//!   - u64 triangles, of each u32 x 3;
+//!   - if there are opacities u8 1 and f32 of each vertex;
+//!   - of each further property u8 2, u32 bytes of its name, the name, f32 of each vertex.
+//! - the hierarchy: the hash of `plan`, then the hashes of the geometries.
 //!
-//! Each file is put in its place when it is whole. A run finds what is there: a `mesh-N` or a `surfels-N` of the right
-//! hash and length stays as it is. A run of other settings, or of a geometry that has changed, is refused. Every file is a function
-//! of the scene and the settings, so that two runs at a time write the same bytes. Of a process that was
-//! killed without a warning partial files may stay (`.splatref-*.partial`); nobody reads them.
+//! # Resume after an interruption
 //!
-//! # Memory
+//! Each file appears in the folder only when it is complete. A new run keeps every `mesh-N` and
+//! `surfels-N` that has the right hash and length. A run with other settings, or with a changed
+//! geometry, is refused. Every file is a function of the scene and the settings, so that two runs
+//! at a time write the same bytes. A killed process may leave partial files
+//! (`.splatref-*.partial`); nothing reads them.
 //!
-//! A geometry at a time is in memory as a whole, while its tree is made; the readers of meshes do not read parts of files.
-//! Afterwards what is in memory is what one node is approximated of: bottom-up a number of surfels that is bounded by its
-//! surface at the resolution of its pictures and its own triangles, top-down all its triangles.
+//! # Memory that building and viewing need
 //!
-//! A view has the index in memory, 88 bytes a node, what shows each node in each of its places, and of the files
-//! [what it draws](Hierarchy::needed_by).
+//! While the tree of a geometry is made, the whole geometry is in memory, because the readers of
+//! meshes do not read parts of files. Only one geometry is in memory at a time. Afterwards, memory
+//! holds the input of one node. Bottom-up, this is the node's own triangles, and a number of
+//! surfels that is bounded by its surface at the resolution of its pictures. Top-down, it is all
+//! triangles of the node and below.
+//!
+//! A view needs memory for the index (88 bytes a node), for the objects that show each node in each
+//! of its places, and for the parts of files that [it draws](Hierarchy::needed_by).
 //!
 //! # Opacities and further properties
 //!
-//! Vertices of meshes have the opacities of their files, or that of their model, and the further properties that
-//! [settings](crate::source::hierarchy::Settings::properties) name. [Candidates](mod@crate::source::candidates) have what the vertices around them have, and so have surfels, those of
-//! surfels below too. A triangle with a corner whose opacity is not in [0, 1], or of which a property is not finite, is dropped.
+//! Vertices of meshes have the opacities of their files, or of their model. They also have the
+//! further properties that the [settings](crate::source::hierarchy::Settings::properties) name.
+//! [Candidates](mod@crate::source::candidates) take these values from the vertices around them, and
+//! so do surfels, even those made from surfels below. A triangle is dropped if the opacity of a
+//! corner is not in [0, 1], or if a property is not finite.
 //!
-//! `Decided:` every method that draws triangles draws them, and discs, opaque, as the paper's are: what a folder shows does not depend on its
-//! opacities. They are for whoever draws [`Hierarchy::surfels`] and [`Hierarchy::triangles`] in another way.
+//! `Decided:` every method that draws triangles and discs draws them opaque, as the paper's are: a
+//! picture of a folder does not depend on its opacities. The opacities are for programs that draw
+//! [`Hierarchy::surfels`] and [`Hierarchy::triangles`] in another way.
 //!
-//! `Decided:` a geometry of which every vertex has the opacity 1 has no opacities, so that four channels of colour in a mesh cost
-//! nothing. In a hierarchy with opacities vertices without have 1.
+//! `Decided:` a geometry whose vertices all have the opacity 1 has no opacities, so that four
+//! channels of colour in a mesh cost nothing. In a hierarchy with opacities, vertices without one
+//! have 1.
 //!
-//! `Decided:` where a mesh lacks a property that is named the hierarchy is refused, and the line names the file: no number
-//! can stand for a roughness that nobody measured.
+//! `Decided:` if a mesh lacks a property that the settings name, the hierarchy is refused, and the
+//! error names the file: no number can stand for a roughness that nobody measured.
 
 mod bounds;
 mod build;

@@ -1,4 +1,4 @@
-//! What is computed, and whether a folder is of that.
+//! Hash the settings and the scene, and check that a folder belongs to them.
 
 use super::bytes::{Hash, Writer};
 use super::index::similarity;
@@ -17,7 +17,7 @@ use std::path::Path;
 
 const MAGIC: &str = "splatref hierarchy 1\n";
 
-/// The hash of what is computed of the geometries.
+/// The hash of all that decides what is computed from the geometries.
 pub(super) fn hash(settings: &Settings, fill: Vec3, objects: &[Object], geometries: usize) -> Hash {
     let Settings { most, side, directions, sampler, seed, traversal, properties } = settings;
     let mut to = Writer::default();
@@ -64,7 +64,7 @@ pub(super) fn of_all(plan: &Hash, geometries: &[Hash]) -> Hash {
     hash.finalize().into()
 }
 
-/// Makes a folder for a plan, unless it is there already; whether it was.
+/// Makes a folder for a plan, unless it is already there; returns whether it was.
 pub(super) fn begin(folder: &Path, plan: &Hash) -> Result<bool> {
     let io = |source| Error::io(folder, source);
     match fs::create_dir(folder) {
@@ -83,6 +83,7 @@ pub(super) fn begin(folder: &Path, plan: &Hash) -> Result<bool> {
         return Ok(true);
     }
     for entry in fs::read_dir(folder).map_err(io)? {
+        // A run that was killed before the plan was written may leave a partial file.
         let name = entry.map_err(io)?.file_name();
         if !name.to_string_lossy().ends_with(".partial") {
             let what = "the folder holds other files; give the name of a new one";
@@ -93,7 +94,7 @@ pub(super) fn begin(folder: &Path, plan: &Hash) -> Result<bool> {
     Ok(false)
 }
 
-/// The hierarchy in a folder is another one.
+/// The error for a folder that holds another hierarchy.
 pub(super) fn refused(folder: &Path, of: &str) -> Error {
     let what = format!("the folder holds a hierarchy of {of}; remove it, or give another name");
     Error::format(folder, what)

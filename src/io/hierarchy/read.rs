@@ -1,4 +1,4 @@
-//! A hierarchy that is read a node at a time.
+//! Read a hierarchy one node at a time.
 
 use super::index::{Geometry, Index, NONE, Node, Object};
 use super::mesh;
@@ -10,7 +10,7 @@ use crate::source::hierarchy::{Numbers, Part};
 use glam::Vec3;
 use std::path::{Path, PathBuf};
 
-/// A hierarchy in a folder: its index is in memory, the rest is read when it is asked for.
+/// A hierarchy in a folder. Its index is in memory; methods read the rest on demand.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Hierarchy {
     pub(super) folder: PathBuf,
@@ -18,7 +18,7 @@ pub struct Hierarchy {
 }
 
 impl Hierarchy {
-    /// Whether there is a hierarchy in a folder, or a part of one.
+    /// Whether a folder holds a hierarchy, or a part of one.
     #[must_use]
     pub fn is_in(folder: &Path) -> bool {
         folder.join("plan").is_file() || folder.join("index").is_file()
@@ -39,19 +39,20 @@ impl Hierarchy {
         Ok(Self { folder: folder.to_owned(), index })
     }
 
-    /// All nodes: those over the objects, then those of geometry 0, of geometry 1, ...
+    /// All nodes: first the nodes over the objects, then the nodes of geometry 0, of geometry 1,
+    /// ...
     #[must_use]
     pub fn nodes(&self) -> &[Node] {
         &self.index.nodes
     }
 
-    /// How many nodes are over the objects; the first of them, if there is one, is the root of the scene.
+    /// How many nodes are over the objects; the first, if there is one, is the root of the scene.
     #[must_use]
     pub fn upper(&self) -> u32 {
         self.index.upper
     }
 
-    /// The objects, in the order of their nodes; then those that move.
+    /// The objects, in the order of their nodes; moving objects come last.
     #[must_use]
     pub fn objects(&self) -> &[Object] {
         &self.index.objects
@@ -69,19 +70,19 @@ impl Hierarchy {
         self.index.fill
     }
 
-    /// What vertices and surfels have beside normals and colours.
+    /// Which numbers vertices and surfels have beside normals and colours.
     #[must_use]
     pub fn numbers(&self) -> Numbers {
         let opacity = self.index.geometries.iter().any(|one| one.kind.veiled);
         Numbers { opacity, properties: self.index.properties.clone() }
     }
 
-    /// The first `most` surfels of a node, or all: positions, normals, colours and [numbers](Hierarchy::numbers) in their
-    /// order. No more is read.
+    /// Reads the first `most` surfels of a node, or all: positions, normals, colours and
+    /// [numbers](Hierarchy::numbers) in their order. Reads no more than these.
     ///
     /// # Errors
-    /// [`Error::Io`] if they cannot be read, [`Error::Format`] if they are not what the index says, or if
-    /// the process may not hold them; [`Error::Invalid`] if there is no such node.
+    /// [`Error::Io`] if they cannot be read. [`Error::Format`] if they differ from the index, or if
+    /// the process may not hold them. [`Error::Invalid`] if there is no such node.
     pub fn surfels(&self, node: u32, most: u32) -> Result<Cloud> {
         let Node { surfels: count, estimate, .. } = *self.node(node)?;
         if count == 0 {
@@ -91,8 +92,8 @@ impl Hierarchy {
         surfels::read(&self.folder, &self.index.hash, &header, &self.numbers(), most)
     }
 
-    /// The own triangles of a node, in the coordinates of its geometry, with all that vertices have; radii are 0. A node
-    /// over the objects has none.
+    /// Reads the own triangles of a node, in the coordinates of its geometry, with all attributes
+    /// of vertices; radii are 0. A node over the objects has none.
     ///
     /// # Errors
     /// As [`Hierarchy::surfels`].
@@ -100,7 +101,7 @@ impl Hierarchy {
         joined(self.part(node)?)
     }
 
-    /// The same as they are drawn, opaque.
+    /// The same triangles for drawing: opaque, without further properties.
     pub(super) fn drawn_triangles(&self, node: u32) -> Result<Triangles> {
         joined(Part { opacity: None, properties: Vec::new(), ..self.part(node)? })
     }

@@ -1,25 +1,29 @@
-//! A hierarchy as objects, of which a view draws what it needs.
+//! Turn a hierarchy into objects, so that each view draws only what it needs.
 //!
-//! Each object of the hierarchy shows every node of its geometry's tree, in its place and its colour; a node over the objects is
-//! shown once, where it is. What shows a node has the node's surfels as a
-//! [prefix](crate::scene::objects::detail::prefix), with the estimate of the index, and its own triangles as primitives.
-//! It is a [finer one](crate::scene::objects::detail::refine) of what shows the nearest node above that has
-//! something to show; the roots of an object's geometry have the nodes over the objects above them. A node with
-//! neither surfels nor triangles is left out, and so are nodes of geometries that no object shows.
+//! [`Hierarchy::load`] reads the whole folder, [`Hierarchy::outlined`] only what a view draws.
 //!
-//! The objects are first those of the nodes over the objects, by number, `node-N`, then those of each
-//! object of the index, in its order, `object-M.node-N` with M its number in the scene, in the order of nodes; N counts the nodes of
-//! all trees. Geometries are in the order of nodes, each node once.
+//! Each object of the hierarchy shows every node of its geometry's tree, in the object's place and
+//! colour. A node over the objects is shown once, in its place. The object that shows a node has
+//! the node's surfels as a [prefix](crate::scene::objects::detail::prefix), with the estimate from
+//! the index, and the node's own triangles as primitives. It
+//! [refines](crate::scene::objects::detail::refine) the object that shows the nearest node above
+//! with something to show. The nodes over the objects lie above the roots of an object's geometry.
+//! Nodes with neither surfels nor triangles are left out, and so are nodes of geometries that no
+//! object shows.
 //!
-//! The radius of a surfel is that with which all of the node cover, `r_m` sqrt(`p_m` / n).
+//! The nodes over the objects come first, by number, with the name `node-N`. Then come the nodes of
+//! each object of the index, in its order, with the name `object-M.node-N`, in the order of nodes.
+//! M is the object's number in the scene; N counts the nodes of all trees. Geometries are in the
+//! order of nodes, each node once.
 //!
-//! `Decided:` where `r_m` is 0, as of a single surfel, nothing is known of how densely the surfels cover. In the place of
-//! `r_m` stands half the diagonal of the node's box, or 1 if that is 0, in f64, rounded to f32: the surfels stand for all of
-//! the node while it is about as small as they are drawn, and give way to what is finer when it is larger.
+//! The radius of a surfel is `r_m` sqrt(`p_m` / n), with which all surfels of the node cover.
 //!
-//! `Decided:` objects that move stand where they are in frame 0: a folder has no frames.
+//! `Decided:` where `r_m` is 0, as for a single surfel, the density of the surfels is unknown. Then
+//! half the diagonal of the node's box replaces `r_m`, or 1 if that is 0, in f64, rounded to f32.
+//! The surfels stand for the whole node while it is about as small as they are drawn, and give way
+//! to finer nodes when it is larger.
 //!
-//! [`Hierarchy::load`] reads all of it, [`Hierarchy::outlined`] what a view draws.
+//! `Decided:` moving objects stay in their place of frame 0, because a folder has no frames.
 
 use super::index::{NONE, Node};
 use super::read::Hierarchy;
@@ -33,27 +37,27 @@ use crate::scene::{Motion, Primitives, Similarity, Surfels};
 use crate::source::hierarchy::approximate::pixel;
 use glam::Vec3;
 
-/// Bytes of a surfel, a vertex, a triangle with its box, and an object, in a loaded scene.
+/// Bytes in a loaded scene: a surfel, a vertex, a triangle with its box, and an object.
 const OF_A_SURFEL: u64 = 96;
 const OF_A_VERTEX: u64 = 48;
 const OF_A_TRIANGLE: u64 = 48;
 const OF_AN_OBJECT: u64 = 768;
 
-/// Objects in the making: what shows each node of the tree that is gone through.
+/// Objects in the making, one for each node with something to show.
 pub(super) struct Showing {
-    /// Of each node the geometry that has its surfels and triangles, if it has some.
+    /// For each node, the geometry with its surfels and triangles, if it has any.
     geometry: Vec<Option<usize>>,
     pub(super) objects: Vec<Object>,
     pub(super) coarser: Vec<Option<u32>>,
 }
 
 impl Hierarchy {
-    /// All that is in the folder as objects, see [`mod@crate::io::hierarchy`]. `progress` is told "loading", how
-    /// many nodes are read, and of how many.
+    /// Loads the whole folder as objects, see [`mod@crate::io::hierarchy`]. `progress` gets
+    /// "loading", the number of nodes read, and their total.
     ///
     /// # Errors
-    /// As [`Hierarchy::surfels`] and [`Hierarchy::triangles`]; [`Error::Invalid`] as [`Objects::new`], if there is
-    /// nothing to show, or if the process may not hold it.
+    /// As [`Hierarchy::surfels`] and [`Hierarchy::triangles`]. [`Error::Invalid`] as
+    /// [`Objects::new`], if there is nothing to show, or if the process may not hold it.
     pub fn load(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Objects> {
         let has = self.has();
         self.ask(has.iter().map(|&number| {
@@ -70,7 +74,7 @@ impl Hierarchy {
         all.with_coarser(coarser)
     }
 
-    /// The nodes that have something and are shown somewhere, in their order.
+    /// The nodes that have surfels or triangles and are shown somewhere, in their order.
     pub(super) fn has(&self) -> Vec<u32> {
         let shown = self.shown();
         let has = |number: &u32| {
@@ -80,12 +84,12 @@ impl Hierarchy {
         (0..self.nodes().len() as u32).filter(has).collect()
     }
 
-    /// The nodes that are the geometries of [`Hierarchy::load`], in their order.
+    /// The nodes that become the geometries of [`Hierarchy::load`], in their order.
     pub(in crate::io) fn shown_nodes(&self) -> impl Iterator<Item = &Node> {
         self.has().into_iter().map(|number| &self.nodes()[number as usize])
     }
 
-    /// What shows the nodes that have something: the objects, and of which each is a finer one.
+    /// The objects that show these nodes, and the coarser object that each refines.
     pub(super) fn showing(&self, has: &[u32]) -> Showing {
         let mut geometry = vec![None; self.nodes().len()];
         has.iter().enumerate().for_each(|(i, &number)| geometry[number as usize] = Some(i));
@@ -113,7 +117,7 @@ impl Hierarchy {
         shown
     }
 
-    /// Asks for the memory of so much of some nodes, and of what shows all nodes.
+    /// Asks for memory for the needed parts of some nodes, and for the objects that show all nodes.
     pub(super) fn ask<'a>(&self, needed: impl Iterator<Item = (&'a Node, Needed)>) -> Result<()> {
         let bytes = |(node, needed): (&Node, Needed)| {
             let primitives =
@@ -129,7 +133,7 @@ impl Hierarchy {
         })
     }
 
-    /// The surfels and the own triangles of a node.
+    /// Reads the surfels and the own triangles of a node.
     fn geometry(&self, number: u32, exec: &Exec) -> Result<Geometry> {
         let node = &self.nodes()[number as usize];
         let all = Needed { surfels: node.surfels, primitives: true };
@@ -138,7 +142,7 @@ impl Hierarchy {
         if node.surfels == 0 { Ok(geometry) } else { geometry.with_prefix(estimate(node)) }
     }
 
-    /// So much of a node.
+    /// Reads the needed part of a node.
     pub(super) fn read(
         &self,
         number: u32,
@@ -157,6 +161,7 @@ impl Hierarchy {
         let count = cloud.position.len();
         cloud.radius = Some(vec![radius(node); count]);
         let (surfels, _) = Surfels::new_or_none(cloud, exec)?;
+        // A dropped surfel would shift the prefixes that views draw.
         if surfels.len() != count {
             let lost = count - surfels.len();
             let what = format!("{}: {lost} of {count} surfels can be none", name(number));
@@ -166,38 +171,39 @@ impl Hierarchy {
     }
 }
 
-/// What a node is called.
+/// The name of a node.
 pub(super) fn name(number: u32) -> String {
     format!("node-{number}")
 }
 
-/// How densely the surfels of a node cover, see the [module](self).
+/// The estimate of a node's density, see the [module](self).
 pub(super) fn estimate(node: &Node) -> Estimate {
     let mut estimate = node.estimate;
     if estimate.distance == 0.0 {
-        // A picture of two pixels' side: half the diagonal.
+        // A pixel of a picture with a side of two is half the diagonal.
         estimate.distance = pixel(2, (node.low, node.high)) as f32;
     }
     estimate
 }
 
-/// The radius of the surfels of a node, see the [module](self).
+/// The radius of a node's surfels, see the [module](self).
 pub(super) fn radius(node: &Node) -> f32 {
     let Estimate { count, distance } = estimate(node);
     let share = f64::from(count) / f64::from(node.surfels);
     (f64::from(distance) * share.sqrt()) as f32
 }
 
-/// Where a tree is shown.
+/// The name, place and colour in which a tree is shown.
 struct Shown {
-    /// What the names of its objects begin with.
+    /// The beginning of its objects' names.
     name: String,
     place: Similarity,
     color: Option<Vec3>,
 }
 
 impl Showing {
-    /// Shows the nodes of a tree, below an object if there is one; of each node the nearest object that shows it or one above.
+    /// Shows the nodes of a tree, as refinements of `above` if there is one. Returns, for each
+    /// node, the object that shows it or the nearest node above it.
     fn tree(
         &mut self,
         hierarchy: &Hierarchy,
@@ -208,7 +214,7 @@ impl Showing {
         let mut nearest: Vec<Option<u32>> = Vec::with_capacity(nodes.len());
         for number in nodes.clone() {
             let parent = hierarchy.nodes()[number as usize].parent;
-            // What is above has the smaller number.
+            // Parents have smaller numbers, so they are already there.
             let over =
                 if parent == NONE { above } else { nearest[(parent - nodes.start) as usize] };
             let Some(geometry) = self.geometry[number as usize] else {

@@ -16,17 +16,18 @@ use std::path::{Path, PathBuf};
 
 const MAGIC: &[u8; 16] = b"splatref blue 1\n";
 const HEADER: u64 = 64;
-/// Bytes of a surfel without further properties, of a property, and of both in memory beside them.
+/// Bytes of a surfel without further properties, of one property; and of both in memory, with the
+/// file's bytes.
 const BYTES: u64 = 20;
 const PROPERTY: u64 = 4;
 const IN_MEMORY: [u64; 2] = [BYTES + 40, 2 * PROPERTY];
 
-/// The bytes of a surfel with so many further properties.
+/// The bytes of a surfel with `further` properties.
 pub(super) fn size(further: usize) -> u64 {
     BYTES + PROPERTY * further as u64
 }
 
-/// What the header of a file says.
+/// The contents of a file's header.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Header {
     pub(super) node: u32,
@@ -34,12 +35,13 @@ pub(super) struct Header {
     pub(super) estimate: Estimate,
 }
 
-/// Where the surfels of a node are.
+/// The path of a node's surfels.
 pub(super) fn path(folder: &Path, node: u32) -> PathBuf {
     folder.join(format!("surfels-{node}"))
 }
 
-/// Writes the surfels of a node: positions, normals, colours, and opacities and properties if there are some.
+/// Writes the surfels of a node: positions, normals, colours, and opacities and properties if there
+/// are any.
 pub(super) fn write(folder: &Path, hash: &Hash, node: u32, cloud: &Cloud) -> Result<()> {
     let count = cloud.position.len();
     let mut body = Writer(Vec::with_capacity(count * size(cloud.properties.len()) as usize));
@@ -52,7 +54,7 @@ pub(super) fn write(folder: &Path, hash: &Hash, node: u32, cloud: &Cloud) -> Res
         body.bytes(&[encode_opacity(cloud.opacity.as_ref().map_or(1.0, |all| all[i]))]);
         cloud.properties.iter().for_each(|one| body.float(one.values[i]));
     }
-    // Of the normals as they will be read.
+    // Use the normals that a reader will decode.
     let normals: Vec<Vec3> = normal.iter().map(|n| decode_normal(encode_normal(*n))).collect();
     let Estimate { count: p_m, distance } = estimate(&cloud.position, &normals);
     let mut header = Writer::default();
@@ -66,7 +68,8 @@ pub(super) fn write(folder: &Path, hash: &Hash, node: u32, cloud: &Cloud) -> Res
     })
 }
 
-/// What the header says, if there is a whole file of this hierarchy and this node, with so many further properties.
+/// Reads the header, if there is a complete file for this hierarchy, this node and this number of
+/// further properties.
 pub(super) fn header(
     folder: &Path,
     hash: &Hash,
@@ -104,7 +107,7 @@ fn parse(bytes: &[u8; HEADER as usize], (length, size): (u64, u64), hash: &Hash)
     Ok(Header { node, count, estimate })
 }
 
-/// Whether an estimate can be one of so many surfels.
+/// Checks that an estimate is possible for this number of surfels.
 pub(super) fn check(estimate: Estimate, count: u32) -> Reason<()> {
     let Estimate { count: p_m, distance } = estimate;
     if p_m > count || (p_m == 0) != (count == 0) || !(0.0..f32::INFINITY).contains(&distance) {
@@ -113,7 +116,7 @@ pub(super) fn check(estimate: Estimate, count: u32) -> Reason<()> {
     Ok(())
 }
 
-/// The first `most` surfels of a node, or all, of which the index says what the header says.
+/// Reads the first `most` surfels of a node, or all; the header must agree with the index.
 pub(super) fn read(
     folder: &Path,
     hash: &Hash,
@@ -199,7 +202,7 @@ fn encode_color(color: Vec3) -> [u8; 3] {
     let code = |v: f32| {
         let v = f64::from(v);
         let v = if v > 1.0 { 1.0 } else { v };
-        // Numbers below 0 become 0.
+        // The cast turns numbers below 0 into 0.
         (255.0 * srgb::from_linear(v) + 0.5).floor() as u8
     };
     [code(color.x), code(color.y), code(color.z)]

@@ -18,7 +18,8 @@ use std::fs;
 use std::path::Path;
 use tempfile::TempDir;
 
-/// A sphere of radius 1 of 2 n n triangles, as a grid of longitudes and latitudes that are not close to the poles.
+/// A sphere of radius 1 with 2 n n triangles, as a grid on a cube's outline, so that rows stay away
+/// from the poles.
 fn sphere(n: u32, colored: bool) -> Cloud {
     let mut mesh = Cloud::default();
     for row in 0..=n {
@@ -76,14 +77,14 @@ transform = { translate = [3, 10, 0] }
     at
 }
 
-/// What is quick to compute.
+/// Settings that are quick to compute.
 fn quick(traversal: Traversal) -> Settings {
     Settings { most: 700, side: 512, traversal, ..Settings::default() }
 }
 
 fn quiet(_: &str, _: u64, _: u64) {}
 
-/// Makes the hierarchy of a file of a folder in another one.
+/// Makes the hierarchy of a file in a folder into another folder.
 fn make(at: &TempDir, scene: &str, to: &str, settings: &Settings) -> Result<Built> {
     let file = SceneFile::open(at.path().join(scene)).unwrap();
     build(&file, &at.path().join(to), settings, &Exec::sequential(), &quiet)

@@ -1,14 +1,18 @@
-//! What a view reads of a hierarchy.
+//! Load only the part of a hierarchy that a view draws.
 //!
-//! The index and the [bounds](super::bounds) tell all that [decides](crate::scene::objects::detail::refine) what a camera draws:
-//! [`Hierarchy::outlined`] makes objects of them, without a look at any other file. Then [`Hierarchy::needed_by`] reads of
-//! the nodes that are drawn the first so many surfels, and their triangles if they are drawn. Other nodes' files may be
-//! missing. What is in memory is the index, a few hundred bytes for each node in each of its places, and what is drawn.
+//! The index and the [bounds](super::bounds) are enough to
+//! [decide](crate::scene::objects::detail::refine) what a camera draws. [`Hierarchy::outlined`]
+//! makes objects from them, without reading any other file. Then [`Hierarchy::needed_by`] reads,
+//! for each drawn node, as many surfels as the view needs, and the triangles if they are drawn. The
+//! files of other nodes may be missing. Memory holds the index, a few hundred bytes for each node
+//! in each of its places, and what is drawn.
 //!
-//! The objects are those of [`super::scene`], and what is drawn of them is the same, bit for bit.
+//! The objects are the same as in [`super::scene`], and a view draws the same from them, bit for
+//! bit.
 //!
-//! `Decided:` a node without surfels, of fewer than 1,000 triangles, is read wherever its weight is greater than 0, whether
-//! the camera looks there or not, since it is drawn there: its triangles have their numbers in the picture.
+//! `Decided:` a node without surfels, with fewer than 1,000 triangles, is read wherever its weight
+//! is greater than 0, whether the camera looks there or not. The reason is that it is drawn there:
+//! its triangles have their numbers in the picture.
 
 use super::read::Hierarchy;
 use super::scene::{Showing, estimate, name, radius};
@@ -18,10 +22,11 @@ use crate::scene::Objects;
 use crate::scene::objects::outline::Outline;
 
 impl Hierarchy {
-    /// All that is in the folder as objects of which nothing is read yet.
+    /// All that is in the folder as objects, without reading any node.
     ///
     /// # Errors
-    /// As [`Hierarchy::load`]; without a file of bounds all files are read for them, a node at a time.
+    /// As [`Hierarchy::load`]. Without a file of bounds, this reads all files to compute them, one
+    /// node at a time.
     pub fn outlined(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Objects> {
         let has = self.has();
         self.ask(std::iter::empty())?;
@@ -45,11 +50,13 @@ impl Hierarchy {
         all.with_coarser(coarser)
     }
 
-    /// The objects of [`Hierarchy::outlined`] as a camera [sees](Objects::seen_from) them, with what it draws of
-    /// them. `progress` is told "loading", how many nodes are read, and of how many.
+    /// The objects of [`Hierarchy::outlined`] as a camera [sees](Objects::seen_from) them, loaded
+    /// with what the camera draws. `progress` gets "loading", the number of nodes read, and their
+    /// total.
     ///
     /// # Errors
-    /// As [`Hierarchy::surfels`] and [`Hierarchy::triangles`]; [`crate::Error::Invalid`] if the process may not hold what is drawn.
+    /// As [`Hierarchy::surfels`] and [`Hierarchy::triangles`]; [`crate::Error::Invalid`] if the
+    /// process may not hold what is drawn.
     pub fn needed_by(
         &self,
         view: Objects,

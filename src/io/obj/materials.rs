@@ -1,23 +1,24 @@
-//! MTL: the materials of OBJ files.
+//! Read MTL files: the materials of OBJ files.
 //!
-//! | line | | |
+//! | line | defines | details |
 //! |---|---|---|
-//! | `newmtl NAME` | a material | what follows is of it |
+//! | `newmtl NAME` | a material | the lines that follow belong to it |
 //! | `Kd r g b`, `Kd r` | its colour | linear, in [0, 65536]; one number is all three |
 //! | `map_Kd FILE` | its texture | beside the OBJ file |
 //!
-//! Other lines are not looked at, opacity among them. `#` begins a comment. Of several materials of one name the first
-//! holds.
+//! All other lines are ignored, among them opacity. `#` begins a comment. If several materials have
+//! one name, the first holds.
 //!
-//! `Decided:` Kd is linear, as programs that write it have linear colours. A texture takes the place of Kd and is not
-//! multiplied by it: the same programs write a Kd that nobody has chosen beside it.
+//! `Decided:` Kd is linear, because programs that write it have linear colours. A texture replaces
+//! Kd and is not multiplied by it, because the same programs write a Kd that nobody has chosen
+//! beside the texture.
 
 use super::{numbers, rest};
 use crate::io::Reason;
 use crate::scene::light::{MAX_RADIANCE, is_color};
 use glam::Vec3;
 
-/// What is read of a material.
+/// The parts of a material that are read.
 #[derive(Debug, PartialEq)]
 pub(super) struct Material {
     pub(super) name: String,

@@ -1,50 +1,53 @@
-//! OBJ: meshes and points as text, in.
+//! Read meshes and points from OBJ, with the colours and textures of their materials.
 //!
-//! | line | | |
+//! | line | defines | details |
 //! |---|---|---|
 //! | `v x y z` | a position | world units, rounded to `f32` once; a fourth number, a weight, is skipped |
 //! | `v x y z r g b` | with a colour | **sRGB** in [0, 1], decoded in `f64` and rounded once ([`crate::io::srgb`]) |
 //! | `vn x y z` | a normal | of any length |
 //! | `f a b c ...` | a polygon | the fan of its first corner; with fewer than 3 corners it is nothing |
 //!
-//! | `mtllib FILE` | materials | an MTL file beside this one; several are one list |
-//! | `usemtl NAME` | a material | of the polygons that follow |
+//! | line | defines | details |
+//! |---|---|---|
+//! | `mtllib FILE` | materials | an MTL file beside this one; several files make one list |
+//! | `usemtl NAME` | a material | for the polygons that follow |
 //! | `vt u v` | texture coordinates | a third number is skipped; without v it is 0 |
 //!
-//! A corner is `v`, `v/vt`, `v//vn` or `v/vt/vn`: the number of a vertex from 1 on, or, below 0, of the
-//! last ones before the line, of which -1 is the last; the same for a normal and for
-//! texture coordinates. Other lines are not looked at. `#` begins a comment.
+//! A corner is `v`, `v/vt`, `v//vn` or `v/vt/vn`. Each part is a number from 1 on, or a negative
+//! number that counts backwards from the line; -1 is the last vertex, normal or texture coordinate
+//! before it. All other lines are ignored. `#` begins a comment.
 //!
-//! Of a material its texture and its colour are read:
+//! The reader takes the texture and the colour of a material:
 //!
-//! | line of an MTL file | | |
+//! | line of an MTL file | defines | details |
 //! |---|---|---|
-//! | `newmtl NAME` | a material | what follows is of it |
+//! | `newmtl NAME` | a material | the lines that follow belong to it |
 //! | `Kd r g b`, `Kd r` | its colour | linear, in [0, 65536]; one number is all three |
 //! | `map_Kd FILE` | its texture, see [`crate::io::texture`] | a name without options |
 //!
-//! All vertices have a colour or none has. Values of positions and normals are not judged, as
-//! [`super::ply`] does not judge them.
+//! Either all vertices have a colour or none. The reader does not judge values of positions and
+//! normals, and neither does [`super::ply`].
 //!
 //! # Decided
 //!
-//! - Colours are sRGB: programs that paint vertices write codes of 8 bits divided by 255.
-//! - A vertex whose corners have several normals, or materials of several colours, becomes several points, in the order of the
-//!   normals' numbers, then of the materials; points are in the order of the vertices. If a corner has no normal, all normals are
-//!   left out, to be derived.
-//! - Texture coordinates are of [corners](Coordinates::Corners); those of a corner without are NaN.
-//! - Colours of materials are those of points if vertices have none and no texture takes their place. What has no Kd is
-//!   white then.
-//! - Kd is linear, as programs that write it have linear colours. A texture takes the place of Kd and is not
-//!   multiplied by it: the same programs write a Kd that nobody has chosen beside it.
-//! - A material or a file of materials that is not there is refused: nobody would see what is missing. Without any `mtllib`
-//!   the names of materials mean nothing.
-//! - Without any `f` and with as many `vn` as `v` normals belong to vertices one by one: point clouds
-//!   are written so.
+//! - Colours are sRGB, because programs that paint vertices write codes of 8 bits divided by 255.
+//! - A vertex becomes several points if its corners have several normals, or materials of several
+//!   colours. Points are in the order of the vertices, then of the normals' numbers, then of the
+//!   materials. If a corner has no normal, all normals are left out, to be derived.
+//! - Texture coordinates belong to [corners](Coordinates::Corners); a corner without them has NaN.
+//! - If vertices have no colours and no texture replaces the materials' colours, points take the
+//!   colours of their materials. A material without Kd is then white.
+//! - Kd is linear, because programs that write it have linear colours. A texture replaces Kd and is
+//!   not multiplied by it, because the same programs write a Kd that nobody has chosen beside the
+//!   texture.
+//! - A missing material or a missing file of materials is refused, because a picture would not show
+//!   what is missing. Without any `mtllib` the names of materials mean nothing.
+//! - If there is no `f`, and as many `vn` as `v`, each normal belongs to the vertex of the same
+//!   number, because point clouds are written so.
 //!
-//! The reader is our own because the one well-kept crate, tobj 4.0, says of no error in which line it is,
-//! and drops without a word what this page keeps or refuses: points without faces, and all texture
-//! coordinates or normals of a file in which a corner has none.
+//! The reader is our own. The one well-kept crate, tobj 4.0, gives no line number with an error. It
+//! also drops silently what this page keeps or refuses: points without faces, and all texture
+//! coordinates or normals of a file in which one corner has none.
 
 mod materials;
 #[cfg(test)]
@@ -58,17 +61,17 @@ use glam::{Vec2, Vec3};
 use materials::Material;
 use std::path::Path;
 
-/// What a byte of a file comes to at most: a corner of a polygon takes two bytes.
+/// The most memory for each byte of a file: a corner of a polygon takes only two bytes of it.
 const BYTES_A_BYTE: u64 = 72;
 
-/// The number of no normal, no coordinates and no material.
+/// Stands for no normal, no coordinates and no material.
 const NONE: u32 = u32::MAX;
 
 /// Reads a file and its materials.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read; [`Error::Format`] as [`parse`], and if materials cannot be read or are
-/// not there.
+/// [`Error::Io`] if the file cannot be read; [`Error::Format`] as [`parse`], and if materials are
+/// missing or cannot be read.
 pub fn read(path: &Path) -> Result<Cloud> {
     let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
     let folder = path.parent().unwrap_or(Path::new(""));
@@ -82,13 +85,14 @@ pub fn read(path: &Path) -> Result<Cloud> {
 /// Reads the bytes of a file, without materials.
 ///
 /// # Errors
-/// One line if there is no vertex, if a word is no number or names what is not there, if only some
-/// vertices have colours, or if a colour is not in [0, 1]: the line, what is wrong and what to do.
+/// One line if there is no vertex, if a word is no number or refers to something that does not
+/// exist, if only some vertices have colours, or if a colour is not in [0, 1]. It names the line,
+/// the problem and the remedy.
 pub fn parse(bytes: &[u8]) -> std::result::Result<Cloud, String> {
     parse_with(bytes, &|_| Ok(Vec::new()))
 }
 
-/// [`parse`] with the materials of the files that are named.
+/// [`parse`] with the materials of the files that `mtllib` names.
 fn parse_with(bytes: &[u8], library: &dyn Fn(&str) -> Reason<Vec<Material>>) -> Reason<Cloud> {
     memory::try_ask(BYTES_A_BYTE.saturating_mul(bytes.len() as u64), || "a mesh".into())?;
     let mut file = Lines { material: NONE, ..Lines::default() };
@@ -117,14 +121,14 @@ fn parse_with(bytes: &[u8], library: &dyn Fn(&str) -> Reason<Vec<Material>>) -> 
     file.cloud()
 }
 
-/// The first word of a line, and what comes after it.
+/// The first word of a line, and the text after it.
 fn rest(line: &str) -> (&str, &str) {
     let line = line.trim();
     let (word, rest) = line.split_once(|c: char| c.is_ascii_whitespace()).unwrap_or((line, ""));
     (word, rest.trim())
 }
 
-/// What the lines have given so far.
+/// What the lines so far have defined.
 #[derive(Default)]
 struct Lines {
     position: Vec<Vec3>,
@@ -137,7 +141,7 @@ struct Lines {
     triangles: Vec<Triangle>,
 }
 
-/// Vertex, normal and coordinates.
+/// A corner: vertex, normal and coordinates.
 type Corner = [u32; 3];
 
 /// A triangle and its material.
@@ -181,6 +185,7 @@ impl Lines {
     }
 
     fn choose(&mut self, name: &str) -> Reason<()> {
+        // Without any material, the names mean nothing.
         if self.materials.is_empty() {
             return Ok(());
         }
@@ -238,7 +243,7 @@ impl Lines {
         Ok([vertex, normal, optional(coordinate, "texture coordinate", self.coordinate.len())?])
     }
 
-    /// Points, split where their normals or colours differ.
+    /// Makes the points; a vertex is split where normals or colours differ.
     fn cloud(self) -> Reason<Cloud> {
         if self.position.is_empty() {
             return Err("there is no line `v x y z`: the file holds no points".into());
@@ -261,6 +266,7 @@ impl Lines {
         };
         let mut used = vec![false; self.position.len()];
         corners().for_each(|corner| used[corner[0] as usize] = true);
+        // Vertices that no polygon uses stay in the cloud.
         let unused = (0..).zip(&used).filter(|(_, used)| !**used).map(|(i, _)| [i, NONE, NONE]);
         let drawn = self.triangles.iter().map(|one| one.corners.map(|c| point(&c, one.material)));
         let count = 3 * self.triangles.len() + used.iter().filter(|used| !**used).count();
@@ -281,7 +287,7 @@ impl Lines {
             triangles,
             position: points.iter().map(|point| self.position[point[0] as usize]).collect(),
             color,
-            // Vertices of no polygon have none.
+            // A vertex of no polygon has no normal.
             normal: has_normals.then(|| {
                 let of = |point: &[u32; 3]| self.normal.get(point[1] as usize).copied();
                 points.iter().map(|point| of(point).unwrap_or(Vec3::ZERO)).collect()
@@ -292,7 +298,7 @@ impl Lines {
         })
     }
 
-    /// Those of all corners, if one has some.
+    /// The texture coordinates of all corners, if any corner has some.
     fn coordinates(&self) -> Option<Coordinates> {
         let of =
             |corner: Corner| self.coordinate.get(corner[2] as usize).copied().unwrap_or(Vec2::NAN);
@@ -302,8 +308,8 @@ impl Lines {
         })
     }
 
-    /// The textures of the triangles in the order of their first use, the empty one where there is none; none if
-    /// no triangle has any.
+    /// The textures of the triangles in the order of their first use, with an empty name where
+    /// there is none. Empty if no triangle has a texture.
     fn textures(&self) -> Vec<String> {
         let mut names: Vec<&str> = Vec::new();
         for used in self.uses() {
@@ -316,7 +322,7 @@ impl Lines {
         if names == [""] { Vec::new() } else { names.into_iter().map(str::to_owned).collect() }
     }
 
-    /// For each material the first one of the same colour; nothing if no triangle has a colour.
+    /// For each material the first one of the same colour; empty if no triangle has a colour.
     fn paints(&self) -> Vec<u32> {
         let color = |material: u32| self.materials.get(material as usize)?.color;
         if !self.uses().into_iter().any(|used| color(used).is_some()) {
@@ -328,7 +334,7 @@ impl Lines {
         self.materials.iter().map(same).collect()
     }
 
-    /// The materials of the triangles, each once, in the order of their first use.
+    /// The materials that triangles use, each once, in the order of their first use.
     fn uses(&self) -> Vec<u32> {
         let mut first = vec![true; self.materials.len() + 1];
         let mut uses = Vec::new();
@@ -342,9 +348,9 @@ impl Lines {
     }
 }
 
-/// Words as numbers.
+/// Parses words as numbers.
 fn numbers<'a>(words: impl Iterator<Item = &'a str>) -> Reason<Vec<f64>> {
-    // No line has more than six that are read.
+    // Eight words are enough: no line has more than six that are read.
     let number = |word: &str| {
         word.parse().map_err(|_| {
             let shown: String = word.chars().take(40).flat_map(char::escape_debug).collect();

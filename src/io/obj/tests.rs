@@ -68,7 +68,7 @@ fn what_is_wrong_is_one_line() {
     }
 }
 
-/// No bytes make it panic, and what it gives fits together.
+/// No bytes make it panic, and the parts of its result fit together.
 #[test]
 fn bytes_turned_at_random_are_read_or_refused() {
     let seed = format!("{SQUARE}vn 0 0 1\nvn 1 0 0\nf 1//1 2//2 3//1 4//2\nf -1 -2 -3\n");
@@ -85,7 +85,7 @@ fn bytes_turned_at_random_are_read_or_refused() {
     }
 }
 
-/// What a file `a.obj` of this text gives, or the line that refuses it, beside a file `a.mtl`.
+/// The result for a file `a.obj` with this text, or the line of its refusal, beside a file `a.mtl`.
 fn beside(obj: &str, mtl: &str) -> std::result::Result<Cloud, String> {
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("a.mtl"), mtl).unwrap();
@@ -137,12 +137,13 @@ fn materials_colour_points_and_name_textures() {
         "newmtl red\nKd 1 0 0\nKs 1 1 1\nnewmtl blue # light\n\tKd .25\nnewmtl as red\nKd 1 0 0\n";
     let cloud = beside(&format!("{QUAD}{faces}"), mtl).unwrap();
     let (red, blue) = (Vec3::X, Vec3::splat(0.25));
-    // Vertices 2 and 3 are of both colours.
+    // Vertices 2 and 3 have both colours.
     assert_eq!(cloud.color.as_deref(), Some([red, red, blue, red, blue, red, blue].as_slice()));
     assert_eq!(cloud.triangles, [[0, 1, 3], [0, 3, 5], [2, 6, 4]]);
     assert_eq!((cloud.textures.len(), cloud.coordinates), (0, None));
 
-    // Vertices of their own colour keep it, and without Kd there is none; what has no Kd is white.
+    // Vertices with colours keep them. Without any Kd there are no colours; a material without Kd
+    // is white.
     let lines = QUAD.lines();
     let white = |line: &str| {
         if line.starts_with("v ") { format!("{line} 1 1 1\n") } else { format!("{line}\n") }

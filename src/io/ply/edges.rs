@@ -1,10 +1,10 @@
-//! The element `edge`: segments between two vertices.
+//! Read the element `edge`: segments between two vertices.
 
 use super::faces::corner;
 use super::header::{Element, PropertyKind};
 use super::values::{BodyValues, Event};
 
-/// Reads all edges; each end is held against `vertices`.
+/// Reads all edges; each end must be below `vertices`.
 pub(super) fn read(
     element: &Element,
     values: &mut BodyValues<'_>,
@@ -29,7 +29,7 @@ pub(super) fn read(
     })
 }
 
-/// Which property names an end.
+/// The index of the property that holds an end.
 fn end(element: &Element, name: &str) -> Result<usize, String> {
     let found = element.properties.iter().position(|property| property.name == name);
     let index = found.ok_or_else(|| format!("element edge has no property {name}; declare it"))?;

@@ -1,12 +1,12 @@
-//! The element `face`: polygons, cut into triangles.
+//! Read the element `face`: polygons, cut into triangles.
 
 use super::header::{Element, PropertyKind, quote};
 use super::values::{BodyValues, Event};
 use crate::scene::{Cloud, Coordinates};
 use glam::Vec2;
 
-/// Reads all faces and appends their triangles, and the texture coordinates of their corners, if they have some;
-/// each index is held against `vertices`.
+/// Reads all faces and appends their triangles, and the texture coordinates of their corners if
+/// there are any. Each index must be below `vertices`.
 pub(super) fn read(
     element: &Element,
     values: &mut BodyValues<'_>,
@@ -30,6 +30,7 @@ pub(super) fn read(
             }
             Event::Value(..) => {}
             Event::End => {
+                // Fan both alike, so that coordinates stay with their corners.
                 if coordinates.is_some() {
                     let at = places(&numbers, corners.len())?;
                     of_corners.extend(fan(at));
@@ -49,13 +50,13 @@ pub(super) fn read(
     Ok(())
 }
 
-/// A polygon a b c d ... is the fan abc, acd, ...
+/// Cuts a polygon a b c d ... into the fan abc, acd, ...
 fn fan<T: Copy>(corners: &[T]) -> impl Iterator<Item = [T; 3]> {
     let pairs = corners.get(1..).unwrap_or_default().windows(2);
     pairs.map(|pair| [corners[0], pair[0], pair[1]])
 }
 
-/// Numbers as coordinates, as many as there are corners.
+/// Groups numbers into coordinates; there must be one pair for each corner.
 fn places(numbers: &[f32], corners: usize) -> Result<&[[f32; 2]], String> {
     if numbers.len() == 2 * corners {
         return Ok(numbers.as_chunks().0);
@@ -64,7 +65,7 @@ fn places(numbers: &[f32], corners: usize) -> Result<&[[f32; 2]], String> {
     Err(format!("texcoord has {found} numbers, but {corners} corners need {needed}"))
 }
 
-/// Which property lists the texture coordinates of the corners, if one does.
+/// The index of the property that lists the texture coordinates of corners, if there is one.
 pub(super) fn coordinates(element: &Element) -> Result<Option<usize>, String> {
     let found = element.properties.iter().position(|p| p.name == "texcoord");
     match found.map(|index| element.properties[index].kind) {
@@ -75,7 +76,7 @@ pub(super) fn coordinates(element: &Element) -> Result<Option<usize>, String> {
     }
 }
 
-/// The vertex that a number names.
+/// Turns a number into the index of an existing vertex.
 pub(super) fn corner(value: f64, vertices: u64) -> Result<u32, String> {
     if value >= 0.0 && value < vertices as f64 {
         Ok(value as u32)
@@ -84,7 +85,7 @@ pub(super) fn corner(value: f64, vertices: u64) -> Result<u32, String> {
     }
 }
 
-/// Which property lists the corners.
+/// The index of the property that lists the corners.
 fn indices(element: &Element) -> Result<usize, String> {
     let names = ["vertex_indices", "vertex_index"];
     let found = element.properties.iter().position(|p| names.contains(&p.name.as_str()));

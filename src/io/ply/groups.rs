@@ -1,4 +1,4 @@
-//! Groups: properties `group` and `also` of the vertices, and the element `group`.
+//! Read groups: the vertex properties `group` and `also`, and the element `group`.
 
 use super::header::{Element, PropertyKind};
 use super::values::{BodyValues, Event};
@@ -9,24 +9,24 @@ const GROUP: &str = "element vertex: property `group` must be one integer, the n
 const ALSO: &str = "element vertex: property `also` must be a list of integers, further groups; if \
                     it is something else, rename it";
 
-/// What a property of the vertices says.
+/// The meaning of a vertex property for groups.
 #[derive(Clone, Copy)]
 pub(super) enum GroupPart {
-    /// The group of its own.
+    /// The vertex's own group.
     Own,
-    /// Those that it was added to.
+    /// Further groups that the vertex was added to.
     Also,
 }
 
 /// Groups in the making.
 pub(super) struct Reader {
-    /// Whether vertices have groups; if not, nothing is read.
+    /// Whether vertices have groups; otherwise nothing is read.
     wanted: bool,
-    /// Of the vertices that have ended.
+    /// Own groups of the vertices that are complete.
     own: Vec<u8>,
     added: Vec<(u32, u8)>,
     scale: Option<Vec<f32>>,
-    /// Of the vertex that is being read: its own group, and a bit for each that it is in.
+    /// The current vertex: its own group, and a bit for each group that it is in.
     current: u8,
     member: u64,
 }
@@ -38,7 +38,7 @@ impl Reader {
         Self { wanted, own, added, scale: None, current: 0, member: 0 }
     }
 
-    /// What a property of this name and kind says; none if it says nothing of groups.
+    /// What a property of this name and kind says about groups, if anything.
     pub(super) fn part(&self, name: &str, kind: PropertyKind) -> Result<Option<GroupPart>, String> {
         match (name, kind) {
             _ if !self.wanted => Ok(None),
@@ -52,7 +52,7 @@ impl Reader {
         }
     }
 
-    /// A number of the property, of the next vertex.
+    /// Takes a number of a property of the current vertex.
     pub(super) fn put(&mut self, part: GroupPart, value: f64) -> Result<(), String> {
         if !(value >= 0.0 && value < MAX_GROUPS as f64) {
             let last = MAX_GROUPS - 1;
@@ -70,7 +70,7 @@ impl Reader {
         Ok(())
     }
 
-    /// The vertex ends.
+    /// Completes the current vertex.
     pub(super) fn end(&mut self) {
         if self.wanted {
             self.own.push(self.current);

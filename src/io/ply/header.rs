@@ -1,4 +1,5 @@
-//! The header of a PLY file: what the body holds, in which order and of which types.
+//! Parse the header of a PLY file: which elements the body holds, in which order and of which
+//! types.
 
 use std::collections::BTreeSet;
 
@@ -42,7 +43,7 @@ impl Scalar {
         }
     }
 
-    /// The name that the format's description gives it.
+    /// The type's name in the description of the format.
     pub(super) fn name(self) -> &'static str {
         match self {
             Self::I8 => "char",
@@ -56,7 +57,7 @@ impl Scalar {
         }
     }
 
-    /// Bytes in a binary body.
+    /// How many bytes it takes in a binary body.
     pub(super) fn size(self) -> u64 {
         match self {
             Self::I8 | Self::U8 => 1,
@@ -71,7 +72,7 @@ impl Scalar {
     }
 }
 
-/// One number, or a list that starts with how many there are.
+/// One number, or a list that begins with its length.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PropertyKind {
     One(Scalar),
@@ -87,7 +88,7 @@ pub(super) struct Property {
 #[derive(Debug)]
 pub(super) struct Element {
     pub(super) name: String,
-    /// What the header claims; nothing is known to be true of it.
+    /// The count that the header claims; it may be false.
     pub(super) count: u64,
     pub(super) properties: Vec<Property>,
 }
@@ -119,12 +120,12 @@ pub(super) fn parse(bytes: &[u8]) -> Result<PlyHeader, String> {
             return Err(format!("line {}: {what}", lines.number));
         };
         let line = lines.number;
-        // No line of a header has more than five words; a comment may.
+        // A header line has at most five words; a comment may have more.
         let words: Vec<&str> = text.split_ascii_whitespace().take(6).collect();
         match words[..] {
             ["end_header"] => break,
             ["comment", "TextureFile", _, ..] => {
-                // A name may have blanks.
+                // A name may contain blanks.
                 let name = text.split_once("TextureFile").map_or("", |(_, name)| name.trim());
                 if !textures.iter().any(|known| known == name) {
                     textures.push(name.to_owned());
@@ -196,7 +197,7 @@ fn parse_element(name: &str, count: &str, line: u64) -> Result<Element, String> 
     Ok(Element { name: name.to_owned(), count, properties: Vec::new() })
 }
 
-/// The words after `property`; `text` is the whole line.
+/// Parses the words after `property`; `text` is the whole line.
 fn parse_property(words: &[&str], text: &str, line: u64) -> Result<Property, String> {
     let (kind, name) = match *words {
         ["list", count, item, name] => {
@@ -213,7 +214,7 @@ fn parse_property(words: &[&str], text: &str, line: u64) -> Result<Property, Str
     Ok(Property { name: name.to_owned(), kind })
 }
 
-/// Notes a name; an element has no second part, a property its own name there.
+/// Notes the name of an element, or of a property with its element, and refuses it if it is known.
 fn unique(
     names: &mut BTreeSet<(String, Option<String>)>,
     name: (String, Option<String>),
@@ -229,7 +230,7 @@ fn unique(
     Err(format!("line {line}: {what} is declared twice; rename or remove one"))
 }
 
-/// The lines of a header; text that is not UTF-8, which only comments may hold, is replaced.
+/// The lines of a header. Bytes that are not UTF-8 are replaced; only comments may hold them.
 struct Lines<'a> {
     bytes: &'a [u8],
     at: usize,
@@ -237,7 +238,7 @@ struct Lines<'a> {
 }
 
 impl<'a> Lines<'a> {
-    /// The next line without its LF or CR LF; none at the end of the file.
+    /// The next line without its LF or CR LF; `None` at the end of the file.
     fn next(&mut self) -> Option<std::borrow::Cow<'a, str>> {
         let rest = &self.bytes[self.at..];
         if rest.is_empty() {
@@ -251,7 +252,7 @@ impl<'a> Lines<'a> {
     }
 }
 
-/// Text from a file, fit for one line of a message: escaped, at most 40 characters.
+/// Prepares text of a file for one line of a message: escaped, at most 40 characters.
 pub(super) fn quote(text: &str) -> String {
     let mut shown: String = text.chars().take(40).flat_map(char::escape_debug).collect();
     if text.chars().nth(40).is_some() {

@@ -1,11 +1,14 @@
-//! PLY: point clouds and meshes, in and out.
+//! Read and write point clouds and meshes as PLY.
 //!
-//! Read are ascii and binary files of both byte orders, with LF or CR LF in the header. What a
-//! [`Cloud`] has no room for (other elements, other properties, comments) is skipped; [`properties`] reads further
-//! properties of vertices by their names. A line `comment TextureFile
-//! NAME` of the header, which many programs write, names a texture, see [`crate::io::texture`].
+//! [`read`] takes ascii and binary files of both byte orders, with LF or CR LF in the header. It
+//! skips everything that a [`Cloud`] has no room for: other elements, other properties, comments.
+//! To read further properties of vertices by their names, call [`properties`]. A header line
+//! `comment TextureFile NAME`, which many programs write, names a texture, see
+//! [`crate::io::texture`].
 //!
-//! | element | properties | types | |
+//! # Properties that are read
+//!
+//! | element | properties | types | meaning |
 //! |---|---|---|---|
 //! | `vertex` | `x y z` | any | world units, rounded to `f32` once |
 //! | | `nx ny nz` | any | of any length |
@@ -17,32 +20,39 @@
 //! | | `mip1_red mip1_green mip1_blue`, `mip2_red` ... | as `red` | [prefiltered colours](crate::scene::Mipmap), level by level from 1 on, 16 levels at most, beside `red green blue` |
 //! | | `tux tuy tuz tvx tvy tvz` | any | half axes of an ellipse, world units |
 //! | | `tx ty tz` | any | tangent of a tube, of any length |
-//! | | `u v`, `s t` or `texture_u texture_v` | any | [texture coordinates](crate::scene::texture); `s` or `t` alone is something else |
+//! | | `u v`, `s t` or `texture_u texture_v` | any | [texture coordinates](crate::scene::texture); `s` or `t` alone is skipped, because it means something else |
 //! | | `group` | an integer | the surfel's own [group](crate::index::grouping), 0 to 63 |
-//! | | `also` | list of integers | further groups that it was added to, none twice; skipped without `group` |
-//! | `group` | `scale` | any | what radii are multiplied by, finite and > 0, for each group; skipped without `group` |
-//! | `face` | `vertex_indices` or `vertex_index` | list of integers | a polygon is the fan of its first corner; with fewer than 3 corners it is nothing |
-//! | | `texcoord` | list of numbers | texture coordinates, two a corner, in the place of the vertices' |
+//! | | `also` | list of integers | further groups that the surfel was added to, none twice; skipped without `group` |
+//! | `group` | `scale` | any | factor for radii, finite and > 0, one for each group; skipped without `group` |
+//! | `face` | `vertex_indices` or `vertex_index` | list of integers | a polygon becomes a triangle fan around its first corner; with fewer than 3 corners it is dropped |
+//! | | `texcoord` | list of numbers | texture coordinates, two for each corner; they replace the vertices' |
 //! | `edge` | `vertex1` and `vertex2` | integers | a segment of a ribbon or of a tube |
 //!
-//! To compare with a renderer that takes colours as they are stored, mind that integers here are
-//! decoded from sRGB ([`crate::io::srgb`]): a `uchar` of 128 is 0.2159 and not 0.502. Floats are kept.
+//! If you compare with a renderer that takes colours as they are stored, note that splatref decodes
+//! integers from sRGB ([`crate::io::srgb`]): a `uchar` of 128 is 0.2159 and not 0.502. Floats are
+//! kept.
 //!
-//! Without an element `group` there are as many groups as the largest number tells, of scale 1;
-//! with one there are as many as it has, 64 at most. It may come before or after the vertices.
+//! Without an element `group`, the largest group number decides how many groups there are, each of
+//! scale 1. With the element, its count decides, 64 at most. The element may come before or after
+//! the vertices.
 //!
-//! Tangents of tubes and half axes of ellipses are not the same: `t` alone is the direction in
-//! which a tube runs, `tu` and `tv` span a disc.
+//! Do not confuse tangents of tubes with half axes of ellipses: `t` alone is the direction in which
+//! a tube runs, `tu` and `tv` span a disc.
 //!
-//! All of a vector is declared or nothing of it. Values are not judged: NaN and infinite ones go
-//! into the cloud, and are dropped and counted when surfels are made of it. Structure and groups
-//! are: every count is held against the bytes that are left before anything is allocated, and must
-//! use up the file exactly.
+//! # What the reader refuses
 //!
-//! The reader is our own because the one well-kept crate that refuses hostile headers, serde-ply
-//! 0.2.2, says neither which vertex nor which line or byte is wrong, accepts a property declared
-//! twice, ignores what is left over, loops 2^64 times over an element without properties, and does
-//! not tell 8-bit colours from float ones without a deserializer of about this size.
+//! A vector must be declared completely or not at all. The reader does not judge values: NaN and
+//! infinite values go into the cloud, and are dropped and counted when surfels are made from the
+//! cloud. The reader does check structure and groups. It compares every count with the bytes that
+//! are left before it allocates anything, and the elements must use up the file exactly.
+//!
+//! The reader is our own. The one well-kept crate that refuses hostile headers is serde-ply 0.2.2,
+//! and it has these gaps:
+//!
+//! - It says neither which vertex nor which line or byte is wrong.
+//! - It accepts a property that is declared twice, and ignores bytes that are left over.
+//! - It loops 2^64 times over an element without properties.
+//! - It does not tell 8-bit colours from float colours without a deserializer of about this size.
 
 mod edges;
 mod faces;
@@ -73,15 +83,19 @@ use std::io::Seek;
 use std::path::Path;
 use values::BodyValues;
 
-/// What a vertex takes at most while arrays of all attributes grow, and a face of a few corners.
+/// The most memory that a vertex takes while arrays of all attributes grow, and a face of a few
+/// corners.
 const BYTES_A_VERTEX: u64 = 128;
 const BYTES_A_FACE: u64 = 24;
-/// What the texture coordinates of a triangle take, once more while their array grows and is handed over.
+/// Memory for the texture coordinates of a triangle; they are in memory twice while their array
+/// grows and is handed over.
 const BYTES_OF_COORDINATES: u64 = 24;
 
-/// Reads a file, on one thread. It needs memory for the file and the cloud; little-endian ones without
-/// lists and groups of vertices need none for the file, and are decoded as they are read. Times are
-/// those of the bench `files`.
+/// Reads a file, on one thread.
+///
+/// Memory holds the file and the cloud. A little-endian file whose vertices have no lists and no
+/// groups is decoded while it is read, so that memory holds only the cloud. For times, see the
+/// bench `files`.
 ///
 /// # Errors
 /// [`Error::Io`] if the file cannot be read, [`Error::Format`] as [`parse`].
@@ -111,9 +125,9 @@ pub fn read_with(path: &Path, exec: &Exec) -> Result<Cloud> {
 /// Reads the bytes of a file.
 ///
 /// # Errors
-/// One line if they are no PLY file, truncated, or hold other than their header says: the element,
-/// the index of the vertex, face or edge, the property, the line (ascii) or byte (binary), what is
-/// wrong and what to do.
+/// One line if the bytes are no PLY file, are truncated, or differ from the header. It names the
+/// element, the index of the vertex, face or edge, the property, the line (ascii) or byte (binary),
+/// the problem and the remedy.
 pub fn parse(bytes: &[u8]) -> std::result::Result<Cloud, String> {
     parse_with(bytes, &Exec::sequential())
 }
@@ -137,7 +151,7 @@ fn parse_with(bytes: &[u8], exec: &Exec) -> Reason<Cloud> {
     Ok(cloud)
 }
 
-/// The vertices, of which there must be some.
+/// Finds the element of vertices; there must be at least one vertex.
 fn vertex(header: &PlyHeader) -> Reason<&Element> {
     let vertex = header.elements.iter().find(|element| element.name == "vertex");
     let vertex = vertex.ok_or("there is no element vertex: the file holds no points")?;
@@ -147,8 +161,8 @@ fn vertex(header: &PlyHeader) -> Reason<&Element> {
     Ok(vertex)
 }
 
-/// Asks for the memory of a cloud, and of `more` bytes. A count that a file of `length` bytes
-/// cannot hold is refused later, before anything is read of it.
+/// Asks for the memory of a cloud, and for `more` bytes. If a file of `length` bytes cannot hold a
+/// count, the reader refuses it later, before it reads the element.
 fn ask(header: &PlyHeader, length: u64, more: u64) -> Reason<()> {
     let vertices = vertex(header)?.count;
     let faces = header.elements.iter().filter(|element| element.name != "vertex");
@@ -164,7 +178,7 @@ fn ask(header: &PlyHeader, length: u64, more: u64) -> Reason<()> {
     memory::try_ask(needed.saturating_add(more), || format!("a cloud of {vertices} points"))
 }
 
-/// Reads an element that is not the vertices, of which there are `vertices`.
+/// Reads any element except the vertices; the file has `vertices` of them.
 fn other(
     element: &Element,
     values: &mut BodyValues<'_>,

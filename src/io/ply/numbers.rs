@@ -1,4 +1,4 @@
-//! Vertices as rows of numbers, whatever their properties are called.
+//! Read vertices as rows of numbers, whatever the names of their properties.
 
 use super::header::{self, PropertyKind, quote};
 use super::values::{BodyValues, Event};
@@ -6,7 +6,7 @@ use super::vertex;
 use crate::io::Reason;
 use crate::memory;
 
-/// The names of the properties of the vertices, and the numbers of all vertices, row by row.
+/// The names of the vertex properties, and the numbers of all vertices, row by row.
 ///
 /// # Errors
 /// As [`super::parse`]; also if a property is a list.
@@ -18,7 +18,7 @@ pub(in crate::io) fn numbers(bytes: &[u8]) -> Reason<(Vec<String>, Vec<f64>)> {
     {
         return Err(format!("element vertex: property {} is a list", quote(&list.name)));
     }
-    // Each number takes a byte of the file at least.
+    // Each number takes at least one byte of the file.
     memory::try_ask(8 * bytes.len() as u64, || format!("{} rows", vertex.count))?;
     let mut rows = Vec::new();
     let mut values = BodyValues::new(bytes, &header);

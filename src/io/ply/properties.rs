@@ -1,4 +1,4 @@
-//! Further numbers of the vertices, by their names.
+//! Read further numbers of the vertices by their names.
 
 use super::header::{self, PlyHeader, PropertyKind, quote};
 use super::values::{BodyValues, Event};
@@ -9,16 +9,16 @@ use crate::io::{Reason, input};
 use crate::scene::Property;
 use std::path::Path;
 
-/// Reads properties of the vertices that [`super::read`] skips, of any type, each number rounded to `f32` once; in the
-/// order of the names. The file is in memory as a whole meanwhile.
+/// Reads vertex properties that [`super::read`] skips, in the order of `names`. They may have any
+/// type; each number is rounded to `f32` once. Meanwhile the whole file is in memory.
 ///
-/// `Decided:` integers are kept as they are, as `radius` is and `opacity` is not: nobody but who wrote the file knows what
-/// 1 is. `Decided:` only those that somebody names: files hold times, confidences and the like, which would grow every
-/// copy of a file.
+/// `Decided:` integers are kept as they are, like `radius` and unlike `opacity`, because only the
+/// author of the file knows what 1 means. `Decided:` only named properties are read, because files
+/// hold times, confidences and the like, which would make every copy of a file larger.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read; [`Error::Format`] as [`super::parse`], and if a name is of no property, of a list, of one
-/// that is read anyway, or twice among the names.
+/// [`Error::Io`] if the file cannot be read. [`Error::Format`] as [`super::parse`], and if a name
+/// belongs to no property, to a list, to a property that is read anyway, or occurs twice.
 pub fn properties(path: &Path, names: &[String]) -> Result<Vec<Property>> {
     if names.is_empty() {
         return Ok(Vec::new());
@@ -26,7 +26,7 @@ pub fn properties(path: &Path, names: &[String]) -> Result<Vec<Property>> {
     read(&whole(path)?, names).map_err(|what| Error::format(path, what))
 }
 
-/// Whether [`properties`] finds all of these names in the header of a file.
+/// Checks that the header of a file has all properties that [`properties`] would read.
 ///
 /// # Errors
 /// As [`properties`].
@@ -41,7 +41,7 @@ fn whole(path: &Path) -> Result<Vec<u8>> {
     input::rest(file, length).map_err(io)
 }
 
-/// Of each property of the vertices the place among those that are asked for.
+/// For each property of the vertices, its place among the names.
 fn places(header: &PlyHeader, names: &[String]) -> Reason<Vec<Option<usize>>> {
     let vertices = vertex(header)?;
     let layout = Layout::new(vertices, &groups::Reader::new(vertices))?;
@@ -63,7 +63,7 @@ fn places(header: &PlyHeader, names: &[String]) -> Reason<Vec<Option<usize>>> {
     Ok(places)
 }
 
-/// The properties of these names in the bytes of a file.
+/// Reads the properties of these names from the bytes of a file.
 pub(super) fn read(bytes: &[u8], names: &[String]) -> Reason<Vec<Property>> {
     let header = header::parse(bytes)?;
     let (vertices, places) = (vertex(&header)?, places(&header, names)?);
@@ -81,6 +81,7 @@ pub(super) fn read(bytes: &[u8], names: &[String]) -> Reason<Vec<Property>> {
             }
             Ok(())
         })?;
+        // Later elements cannot change the vertices.
         if is_vertices {
             break;
         }
@@ -89,7 +90,7 @@ pub(super) fn read(bytes: &[u8], names: &[String]) -> Reason<Vec<Property>> {
     Ok(all.map(|(name, values)| Property { name: name.clone(), values }).collect())
 }
 
-/// Bytes of a number while its array grows.
+/// Bytes that a number takes while its array grows.
 const BYTES: u64 = 8;
 
 #[cfg(test)]

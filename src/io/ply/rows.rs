@@ -1,7 +1,8 @@
-//! Vertices that all have one length in bytes, decoded in parallel.
+//! Decode vertices that all have the same length in bytes, in parallel.
 //!
-//! They are what large files consist of: binary, little-endian, without lists and groups. A row
-//! cannot fail, as values are not judged; the walk of [`super::values`] reads all other vertices.
+//! Large files consist of such vertices: binary, little-endian, without lists and groups. A row
+//! cannot fail, because the reader does not judge values. The walk in [`super::values`] reads all
+//! other vertices.
 
 use super::header::{Element, Format, PropertyKind, Scalar};
 use super::vertices::{
@@ -17,21 +18,22 @@ use std::ops::Range;
 pub(super) struct Rows {
     /// Bytes of a row.
     stride: usize,
-    /// By the place of a number in [`super::vertices::NAMES`], and then of the levels.
+    /// For each place in [`super::vertices::NAMES`], and then in the levels, the number that goes
+    /// there.
     numbers: Vec<Option<Number>>,
 }
 
 /// A number of a row.
 #[derive(Clone, Copy)]
 struct Number {
-    /// Its first byte.
+    /// The offset of its first byte in the row.
     at: usize,
     scalar: Scalar,
     decode: Decode,
 }
 
 impl Rows {
-    /// None if the vertices are to be read one number after another.
+    /// `None` if the vertices must be read one number after another.
     pub(super) fn new(element: &Element, layout: &Layout, format: Format) -> Option<Self> {
         if format != Format::Little {
             return None;
@@ -51,12 +53,12 @@ impl Rows {
         Some(rows)
     }
 
-    /// The bytes of a row.
+    /// How many bytes a row has.
     pub(super) fn stride(&self) -> usize {
         self.stride
     }
 
-    /// Makes room for so many rows, for no array to be copied as it grows.
+    /// Makes room for `count` rows, so that no array is copied while it grows.
     pub(super) fn reserve(&self, count: usize, cloud: &mut Cloud) {
         cloud.position.reserve_exact(count);
         [&mut cloud.normal, &mut cloud.color, &mut cloud.tangent]
@@ -98,7 +100,7 @@ impl Rows {
     }
 }
 
-/// Rows to be decoded.
+/// Rows to decode.
 struct Table<'a> {
     rows: &'a Rows,
     bytes: &'a [u8],
@@ -123,7 +125,7 @@ impl Table<'_> {
         });
     }
 
-    /// Appends a value a row, made of the numbers at `places`, of which there are `N`.
+    /// Appends one value for each row, made from the `N` numbers at `places`.
     fn put<T: Send, const N: usize>(
         &self,
         to: &mut Vec<T>,
@@ -135,7 +137,7 @@ impl Table<'_> {
         let Some(&numbers) = numbers.first_chunk::<N>() else { return };
         let count = self.bytes.len() / stride;
         let row = |i: usize| &self.bytes[i * stride..][..stride];
-        // What most files have, without a question for each number.
+        // Most files have plain `f32`; one test here saves a test for each number.
         if numbers.iter().all(Number::is_plain) {
             self.exec.extend(to, count, |i| of(each(&numbers, |number| number.plain(row(i)))));
         } else if let Some(table) = table_of_bytes(&numbers) {
@@ -147,17 +149,17 @@ impl Table<'_> {
     }
 }
 
-/// What the codes of numbers are that all are bytes of sRGB.
+/// The table of the codes, if all numbers are bytes of sRGB.
 fn table_of_bytes(numbers: &[Number]) -> Option<&'static [f32; 256]> {
     let tables = numbers.iter().map(|number| match (number.scalar, number.decode) {
         (Scalar::U8, Decode::Srgb(table)) => table.first_chunk(),
         _ => None,
     });
-    // There is one table of bytes.
+    // All bytes of sRGB share one table.
     tables.reduce(Option::and)?
 }
 
-/// A value for each number; `array::map` is not inlined in builds of many units.
+/// Applies `of` to each number; `array::map` is not inlined in builds of many units.
 #[inline]
 fn each<const N: usize>(numbers: &[Number; N], of: impl Fn(Number) -> f32) -> [f32; N] {
     let mut values = [0.0; N];
@@ -166,7 +168,7 @@ fn each<const N: usize>(numbers: &[Number; N], of: impl Fn(Number) -> f32) -> [f
 }
 
 impl Number {
-    /// Whether this is an `f32` that is kept.
+    /// Whether the number is an `f32` that is kept.
     fn is_plain(&self) -> bool {
         matches!((self.scalar, self.decode), (Scalar::F32, Decode::Keep))
     }
@@ -190,7 +192,7 @@ impl Number {
         })
     }
 
-    /// Its bytes, which a row has.
+    /// The bytes of the number; the caller's row is long enough.
     #[inline]
     fn of<const N: usize>(self, row: &[u8]) -> [u8; N] {
         row[self.at..].first_chunk().copied().unwrap_or([0; N])

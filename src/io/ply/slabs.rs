@@ -1,4 +1,4 @@
-//! Large files: vertices that are decoded while the next are read.
+//! Read large files in slabs: decode one slab of vertices while the next is read.
 
 use super::groups;
 use super::header::{self, PlyHeader};
@@ -11,12 +11,12 @@ use crate::scene::Cloud;
 use std::fs::File;
 use std::io::{self, Read, Seek, SeekFrom};
 
-/// A header of more bytes than these is of a file that is read whole.
+/// A file with a longer header is read as a whole.
 const MOST_HEADER: u64 = 1 << 16;
-/// Rows of a slab: few enough for their bytes to stay in a cache until they are decoded.
+/// Rows of a slab: few enough that their bytes stay in a cache until they are decoded.
 const ROWS: u64 = 1 << 16;
 
-/// Why a file is not read, without its name.
+/// Why a file cannot be read, without its name.
 pub(super) enum Error {
     Io(io::Error),
     Format(String),
@@ -34,15 +34,15 @@ impl From<String> for Error {
     }
 }
 
-/// A file that begins with vertices of one length, all of which it has.
+/// A file that begins with vertices of one length, and holds all of them.
 pub(super) struct Start {
     header: PlyHeader,
     layout: Layout,
     rows: Rows,
 }
 
-/// Looks at the start of a file of `length` bytes. None is one that must be read whole, or in which
-/// something is wrong, which is then found.
+/// Examines the start of a file of `length` bytes. `None` means that the file must be read as a
+/// whole, or that something is wrong with it, which the whole read will report.
 pub(super) fn start(file: &mut File, length: u64) -> io::Result<Option<Start>> {
     let mut bytes = Vec::new();
     file.take(MOST_HEADER).read_to_end(&mut bytes)?;
@@ -63,7 +63,7 @@ impl Start {
         (bytes <= there).then_some(Self { header, layout, rows })
     }
 
-    /// Reads all of the file.
+    /// Reads the whole file.
     pub(super) fn read(self, mut file: File, length: u64, exec: &Exec) -> Result<Cloud, Error> {
         let Self { header, layout, rows } = self;
         let vertex = vertex(&header)?;
@@ -80,7 +80,7 @@ impl Start {
         let mut rest = Vec::new();
         file.take(length - after).read_to_end(&mut rest)?;
         let mut values = BodyValues::rest(&rest, after, header.format);
-        // Their vertices have none.
+        // Vertices with groups are never read in slabs, so this reader stays empty.
         let mut groups = groups::Reader::new(vertex);
         for element in &header.elements[1..] {
             other(element, &mut values, vertex.count, &mut cloud, &mut groups)?;
@@ -90,7 +90,7 @@ impl Start {
     }
 }
 
-/// Reads `count` rows from where the file stands: a slab is decoded while the next is read.
+/// Reads `count` rows from the current position: one slab is decoded while the next is read.
 fn slabs(
     rows: &Rows,
     file: &mut File,

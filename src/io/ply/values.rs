@@ -1,27 +1,27 @@
-//! The body of a PLY file: one number after another, in any of the three formats.
+//! Read the body of a PLY file: one number after another, in any of the three formats.
 
 use super::header::{Element, Format, PlyHeader, PropertyKind, Scalar, quote};
 
-/// A place in the body. Errors say what is wrong; [`BodyValues::walk`] adds where.
+/// A position in the body. Errors say what is wrong; [`BodyValues::walk`] adds where.
 #[derive(Debug)]
 pub(super) struct BodyValues<'a> {
     bytes: &'a [u8],
-    /// The bytes of the file before these.
+    /// How many bytes of the file come before these.
     before: u64,
     format: Format,
     /// The next byte to be read.
     at: usize,
-    /// The first byte of the value read last.
+    /// The first byte of the last value.
     last: usize,
-    /// The line of the value read last, counted from 1; of use in ascii only.
+    /// The line of the last value, counted from 1; used for ascii only.
     line: u64,
 }
 
-/// What a walk through an element meets, in the order of the file.
+/// An event of a walk through an element, in the order of the file.
 pub(super) enum Event {
-    /// A number of the property with this index: its only one, or the next of its list.
+    /// A number of the property with this index: its only number, or the next one in its list.
     Value(usize, f64),
-    /// The end of one vertex, face, ...
+    /// The end of a row: one vertex, one face, ...
     End,
 }
 
@@ -40,7 +40,7 @@ impl<'a> BodyValues<'a> {
         self.format
     }
 
-    /// All of an element of a binary body, each row of which has `stride` bytes.
+    /// The bytes of a whole element in a binary body, with `stride` bytes a row.
     pub(super) fn rows(&mut self, element: &Element, stride: usize) -> Result<&'a [u8], String> {
         self.check_room(element)?;
         let (rows, _) = self.bytes[self.at..].split_at(element.count as usize * stride);
@@ -48,11 +48,12 @@ impl<'a> BodyValues<'a> {
         Ok(rows)
     }
 
-    /// Reads all of an element and gives each number to `visit`, whose errors get the same
-    /// description of the place as those of the reading.
+    /// Reads a whole element and passes each number to `visit`. An error of `visit` gets the same
+    /// description of its place as a read error.
     ///
-    /// Every number fits `f64` exactly; one of type float also fits `f32`. Before anything is
-    /// read, the count is held against the bytes that are left, so that `visit` may trust it.
+    /// Every number fits `f64` exactly; a number of type float also fits `f32`. Before the walk
+    /// reads anything, it compares the count with the bytes that are left, so that `visit` may
+    /// trust the count.
     pub(super) fn walk(
         &mut self,
         element: &Element,
@@ -79,7 +80,7 @@ impl<'a> BodyValues<'a> {
         Ok(())
     }
 
-    /// All of one property of one row.
+    /// Reads one property of one row.
     #[inline]
     fn property(
         &mut self,
@@ -131,12 +132,12 @@ impl<'a> BodyValues<'a> {
         ))
     }
 
-    /// The least that a value takes: in ascii a space and a digit.
+    /// The least bytes that a value takes; in ascii a space and a digit.
     fn bytes_of(&self, scalar: Scalar) -> u64 {
         if self.format == Format::Ascii { 2 } else { scalar.size() }
     }
 
-    /// How many things of `size` bytes > 0 the rest of the file has room for at most.
+    /// How many things of `size` bytes > 0 fit at most into the rest of the file.
     fn room(&self, size: u64) -> u64 {
         // The first value of an ascii body needs no space before it.
         let spare = if self.format == Format::Ascii { 1 } else { 0 };
@@ -197,7 +198,7 @@ impl<'a> BodyValues<'a> {
         })
     }
 
-    /// Goes to the next word of an ascii body and counts the lines on the way.
+    /// Skips white space before the next ascii word, and counts lines.
     fn skip_space(&mut self) {
         while let Some(byte) = self.bytes.get(self.at).filter(|byte| byte.is_ascii_whitespace()) {
             self.line += u64::from(*byte == b'\n');
@@ -205,10 +206,10 @@ impl<'a> BodyValues<'a> {
         }
     }
 
-    /// After the last property of a row an ascii line must end.
+    /// Checks that an ascii line ends after the last property of a row.
     ///
-    /// `Decided:` a row may take several lines, as in some old files, but two rows share none:
-    /// that finds the line where values and header part.
+    /// `Decided:` a row may span several lines, as in some old files, but two rows never share a
+    /// line. This finds the line where the values stop to match the header.
     fn end_row(&self) -> Result<(), String> {
         if self.format != Format::Ascii {
             return Ok(());
@@ -222,7 +223,7 @@ impl<'a> BodyValues<'a> {
         }
     }
 
-    /// After the last element nothing may be left.
+    /// Checks that nothing is left after the last element.
     pub(super) fn finish(mut self) -> Result<(), String> {
         if self.format == Format::Ascii {
             self.skip_space();
@@ -238,7 +239,7 @@ impl<'a> BodyValues<'a> {
         ))
     }
 
-    /// Where the value read last is.
+    /// The place of the last value.
     fn place(&self) -> String {
         match self.format {
             Format::Ascii => format!("line {}", self.line),
@@ -246,7 +247,7 @@ impl<'a> BodyValues<'a> {
         }
     }
 
-    /// Where the next value is.
+    /// The place of the next value.
     fn next_place(&self) -> String {
         match self.format {
             Format::Ascii => format!("line {}", self.line),
@@ -255,12 +256,13 @@ impl<'a> BodyValues<'a> {
     }
 }
 
-/// A cut number is a number too: 6.125 becomes 6.1.
+/// A cut number is still a number: 6.125 becomes 6.1.
 const CUT: &str = "the file ends inside its last line, so its last number may be cut; if it is \
                    whole, end the line";
 const ENDS: &str = "the file ends here: it is truncated, or a count in the header is too large";
 
-/// A word as a number of the given type: integers in range, a float rounded once to its own type.
+/// Parses a word as a number of the given type: an integer must be in range, a float is rounded
+/// once to its own type.
 fn parse(word: &str, scalar: Scalar) -> Option<f64> {
     let (low, high) = match scalar {
         Scalar::F32 => return word.parse::<f32>().ok().map(f64::from),

@@ -1,4 +1,4 @@
-//! The element `vertex`: which property goes where, and how it is decoded.
+//! Read the element `vertex`: find the place of each property, and how to decode it.
 
 use super::groups;
 use super::header::{Element, PropertyKind, Scalar, quote};
@@ -12,7 +12,7 @@ use glam::{Vec2, Vec3};
 use std::ops::Range;
 use std::sync::LazyLock;
 
-/// The properties that are read, each with its place in a row.
+/// The properties that are read; the index of a name is its place in a row.
 const NAMES: [&str; 22] = [
     "x", "y", "z", "nx", "ny", "nz", "radius", "red", "green", "blue", "opacity", "tux", "tuy",
     "tuz", "tvx", "tvy", "tvz", "tx", "ty", "tz", "u", "v",
@@ -28,18 +28,18 @@ pub(super) const OPACITY: Range<usize> = 10..11;
 pub(super) const TANGENTS: Range<usize> = 11..17;
 pub(super) const TANGENT: Range<usize> = 17..20;
 pub(super) const COORDINATE: Range<usize> = 20..22;
-/// The first place of prefiltered colours, three for each level.
+/// The first place of prefiltered colours; each level takes three.
 pub(super) const MIPMAP: usize = 22;
 
 static SRGB_8: LazyLock<Vec<f32>> = LazyLock::new(|| srgb::table(u8::MAX.into()));
 static SRGB_16: LazyLock<Vec<f32>> = LazyLock::new(|| srgb::table(u16::MAX));
 
-/// How a number of the file becomes one of the cloud.
+/// How a number of the file becomes a number of the cloud.
 #[derive(Clone, Copy)]
 pub(super) enum Decode {
     /// Rounded to `f32`.
     Keep,
-    /// Divided by the code of 1, rounded to `f32`.
+    /// Divided by the code of 1, then rounded to `f32`.
     Divide(f64),
     /// A code of sRGB, looked up.
     Srgb(&'static [f32]),
@@ -55,27 +55,28 @@ impl Decode {
     }
 }
 
-/// What becomes of a property.
+/// How a property is used.
 #[derive(Clone, Copy)]
 pub(super) enum PropertyUse {
     Skip,
-    /// A number goes to a place of the row.
+    /// The number goes to this place in the row.
     Number(usize, Decode),
     Group(groups::GroupPart),
 }
 
-/// What the vertices of a file hold.
+/// The layout of a file's vertices.
 pub(super) struct Layout {
-    /// What becomes of each property.
+    /// How each property is used.
     pub(super) slots: Vec<PropertyUse>,
-    /// Whether each number of [`NAMES`] is there, and then of the levels up to the last.
+    /// Whether the file has each number of [`NAMES`], and then each number of the levels up to the
+    /// last.
     given: Vec<bool>,
 }
 
 impl Layout {
     pub(super) fn new(element: &Element, groups: &groups::Reader) -> Result<Self, String> {
         let named = |name: &str| element.properties.iter().any(|p| p.name == name);
-        // One of them alone is a time or a scalar.
+        // `s` or `t` alone is a time or some other scalar.
         let pair = named("s") && named("t");
         let slots = element.properties.iter().map(|p| match p.name.as_str() {
             "s" | "t" if !pair => Ok(PropertyUse::Skip),
@@ -116,17 +117,18 @@ impl Layout {
         Ok(Self { slots, given })
     }
 
-    /// Numbers of a vertex.
+    /// How many numbers a row has.
     pub(super) fn width(&self) -> usize {
         self.given.len()
     }
 
-    /// Levels of prefiltered colours.
+    /// How many levels of prefiltered colours there are.
     fn levels(&self) -> usize {
         (self.given.len() - NAMES.len()) / 3
     }
 
-    /// Gives `cloud` the arrays of what is there, empty; no texture coordinates if its corners have them.
+    /// Gives `cloud` an empty array for each attribute; no texture coordinates of vertices if
+    /// corners have them.
     pub(super) fn arrays(&self, cloud: &mut Cloud) -> Result<(), String> {
         cloud.normal = has(&self.given, NORMAL)?.then(Vec::new);
         cloud.radius = has(&self.given, RADIUS)?.then(Vec::new);
@@ -153,6 +155,7 @@ pub(super) fn read(
 ) -> Result<(), String> {
     let layout = Layout::new(element, groups)?;
     layout.arrays(cloud)?;
+    // Rows of one length are decoded in parallel, and cannot fail.
     if let Some(rows) = Rows::new(element, &layout, values.format()) {
         let bytes = values.rows(element, rows.stride())?;
         rows.append(bytes, cloud, exec);
@@ -175,7 +178,7 @@ pub(super) fn read(
     })
 }
 
-/// Whether a vector is there, all of it or nothing.
+/// Whether a vector is declared; an error if only a part of it is.
 fn has(given: &[bool], group: Range<usize>) -> Result<bool, String> {
     let missing = group.clone().find(|&i| !given[i]);
     let present = group.clone().find(|&i| given[i]);
@@ -225,7 +228,7 @@ fn prefiltered(name: &str) -> Result<Option<usize>, String> {
     }
 }
 
-/// A level is there, or one above it, and what comes before it is not.
+/// The error for a level that lacks a number, or lacks the level before it.
 fn missing_level(given: &[bool], level: usize, before: usize) -> String {
     let first = (level_places(level).start..given.len()).find(|&place| given[place]);
     let there = name(first.unwrap_or(MIPMAP));
@@ -237,7 +240,7 @@ fn missing_level(given: &[bool], level: usize, before: usize) -> String {
     )
 }
 
-/// What becomes of a property of this name and kind.
+/// How a property of this name and kind is used.
 fn slot(name: &str, kind: PropertyKind, groups: &groups::Reader) -> Result<PropertyUse, String> {
     if let Some(part) = groups.part(name, kind)? {
         return Ok(PropertyUse::Group(part));
@@ -251,6 +254,7 @@ fn slot(name: &str, kind: PropertyKind, groups: &groups::Reader) -> Result<Prope
         let what = format!("property {} is a list, but must be one number", quote(name));
         return Err(format!("element vertex: {what}"));
     };
+    // Only colours and opacities have codes; other integers are numbers.
     let color = COLOR.contains(&place) || place >= MIPMAP;
     if !color && !OPACITY.contains(&place) {
         return Ok(PropertyUse::Number(place, Decode::Keep));

@@ -1,4 +1,4 @@
-//! PLY out.
+//! Write PLY files.
 
 use crate::error::Result;
 use crate::io::replace::write_atomically;
@@ -7,19 +7,26 @@ use crate::scene::{Coordinates, Groups, Mipmap};
 use std::io::{self, Write};
 use std::path::Path;
 
-/// Writes a cloud as binary little-endian PLY, whole or not at all.
+/// Writes a cloud as binary little-endian PLY; a failed write leaves no partial file.
 ///
-/// Vertices are floats: `x y z`, then what there is of `nx ny nz`, `radius`, `red green blue`
-/// (linear), `opacity`, `tux tuy tuz tvx tvy tvz`, `tx ty tz`, `u v`, the further
-/// [properties](Cloud::properties) under their names, `mip1_red mip1_green mip1_blue` and so
-/// for each level (linear); then, if there are groups,
-/// `uchar group` and, if surfels were added to some, `list uchar uchar also`. Triangles follow as
-/// `face` with `list uchar uint vertex_indices` and, if there are texture coordinates of corners, `list uchar float
-/// texcoord`, edges as `edge` with `uint vertex1 vertex2`, and
-/// last, if they do not tell by themselves how many groups there are or if radii are scaled, the
-/// element `group` with `float scale`. The names of textures are written as `comment TextureFile`, but for those that are empty or
-/// have a line break. [`super::read`] gives the same cloud back, bit for bit, but for the further properties, which
-/// [`super::properties`] gives; the texture itself is not written.
+/// [`super::read`] gives the same cloud back, bit for bit. The further properties come back from
+/// [`super::properties`]. The texture itself is not written, only its name.
+///
+/// The file holds, in this order, whatever the cloud has:
+///
+/// - `comment TextureFile` with the name of each texture, unless the name is empty or has a line
+///   break;
+/// - vertices with float properties `x y z`, `nx ny nz`, `radius`, `red green blue` (linear),
+///   `opacity`, `tux tuy tuz tvx tvy tvz`, `tx ty tz`, `u v`, the further
+///   [properties](Cloud::properties) under their names, and `mip1_red mip1_green mip1_blue` and so
+///   on for each level (linear);
+/// - for groups, the vertex properties `uchar group` and, if surfels were added to further groups,
+///   `list uchar uchar also`;
+/// - triangles as `face` with `list uchar uint vertex_indices` and, if corners have texture
+///   coordinates, `list uchar float texcoord`;
+/// - edges as `edge` with `uint vertex1 vertex2`;
+/// - the element `group` with `float scale`, if the vertices alone do not tell how many groups
+///   there are, or if radii are scaled.
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] if the arrays of the cloud differ in length; [`crate::Error::Io`] as
@@ -29,7 +36,7 @@ pub fn write(path: &Path, cloud: &Cloud) -> Result<()> {
     write_atomically(path, |out| encode(cloud, out))
 }
 
-/// The bytes of a checked cloud.
+/// Writes the bytes of a checked cloud.
 pub(super) fn encode(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
     header(cloud, out)?;
     let groups = cloud.groups.as_ref();
@@ -78,7 +85,7 @@ pub(super) fn encode(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
     scales.try_for_each(|scale| out.write_all(&scale.to_le_bytes()))
 }
 
-/// Elements, their counts and properties.
+/// Writes the header: elements, their counts and properties.
 fn header(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
     let names = [
         (true, "x y z"),
@@ -134,12 +141,13 @@ fn added(cloud: &Cloud) -> Option<&Groups> {
     cloud.groups.as_ref().filter(|groups| !groups.added().is_empty())
 }
 
-/// The groups, if vertices do not tell all about them.
+/// The groups, if the vertices alone do not describe them.
 fn scaled(cloud: &Cloud) -> Option<&Groups> {
     cloud.groups.as_ref().filter(|groups| !tell(groups))
 }
 
-/// Whether the vertices tell all: the last group has a surfel, and no radius is scaled.
+/// Whether the vertices alone describe the groups: the last group has a surfel, and no radius is
+/// scaled.
 fn tell(groups: &Groups) -> bool {
     let numbers = groups.own().iter().chain(groups.added().iter().map(|pair| &pair.1));
     let last = numbers.fold(0, |last, &group| last.max(group));

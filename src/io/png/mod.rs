@@ -1,4 +1,5 @@
-//! 8-bit previews for people, and PNG files of others, compared as they are stored.
+//! Write 8-bit previews for people to look at, and read PNG files to compare them as they are
+//! stored.
 
 mod read;
 
@@ -14,11 +15,11 @@ use image::{ExtendedColorType, ImageEncoder, ImageError};
 use std::io;
 use std::path::Path;
 
-/// Writes the preview of a frame: the plane of colour with the empty name over the coverage `A`, if
-/// the frame has that; nothing if it has no colour.
+/// Writes the preview of a frame: the colour plane with the empty name, over the coverage `A` if
+/// the frame has one. Writes nothing if the frame has no colour.
 ///
-/// A PNG wants colours that are not multiplied by alpha: where alpha is in (0, 1) the colour is
-/// divided by it.
+/// PNG stores colours that are not multiplied by alpha, so the colour is divided by alpha where
+/// alpha is in (0, 1).
 ///
 /// # Errors
 /// As [`write()`].
@@ -26,8 +27,8 @@ pub fn write_frame(path: &Path, frame: &Frame<f32>) -> Result<()> {
     pending_frame(path, frame)?.map_or(Ok(()), Pending::put)
 }
 
-/// [`write_frame`] up to the moment when the file is put in its place, for files that belong
-/// together; none if the frame has no colour.
+/// Does all of [`write_frame`] except to put the file in its place, for files that belong together;
+/// `None` if the frame has no colour.
 ///
 /// # Errors
 /// As [`write()`].
@@ -36,27 +37,27 @@ pub fn pending_frame(path: &Path, frame: &Frame<f32>) -> Result<Option<Pending>>
     pending(path, color, frame.scalar("A").ok(), straight).map(Some)
 }
 
-/// A colour over black as one that is not multiplied by alpha.
+/// Divides a colour over black by its alpha.
 fn straight(value: f32, alpha: f32) -> f32 {
     if alpha > 0.0 && alpha < 1.0 { value / alpha } else { value }
 }
 
 /// Writes a plane of linear RGB to the PNG file at `path`, sRGB-encoded, 8 bits a channel.
 ///
-/// With `alpha`, a plane of coverage in [0, 1] of the same size, the file is RGBA, not
-/// premultiplied, as PNG means it; alpha is stored linearly, `floor(255 a + 1/2)`. Values beyond
-/// [0, 1] are clipped, NaN is 0. The pixels of the file are a function of the arguments; its bytes
-/// also of the version of the `image` crate.
+/// With `alpha`, a plane of coverage in [0, 1] of the same size, the file is RGBA. It is not
+/// premultiplied, as PNG requires. Alpha is stored linearly, as `floor(255 a + 1/2)`. Values beyond
+/// [0, 1] are clipped; NaN becomes 0. The pixels of the file are a function of the arguments; the
+/// bytes also depend on the version of the `image` crate.
 ///
 /// # Errors
-/// [`Error::Invalid`] if the planes have no pixel or are not of one size; [`Error::Io`] if the file
-/// cannot be written, and then nothing is left of it.
+/// [`Error::Invalid`] if the planes have no pixel or differ in size. [`Error::Io`] if the file
+/// cannot be written; then nothing of it is left.
 pub fn write(path: &Path, color: &Plane<[f32; 3]>, alpha: Option<&Plane<f32>>) -> Result<()> {
     pending(path, color, alpha, |value, _| value)?.put()
 }
 
-/// [`write()`] up to the moment when the file is put in its place, of `value` for each value of
-/// `color` and its alpha, if there is alpha.
+/// Does all of [`write()`] except to put the file in its place. `value` maps each value of `color`
+/// and its alpha, if there is alpha.
 fn pending(
     path: &Path,
     color: &Plane<[f32; 3]>,
@@ -93,11 +94,11 @@ fn pending(
     Pending::write(path, |file| encode(file, &pixels, [width, height], kind))
 }
 
-/// Writes codes of 8 bits, red, green and blue of each pixel from the top row on, as they are.
+/// Writes codes of 8 bits as they are: red, green and blue of each pixel, from the top row on.
 ///
 /// # Errors
-/// [`Error::Io`] if there are not `3 width height` codes or none, or if the file cannot be written, and
-/// then nothing is left of it.
+/// [`Error::Io`] if there are no codes or not `3 width height` of them, or if the file cannot be
+/// written; then nothing of it is left.
 pub fn write_codes(path: &Path, size: [u32; 2], codes: &[u8]) -> Result<()> {
     let wanted = size.map(u64::from).iter().product::<u64>() * 3;
     if wanted == 0 || codes.len() as u64 != wanted {
@@ -123,7 +124,7 @@ fn encode(
 
 /// The code `floor(most v + 1/2)` for v clipped to [0, 1]; 0 for NaN.
 fn quantize(value: f64, most: u16) -> u16 {
-    // The conversion truncates and saturates, and takes NaN to 0.
+    // The cast truncates, saturates, and turns NaN into 0.
     ((f64::from(most) * value + 0.5) as u16).min(most)
 }
 
@@ -134,18 +135,20 @@ fn exact(linear: f32) -> u8 {
 
 /// The function [`exact`] as a table.
 struct Srgb {
-    /// The smallest `f32` of each code but 0.
+    /// The smallest `f32` of each code except 0.
     least: [f32; 255],
-    /// The code of each `f32` from [`Srgb::FIRST`] to 1 that has only its upper 16 bits.
+    /// For each pattern of upper 16 bits from [`Srgb::FIRST`] to 1, the code of the `f32` with only
+    /// these bits.
     codes: Vec<u8>,
 }
 
 impl Srgb {
-    /// 2^-12: below it are the codes 0 and 1 alone. From here on, two numbers that share their upper
-    /// 16 bits are at most a code apart.
+    /// 2^-12: only the codes 0 and 1 lie below. From here on, two numbers with the same upper 16
+    /// bits are at most one code apart.
     const FIRST: f32 = 1.0 / 4096.0;
 
-    /// Each code's smallest value, by bisection over the `f32` in [0, 1], whose bits ascend.
+    /// Finds each code's smallest value by bisection over the bits of `f32` in [0, 1], which
+    /// ascend.
     fn new() -> Self {
         let least = std::array::from_fn(|i| {
             let (mut below, mut above) = (0.0_f32.to_bits(), 1.0_f32.to_bits());
@@ -176,6 +179,7 @@ impl Srgb {
         if linear >= 1.0 {
             return 255;
         }
+        // Also true for NaN, which then fails the comparison below and becomes 0.
         if !(linear >= Self::FIRST) {
             return u8::from(linear >= self.least[0]);
         }

@@ -1,4 +1,4 @@
-//! PNG files in, and the pictures that they are compared with.
+//! Read PNG files, and encode pictures for comparison with them.
 
 use super::{quantize, straight};
 use crate::frame::image::Values;
@@ -11,34 +11,36 @@ use image::{ColorType, ImageDecoder, ImageError, Limits};
 use std::io::Cursor;
 use std::path::Path;
 
-/// Deflate gives at most 1032 bytes for one.
+/// Deflate expands one byte to at most 1032.
 const MOST_EXPANSION: u64 = 1032;
 
-/// What a PNG file holds.
+/// The contents of a PNG file.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Stored {
-    /// The channels `R`, `G`, `B` and, if the file has it, `A`: codes divided by the greatest code.
+    /// The channels `R`, `G`, `B` and, if the file has it, `A`: each code divided by the greatest
+    /// code.
     pub image: Image,
-    /// The greatest code: 255, or 65,535 of a file of 16 bits a channel.
+    /// The greatest code: 255, or 65,535 for a file of 16 bits a channel.
     pub most: u16,
 }
 
 /// Reads the PNG file at `path`: its codes as numbers in [0, 1], each `code / most`.
 ///
-/// Grey is R = G = B, a palette is looked up, fewer than 8 bits are widened to 8. The codes are
-/// taken as sRGB, whatever the file says of gamma or profile.
+/// Grey gives R = G = B, a palette is looked up, and fewer than 8 bits are widened to 8. The codes
+/// are taken as sRGB, whatever the file says about gamma or profile.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read, [`Error::Format`] if it is no PNG, is damaged, or
-/// promises more pixels than its bytes can hold, which is found before these are allocated.
+/// [`Error::Io`] if the file cannot be read. [`Error::Format`] if the file is no PNG, is damaged,
+/// or promises more pixels than its bytes can hold; this is found before the pixels are allocated.
 pub fn read(path: &Path) -> Result<Stored> {
     read_of_size(path, |_, _| Ok(()))
 }
 
-/// The colours of the PNG file at `path` in linear light, each code decoded as sRGB and rounded once; alpha is passed over.
+/// Reads the colours of the PNG file at `path` in linear light: each code is decoded as sRGB and
+/// rounded once. Alpha is ignored.
 ///
 /// # Errors
-/// As [`read`], and [`Error::Format`] with what `check_size` says, before any pixel is read.
+/// As [`read`], and [`Error::Format`] with the error of `check_size`, before any pixel is read.
 pub(in crate::io) fn read_linear(
     path: &Path,
     check_size: fn(u32, u32) -> Result<()>,
@@ -61,13 +63,13 @@ pub(in crate::io) fn read_linear(
 fn read_of_size(path: &Path, check_size: fn(u32, u32) -> Result<()>) -> Result<Stored> {
     let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
     let length = bytes.len() as u64;
-    // One line, whatever the decoder says.
+    // Keep the error on one line, even if the decoder's message has several.
     let reason = |error: ImageError| {
         Error::format(path, format!("{error}; write it again").replace('\n', " "))
     };
     let most_bytes = length.saturating_mul(MOST_EXPANSION);
     let mut limits = Limits::no_limits();
-    // The decoder takes some 100 KB for itself, whatever the file.
+    // The decoder needs some 100 KB for itself, whatever the file.
     limits.max_alloc = Some(most_bytes.saturating_add(1 << 20));
     let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(reason)?;
     let (width, height) = decoder.dimensions();
@@ -93,7 +95,7 @@ fn read_of_size(path: &Path, check_size: fn(u32, u32) -> Result<()>) -> Result<S
     Ok(codes(width, height, kind, &bytes))
 }
 
-/// The codes of a picture as the decoder gives them: interleaved, of 16 bits in this machine's order.
+/// Separates the decoder's interleaved codes; 16-bit codes are in this machine's order.
 fn codes(width: u32, height: u32, kind: ColorType, bytes: &[u8]) -> Stored {
     let components = usize::from(kind.channel_count());
     let (codes, most): (Vec<u16>, u16) = if kind.bytes_per_pixel() as usize > components {
@@ -101,7 +103,7 @@ fn codes(width: u32, height: u32, kind: ColorType, bytes: &[u8]) -> Stored {
     } else {
         (bytes.iter().map(|&code| u16::from(code)).collect(), 255)
     };
-    // Where the components of a pixel are: grey, grey and alpha, colour, colour and alpha.
+    // Places of the components in a pixel: grey, grey and alpha, colour, colour and alpha.
     let places: &[(&str, usize)] = match components {
         1 => &[("B", 0), ("G", 0), ("R", 0)],
         2 => &[("A", 1), ("B", 0), ("G", 0), ("R", 0)],
@@ -118,14 +120,14 @@ fn codes(width: u32, height: u32, kind: ColorType, bytes: &[u8]) -> Stored {
 }
 
 impl Stored {
-    /// A linear picture as this crate would store it in a PNG of the same kind.
+    /// Encodes a linear picture as this crate would store it in a PNG of the same kind.
     ///
-    /// `Decided:` a PNG is compared as it is stored. Its linear counterpart is encoded just as
-    /// [`super::write_frame()`] does, of so many bits: colours are divided by an alpha in (0, 1) if
-    /// the PNG has alpha, encoded as sRGB, clipped and rounded to a code; alpha is rounded to a
-    /// code. So the preview of a picture equals that picture, and one code of 8 bits is a
-    /// difference of 1/255. Only the channels `R`, `G`, `B` and, if the PNG has it, `A` are kept, of
-    /// those that `linear` has as floats.
+    /// `Decided:` a PNG is compared as it is stored. The linear picture is encoded just as
+    /// [`super::write_frame()`] does, with the PNG's number of bits. If the PNG has alpha, colours
+    /// are divided by an alpha in (0, 1). Colours are encoded as sRGB, clipped and rounded to a
+    /// code; alpha is rounded to a code. Therefore the preview of a picture equals that picture,
+    /// and one code of 8 bits is a difference of 1/255. Only the float channels `R`, `G`, `B` and,
+    /// if the PNG has it, `A` of `linear` are kept.
     #[must_use]
     pub fn encode(&self, linear: &Image) -> Image {
         let floats = |name: &str| match linear.channel(name) {

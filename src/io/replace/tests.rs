@@ -1,6 +1,6 @@
 use super::*;
 
-/// What a directory holds.
+/// The names in a directory.
 fn names(directory: &Path) -> Vec<String> {
     let entries = fs::read_dir(directory).unwrap();
     let mut names: Vec<_> =
@@ -56,8 +56,8 @@ fn places_that_no_file_can_take_are_refused() {
     assert_eq!(fs::read_to_string(&fixed).unwrap(), "old");
 }
 
-/// Writers of one file that overlap, as two processes of one number or two threads can: each is
-/// half done when the next begins, and the last that is put there is there as a whole.
+/// Writers of one file overlap, as two processes with one number or two threads can. Each is half
+/// done when the next begins, and the file that is put last is there as a whole.
 #[test]
 fn writers_of_one_file_do_not_meet() {
     let directory = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! Settings as far as they were chosen; what nobody chose has its default.
+//! Settings as they were chosen; anything not chosen keeps its default.
 
 use crate::error::{Error, Result};
 use crate::index::grouping::{Extension, Grouping, Rules};
@@ -7,20 +7,20 @@ use crate::method::Method;
 use crate::method::stored::Formats;
 use crate::setting::{Field, Fields, Refused, Setting, Slot, Value, Visit, Words};
 
-/// Settings that were chosen, in the order in which they are set: a later value replaces an
-/// earlier one, and a preset all its parts.
+/// Chosen settings, in the order in which they are set. A later value replaces an earlier one, and
+/// a preset replaces all its parts.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Choice {
     values: Vec<(&'static str, Value)>,
 }
 
 impl Choice {
-    /// Chooses one more.
+    /// Adds one choice.
     pub fn push(&mut self, name: &'static str, value: Value) {
         self.values.push((name, value));
     }
 
-    /// Chooses all that `later` chooses too.
+    /// Adds all choices of `later`.
     pub fn extend(&mut self, later: Self) {
         self.values.extend(later.values);
     }
@@ -37,18 +37,18 @@ impl Choice {
         self.values.iter().any(|(chosen, _)| *chosen == name)
     }
 
-    /// What was chosen that means something to `settings`.
+    /// The choices that mean something to `settings`.
     #[must_use]
     pub fn fitting(&self, mut settings: impl Fields) -> Self {
         let fits = |(name, value): &&(&'static str, Value)| settings.set(name, value).is_ok();
         Self { values: self.values.iter().filter(fits).cloned().collect() }
     }
 
-    /// `settings`, which belong to `owner`, with all that was chosen.
+    /// Applies all choices to `settings`, which belong to `owner`.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if something was chosen that the settings do not have, that means nothing
-    /// as the others stand, or that is of another type. Ranges are not checked.
+    /// [`Error::Invalid`] if a choice is unknown to the settings, means nothing with the others as
+    /// they are, or has another type. Ranges are not checked.
     pub fn on<F: Fields>(&self, mut settings: F, owner: &str) -> Result<F> {
         for (name, value) in &self.values {
             settings.set(name, value).map_err(|refused| {
@@ -63,10 +63,10 @@ impl Choice {
     }
 }
 
-/// A method as far as it was chosen.
+/// The chosen method and settings.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct MethodChoice {
-    /// Its name; the first of the table if absent.
+    /// Its name; if absent, the first method of the table.
     pub name: Option<&'static str>,
     /// Its settings.
     pub settings: Choice,
@@ -79,7 +79,7 @@ impl MethodChoice {
         Setting::of(Method::all().into_iter().map(|method| (method.name(), method)))
     }
 
-    /// The method: what was chosen, and the defaults for the rest.
+    /// The method: the choices, and defaults for the rest.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`Choice::on`], or if a number is out of range.
@@ -90,8 +90,7 @@ impl MethodChoice {
         Ok(method)
     }
 
-    /// Chooses another method: what was chosen for the last one is kept where it means something
-    /// to the new one.
+    /// Chooses another method. Settings that also mean something to the new method are kept.
     ///
     /// # Errors
     /// [`Error::Usage`] as [`Method::by_name`].
@@ -101,13 +100,13 @@ impl MethodChoice {
         Ok(())
     }
 
-    /// The method that was named, with its default settings.
+    /// The named method with its default settings.
     fn default_method(&self) -> Result<Method> {
         self.name.map_or_else(|| Ok(Method::default()), Method::by_name)
     }
 }
 
-/// Groups as far as they were chosen.
+/// The chosen settings of groups.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct GroupChoice {
     /// How groups are made.
@@ -115,8 +114,8 @@ pub struct GroupChoice {
 }
 
 impl GroupChoice {
-    /// How groups are made if only surfels are divided, and nobody says: disjoint, as many as that
-    /// takes, not extended.
+    /// The default grouping if surfels are only divided: disjoint groups, as many as that takes,
+    /// not extended.
     pub const ALONE: Grouping = Grouping {
         rules: Rules { overlap: 1.0, opposite: false, coplanar: None },
         count: None,
@@ -130,8 +129,8 @@ impl GroupChoice {
         Setting::of(Method::all().into_iter().filter_map(default))
     }
 
-    /// The grouping: what was chosen, and `default` for the rest. A count without an overlap takes
-    /// the overlap 1 as its upper end; an overlap without a count takes no count.
+    /// The grouping: the choices, and `default` for the rest. If a count but no overlap is chosen,
+    /// the overlap is 1, its upper end. If an overlap but no count is chosen, there is no count.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`Choice::on`], or if a number is out of range.
@@ -150,10 +149,10 @@ impl GroupChoice {
 /// The arithmetic of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Number {
-    /// The executable specification.
+    /// The arithmetic of the executable specification.
     #[default]
     F32,
-    /// The truth; files hold it rounded to `f32`.
+    /// The arithmetic of the truth; files hold it rounded to `f32`.
     F64,
 }
 
@@ -161,14 +160,14 @@ impl Words for Number {
     const WORDS: &'static [(&'static str, Self)] = &[("f32", Self::F32), ("f64", Self::F64)];
 }
 
-/// What is kept of a picture.
+/// What is stored of a picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct OutputSettings {
     /// The arithmetic.
     pub number: Number,
-    /// How passes store what they leave.
+    /// How passes store their results.
     pub formats: Formats,
-    /// Whether the planes of every stage are kept.
+    /// Whether to keep the planes of every stage.
     pub stages: bool,
     /// How the blocks of the EXR are compressed.
     pub compression: Compression,

@@ -1,21 +1,21 @@
-//! As what a model is drawn.
+//! Choose the primitives that a model is drawn as.
 
 use super::Source;
 use crate::source::hybrid::HalfSpace;
 
-/// As what a model is drawn.
+/// The primitives that a model is drawn as.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Draw {
-    /// Facets of a mesh whose points have no extent of their own, points of anything else:
+    /// Facets for a mesh whose points have no extent of their own, points for anything else:
     /// [`crate::source::derive::facets_or_surfels`].
     Surfels,
     /// Its points as surfels.
     Points,
-    /// Its triangles as elliptical surfels, one each: [`crate::source::derive::facets`].
+    /// Its triangles as elliptical surfels, one for each: [`crate::source::derive::facets`].
     Facets,
     /// Its triangles as polygons.
     Polygons,
-    /// Triangles in this half space, in the model's own coordinates, as polygons, the rest as
+    /// Triangles in this half space, in the model's own coordinates, as polygons; the rest as
     /// surfels: [`crate::source::hybrid::split`].
     Hybrid(HalfSpace),
     /// Its edges as ribbons.
@@ -27,7 +27,7 @@ pub enum Draw {
 }
 
 impl Draw {
-    /// As what a model from this source is drawn if nobody says.
+    /// The default for a model from this source.
     pub(super) fn of(source: &Source) -> Self {
         match source {
             Source::File { .. } => Self::Surfels,
@@ -36,10 +36,10 @@ impl Draw {
         }
     }
 
-    /// Whether a model from this source can be drawn so.
+    /// Checks that a model from this source can be drawn this way.
     ///
     /// # Errors
-    /// One line if not.
+    /// One line if it cannot.
     pub(super) fn check(self, source: &Source) -> Result<(), String> {
         let (fits, choice) = match source {
             Source::File { .. } => {
@@ -57,10 +57,10 @@ impl Draw {
         Err(format!("{name} is drawn as {choice}, not as {word}: change or remove `draw`"))
     }
 
-    /// What the keys `draw` and `split` say of a model from this source.
+    /// The choice that the keys `draw` and `split` make for a model from this source.
     ///
     /// # Errors
-    /// One line if the word is none, if a hybrid has no split or something else has one, or as
+    /// One line if the word is unknown, if a hybrid has no split or another choice has one, or as
     /// [`HalfSpace::new`] and [`Draw::check`].
     pub(super) fn choose(
         word: Option<&str>,
@@ -96,7 +96,7 @@ impl Draw {
         Ok(draw)
     }
 
-    /// The word for it.
+    /// The word of a scene file.
     #[must_use]
     pub fn word(&self) -> &'static str {
         match self {

@@ -1,4 +1,4 @@
-//! From a [`SceneFile`] to surfels and primitives.
+//! Load a [`SceneFile`] into surfels and primitives.
 
 use super::model::{ModelParts, Purpose, check_draw, prefiltered, read};
 use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, stem};
@@ -12,56 +12,65 @@ use crate::source::derive::Derived;
 use crate::source::merge::{join, merge};
 use crate::source::sampler::estimate;
 
-/// A scene and how it came about.
+/// A loaded scene, with a report about its models.
 #[derive(Clone, Debug)]
 pub struct Loaded {
     /// The scene.
     pub scene: Scene,
-    /// Its models, in order; of a scene of objects its geometries.
+    /// Reports on its models, in order; for a scene of objects, on its geometries.
     pub models: Vec<ModelReport>,
-    /// Points of all models that became no surfel, where they should have.
+    /// Points of all models that should have become surfels, and did not.
     pub dropped: Dropped,
-    /// Triangles and edges of all models that became no primitive, where they should have.
+    /// Triangles and edges of all models that should have become primitives, and did not.
     pub dropped_primitives: u64,
-    /// What views read of the geometries of objects, if they read what they need.
+    /// The hierarchy from which views read what they need.
     pub(super) unread: Option<Hierarchy>,
 }
 
-/// What became of a model.
+/// A report on a loaded model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ModelReport {
     /// The name of the file without its extension, of the shape, or of the geometry.
     pub name: String,
-    /// How many surfels it gave.
+    /// How many surfels it has.
     pub surfels: usize,
-    /// How many primitives it gave.
+    /// How many primitives it has.
     pub primitives: Counts,
-    /// What its file did not give; none for shapes.
+    /// What had to be derived because its file lacks it; `None` for shapes.
     pub derived: Option<Derived>,
 }
 
 impl SceneFile {
-    /// Reads the model files, derives what they do not give, and joins the models in order, or makes
-    /// objects of them, in frame 0; reads the environment.
+    /// Reads the model files and the environment, and derives missing attributes. The models are
+    /// joined in order, or become objects in frame 0.
     ///
-    /// A scene of objects has no surfels yet: [`SceneFile::ready`] gives those of a frame to methods
-    /// that draw surfels, and [`flatten`](crate::source::flatten()) to anybody.
+    /// A scene of objects has no surfels yet. [`SceneFile::ready`] makes the surfels of a frame for
+    /// methods that draw surfels, and [`flatten`](crate::source::flatten()) makes them for any
+    /// caller.
     ///
     /// `progress` as in [`crate::source::derive::surfels`].
     ///
     /// # Errors
-    /// Those of [`environment::read`], [`read_model`](super::read_model), [`crate::io::texture::paint`], [`crate::source::Shape::surfels`],
-    /// [`crate::source::plant::apple_tree`], and of [`crate::source::derive::surfels`] and its like for polygons and lines, the
-    /// file named; of [tables](super::places) and [`Objects::new`]; [`crate::Error::Invalid`] if neither a
-    /// surfel nor a primitive is left or there are too many, if a model cannot be drawn as it says, or
-    /// if one that is not drawn as points was given an opacity, or mipmaps, or one in one colour or drawn as lines a texture; as [`crate::index::mipmap::build`], and if
-    /// mipmaps are asked for of a model in one colour.
+    /// The errors of these functions, with the file named:
+    ///
+    /// - [`environment::read`], [`read_model`](super::read_model), [`crate::io::texture::paint`];
+    /// - [`crate::source::Shape::surfels`], [`crate::source::plant::apple_tree`];
+    /// - [`crate::source::derive::surfels`], and its counterparts for polygons and lines;
+    /// - [tables](super::places), [`Objects::new`] and [`crate::index::mipmap::build`].
+    ///
+    /// [`crate::Error::Invalid`] in these cases:
+    ///
+    /// - Neither a surfel nor a primitive is left, or there are too many.
+    /// - A model cannot be drawn as chosen.
+    /// - A model that is not drawn as points has an opacity or mipmaps.
+    /// - A model in one colour has a texture or mipmaps, or a model drawn as lines has a texture.
     pub fn load(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Loaded> {
         self.load_for(Purpose::Scene, exec, progress)
     }
 
-    /// [`SceneFile::load`] for those who ask what there is: of a hierarchy the index and the bounds are read, and no file of
-    /// a node. Everything but surfels and primitives of its geometries is that of [`SceneFile::load`].
+    /// [`SceneFile::load`] to find out what the scene contains. It reads the index and the bounds
+    /// of a hierarchy, and no file of a node. Everything equals the result of [`SceneFile::load`],
+    /// except surfels and primitives of the hierarchy's geometries.
     ///
     /// # Errors
     /// As [`SceneFile::load`], and as [`Hierarchy::outlined`].
@@ -69,13 +78,15 @@ impl SceneFile {
         self.load_for(Purpose::View, exec, progress)
     }
 
-    /// [`SceneFile::load`] for those who choose [candidates](mod@crate::source::candidates): every model is drawn as polygons, in its place and its
-    /// colour, with the opacities of its vertices and with these [further properties](crate::io::ply::properties).
-    /// An opacity of the model stands in the place of the file's. Where all are 1 there are none.
+    /// [`SceneFile::load`] to choose [candidates](mod@crate::source::candidates). Every model is
+    /// drawn as polygons, in its place and colour. Vertices keep their opacities and these [further
+    /// properties](crate::io::ply::properties). An opacity of the model replaces the opacities of
+    /// its file. If all opacities are 1, there are none.
     ///
     /// # Errors
-    /// As [`SceneFile::load`] of models drawn as polygons; [`crate::Error::Usage`] if there are properties, but a model is no
-    /// PLY; [`crate::Error::Format`] as [`crate::io::ply::properties`], of a PLY that lacks one.
+    /// As [`SceneFile::load`] for models drawn as polygons. [`crate::Error::Usage`] if there are
+    /// properties, but a model is no PLY. [`crate::Error::Format`] as
+    /// [`crate::io::ply::properties`], for a PLY that lacks one.
     pub fn load_polygons(
         &self,
         properties: &[String],
@@ -89,7 +100,7 @@ impl SceneFile {
         file.load_for(Purpose::Candidates(properties), exec, progress)
     }
 
-    /// [`SceneFile::load`] for some purpose.
+    /// [`SceneFile::load`] for a purpose.
     pub(super) fn load_for(
         &self,
         purpose: Purpose<'_>,
@@ -98,7 +109,7 @@ impl SceneFile {
     ) -> Result<Loaded> {
         self.all_models().try_for_each(|model| check_draw(model, purpose))?;
         let hierarchy = self.hierarchy.as_deref().map(Hierarchy::open).transpose()?;
-        // What is wrong with objects is said before large files are read.
+        // Check the objects before large files are read.
         let placed = self.has_objects() && hierarchy.is_none();
         let objects = if placed { Some(self.objects()?) } else { None };
         let environment = match &self.environment {
@@ -127,7 +138,7 @@ impl SceneFile {
         self.refined(loaded)
     }
 
-    /// The same, asked for the levels of detail that this scene file says.
+    /// Sets the levels of detail that this scene file asks for.
     pub(super) fn refined(&self, mut loaded: Loaded) -> Result<Loaded> {
         if let Some(objects) = loaded.scene.objects.take() {
             loaded.scene.objects = Some(objects.with_refinement(self.refinement.clone())?);
@@ -135,7 +146,7 @@ impl SceneFile {
         Ok(loaded)
     }
 
-    /// The models as one.
+    /// Loads the models and joins them into one.
     fn load_models(
         &self,
         loaded: &mut Loaded,
@@ -159,7 +170,7 @@ impl SceneFile {
         Ok(())
     }
 
-    /// The models and the geometries as geometries of objects.
+    /// Loads the models and the geometries as geometries of objects.
     fn load_objects(
         &self,
         objects: Vec<Object>,
@@ -190,7 +201,8 @@ impl SceneFile {
         Ok(())
     }
 
-    /// The surfels of all models, in their places; there must be some if they are `alone`.
+    /// The surfels of all models in their places. If they are `alone`, without primitives, there
+    /// must be at least one.
     fn join_surfels(
         &self,
         mut parts: Vec<(&Model, Surfels)>,
@@ -198,7 +210,7 @@ impl SceneFile {
         exec: &Exec,
     ) -> Result<(Surfels, Dropped)> {
         if parts.len() == 1 && is_as_read(parts[0].0) {
-            // The usual case, checked already.
+            // One untransformed model is the usual case; its surfels are already checked.
             return Ok((parts.remove(0).1, Dropped::default()));
         }
         let clouds = parts.into_iter().map(|(model, surfels)| placed(model, surfels));
@@ -207,7 +219,7 @@ impl SceneFile {
     }
 }
 
-/// The nodes of a hierarchy as objects; for a view not read yet.
+/// Makes objects from the nodes of a hierarchy; for a view, without reading the nodes.
 fn of_hierarchy(
     hierarchy: Hierarchy,
     view: bool,
@@ -235,7 +247,7 @@ fn of_hierarchy(
 }
 
 impl Loaded {
-    /// Reads a model: its surfels where its file has them, its primitives in their places.
+    /// Reads a model: its surfels in the coordinates of its file, its primitives in their places.
     fn read(
         &mut self,
         model: &Model,
@@ -249,7 +261,8 @@ impl Loaded {
         let surfels = if painted { surfels } else { prefiltered(surfels, model, exec, progress)? };
         let counts = primitives.counts();
         self.models.push(ModelReport { name, surfels: surfels.len(), primitives: counts, derived });
-        // What a transform took out of the range of f32 is dropped here, or of surfels later.
+        // This drops primitives that a transform moved out of the range of f32; surfels are dropped
+        // later.
         let (primitives, lost) = primitives.map(|vertices| {
             if let Some(color) = model.color {
                 vertices.color = Some(vec![color; vertices.position.len()]);
@@ -268,7 +281,7 @@ impl Loaded {
     }
 }
 
-/// Gives vertices an opacity, if there is one for all of them, and takes what is opaque the array.
+/// Gives vertices one common opacity if there is one, and removes opacities that are all 1.
 fn veil(vertices: &mut Vertices, opacity: Option<f32>) {
     if let Some(opacity) = opacity {
         vertices.opacity = Some(vec![opacity; vertices.position.len()]);
@@ -276,19 +289,19 @@ fn veil(vertices: &mut Vertices, opacity: Option<f32>) {
     vertices.opacity = vertices.opacity.take().filter(|all| all.iter().any(|&one| one != 1.0));
 }
 
-/// A geometry whose surfels are in an order.
+/// A geometry of ordered surfels, which views draw as a prefix.
 fn in_order(geometry: Geometry) -> Result<Geometry> {
     let estimate = estimate(geometry.surfels.position(), geometry.surfels.normal());
     geometry.with_prefix(estimate)
 }
 
-/// Whether the surfels of a model are what its source gives.
+/// Whether the surfels of a model are unchanged from their source.
 fn is_as_read(model: &Model) -> bool {
     let Model { color, opacity, transform, .. } = model;
     color.is_none() && opacity.is_none() && *transform == Similarity::IDENTITY
 }
 
-/// The surfels of a model in its place and colour.
+/// The surfels of a model, in its place and colour.
 fn placed(model: &Model, surfels: Surfels) -> Cloud {
     let mut cloud = surfels.into_cloud();
     if let Some(color) = model.color {

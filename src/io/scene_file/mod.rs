@@ -1,12 +1,17 @@
-//! Scenes as TOML: models and shapes, lights, camera, method and settings.
+//! Describe a scene in TOML, and get from its name to a picture: models and shapes, lights, camera,
+//! method and settings.
 //!
-//! A complete file:
+//! [`SceneFile::open`] has an example that loads and draws a scene. A [`SceneFile`] holds the contents
+//! of such a file; one PLY or OBJ file or one shape alone makes one too: [`SceneFile::of_model`]. This
+//! is a complete file:
 //!
 //! ```toml
 #![doc = include_str!("example.toml")]
 //! ```
 //!
-//! The tree of [`crate::source::plant`] is a model too, which the method `pyramid` draws:
+//! # A tree as a model
+//!
+//! The tree of [`crate::source::plant`] is a model too, drawn by the method `pyramid`:
 //!
 //! ```toml
 //! [[model]]
@@ -19,26 +24,28 @@
 //! name = "pyramid"
 //! ```
 //!
-//! A scene of objects, over a sequence of frames (see [`crate::scene::objects`]):
+//! # Objects that move over a sequence of frames
+//!
+//! A scene of objects has frames (see [`crate::scene::objects`]):
 //!
 //! ```toml
 #![doc = include_str!("objects.toml")]
 //! ```
 //!
-//! A scene with a geometry, or with a progressive model, is one of objects: its models are objects too, which come first, in order,
-//! each of a geometry of its own, at rest. Its geometries are those of the models and then the named
-//! ones. Where objects have no place of their own they are where their geometry is. Frames are
-//! counted from 0; keys may lie beyond the last frame. A camera that is not chosen shows the scene as
-//! it is in frame 0, in every frame.
+//! A scene with a geometry, or with a progressive model, is a scene of objects. Its models become
+//! objects too. They come first, in order, each with a geometry of its own, and do not move. The
+//! geometries are the models' geometries, then the named ones. An object without a place is where
+//! its geometry is. Frames are counted from 0; keys may lie beyond the last frame. Without a chosen
+//! camera, every frame uses the camera that shows the scene of frame 0.
 //!
-//! Numbers are read as f64 and rounded to f32 where the scene holds f32; any decimal that `f32`
-//! prints comes back with its bits. Keys that are in none of these are refused, so that a typing
-//! error is not a default.
+//! # Numbers and keys
 //!
-//! [`SceneFile`] is what such a file says; [`SceneFile::open`] leads from a name to a picture. One
-//! PLY or OBJ file or one shape alone makes a scene file too: [`SceneFile::of_model`]. The tables of
-//! settings follow from the rows of [`crate::setting`], here, on the command line and in the text of a
-//! picture.
+//! Numbers are read as f64, and rounded to f32 where the scene holds f32; any decimal that `f32`
+//! prints comes back with its bits. Unknown keys are refused, so that a misspelt key does not
+//! become a default.
+//!
+//! The tables of settings follow from the rows of [`crate::setting`], here, on the command line and
+//! in the text of a picture.
 
 mod choice;
 mod draw;
@@ -71,107 +78,110 @@ use crate::source::Shape;
 use glam::{DVec3, Vec3};
 use std::path::{Path, PathBuf};
 
-/// How many surfels cover a shape if nobody says; a tree has [`crate::source::plant::LEAVES`].
+/// The default number of surfels of a shape; a tree has [`crate::source::plant::LEAVES`] leaves.
 pub const DEFAULT_COUNT: usize = 200_000;
-/// The size of a picture if nobody says.
+/// The default size of a picture.
 pub const DEFAULT_SIZE: [u32; 2] = [1024, 768];
-/// The lens if neither a person nor a shape says: the vertical field of view in degrees.
+/// The default lens for scenes other than a single shape: the vertical field of view in degrees.
 pub const DEFAULT_FIELD_OF_VIEW: f64 = 34.0;
-/// The side from which a scene is framed if nobody says: from the front, the right and above.
+/// The default side from which a scene is framed: from the front, the right and above.
 pub const DEFAULT_SIDE: DVec3 = DVec3::new(0.5, 0.375, 1.0);
 
-/// What a scene file says: nothing is loaded, and what it leaves open is still open.
+/// The contents of a scene file. Nothing is loaded yet, and defaults are still open.
 #[derive(Clone, Debug, PartialEq)]
 pub struct SceneFile {
-    /// What the scene is called: the name of the file without its extension, or of the shape.
+    /// The name of the scene: the name of the file without its extension, or of the shape.
     pub name: String,
-    /// The folder of a [hierarchy](crate::io::hierarchy), which is all that the scene shows, if there is one: then there are
-    /// neither models nor objects.
+    /// The folder of a [hierarchy](crate::io::hierarchy). If there is one, the scene has neither
+    /// models nor objects.
     pub hierarchy: Option<PathBuf>,
     /// The models; at least one if there are neither objects nor a hierarchy.
     pub models: Vec<Model>,
-    /// What objects are copies of.
+    /// The geometries that objects are copies of.
     pub geometries: Vec<Geometry>,
     /// The objects beside the models.
     pub objects: Vec<ObjectChoice>,
-    /// How many frames there are, 1 to [`MOST_FRAMES`].
+    /// The number of frames, 1 to [`MOST_FRAMES`].
     pub frames: u32,
-    /// The frame that is pictured: 0, unless somebody asks for another.
+    /// The frame to draw; 0 by default.
     pub frame: u32,
-    /// What is drawn of progressive models.
+    /// Which levels of progressive models are drawn.
     pub refinement: Refinement,
-    /// Where it is seen from.
+    /// The camera.
     pub camera: CameraChoice,
-    /// The lights; none at all shows the colours unlit.
+    /// The lights; without any, colours are shown unlit.
     pub lights: Vec<Light>,
-    /// How surfaces answer the lights.
+    /// How surfaces reflect the lights.
     pub material: Phong,
-    /// What surrounds the scene; black if absent.
+    /// The surroundings of the scene; black if absent.
     pub environment: Option<EnvironmentChoice>,
-    /// What is computed.
+    /// The method and its settings.
     pub method: MethodChoice,
-    /// The groups, for a method that draws them.
+    /// How groups are made, for a method that draws groups.
     pub groups: GroupChoice,
-    /// What is kept.
+    /// What is stored of a picture.
     pub output: OutputSettings,
 }
 
-/// Surfels, polygons or lines from one place.
+/// Surfels, polygons or lines from one source.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Model {
-    /// Where they come from.
+    /// The source.
     pub source: Source,
-    /// As what they are drawn; shapes as points, a tree as lines or polygons.
+    /// The primitives to draw; shapes are drawn as points, a tree as lines or polygons.
     pub draw: Draw,
-    /// Where they are put.
+    /// The place of the model.
     pub transform: Similarity,
-    /// Linear RGB for all of them, in place of their own, and of a texture that their file names.
+    /// Linear RGB for all of it, in place of its own colours and of a texture that its file names.
     pub color: Option<Vec3>,
-    /// Opacity in [0, 1] for all of them, in place of their own; for points alone.
+    /// Opacity in [0, 1] for all of it, in place of its own; only for points.
     pub opacity: Option<f32>,
-    /// Levels of prefiltered colours that are made on loading, of the [texture](crate::source::derive) if there is one, else
-    /// of [neighbours](crate::index::mipmap), of surfels as they are read, before any transform; 0 drops those of the file, which are kept if absent.
+    /// Number of levels of prefiltered colours to make on loading. They come from the
+    /// [texture](crate::source::derive) if there is one, else from
+    /// [neighbours](crate::index::mipmap), for the surfels as they are read, before any transform.
+    /// 0 drops the levels of the file; `None` keeps them.
     pub mipmaps: Option<usize>,
-    /// Whether the surfels are in an order of which a view draws a
-    /// [prefix](crate::scene::objects::detail::prefix). A scene with such a model is one of objects.
+    /// Whether the surfels are ordered so that a view can draw a
+    /// [prefix](crate::scene::objects::detail::prefix) of them. A scene with such a model is a
+    /// scene of objects.
     pub progressive: bool,
 }
 
-/// Where a model comes from.
+/// The source of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
     /// A PLY or an OBJ file.
     File {
-        /// Where it is.
+        /// The path of the file.
         path: PathBuf,
         /// The radius of points without one, in the file's units; derived if absent.
         radius: Option<f32>,
-        /// How many of its points, the first ones; all if absent, or if there are fewer. Of an order of
-        /// which every prefix is spread over the whole ([`crate::source::sampler`]), a level of detail: what is
-        /// derived is derived of these points alone.
+        /// How many of its points to use, from the first on; all if absent, or if there are fewer.
+        /// If every prefix of the order covers the whole ([`crate::source::sampler`]), this is a
+        /// level of detail. Derived attributes are derived from these points alone.
         prefix: Option<usize>,
-        /// The texture, see [`crate::io::texture`]; that of the file if absent.
+        /// The texture, see [`crate::io::texture`]; the file's own if absent.
         texture: Option<PathBuf>,
     },
     /// A procedural shape.
     Shape {
-        /// Which.
+        /// The shape.
         shape: Shape,
-        /// About how many surfels.
+        /// Approximate number of surfels.
         count: usize,
-        /// Of the random displacements.
+        /// Random seed of the displacements.
         seed: u64,
     },
     /// [`crate::source::plant::apple_tree`].
     Tree {
-        /// How many.
+        /// Number of leaves.
         leaves: usize,
-        /// What decides its growth.
+        /// Random seed of its growth.
         seed: u64,
     },
 }
 
-/// A camera as far as it was chosen.
+/// The chosen parts of a camera.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct CameraChoice {
     /// Width and height in pixels.
@@ -184,11 +194,11 @@ pub struct CameraChoice {
     pub up: Option<DVec3>,
     /// Keys over frames, in place of these three.
     pub motion: Option<CameraMotion>,
-    /// The opening.
+    /// The opening of the lens.
     pub lens: Option<Lens>,
 }
 
-/// An environment as it was chosen; nothing is read.
+/// The chosen environment; nothing is read yet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EnvironmentChoice {
     /// [`crate::scene::Environment::Sky`].
@@ -198,7 +208,7 @@ pub enum EnvironmentChoice {
 }
 
 impl EnvironmentChoice {
-    /// `sky`, or else the name of a file.
+    /// `sky`, or the name of a file.
     #[must_use]
     pub fn of(text: &str) -> Self {
         match text {
@@ -209,7 +219,7 @@ impl EnvironmentChoice {
 }
 
 impl SceneFile {
-    /// Reads a scene file; model files are looked for in its directory.
+    /// Reads a scene file; paths of models are relative to its folder.
     ///
     /// # Errors
     /// [`Error::Io`] if it cannot be read, [`Error::Format`] as [`SceneFile::parse`].
@@ -220,26 +230,27 @@ impl SceneFile {
         Self::parse(&text, path)
     }
 
-    /// What the text of the scene file at `path` says; nothing is read.
+    /// Parses the text of the scene file at `path`; no other file is read.
     ///
     /// # Errors
-    /// [`Error::Format`] with the line if it is no TOML, has an unknown key, a value of the wrong
-    /// type, no model, or a number that no picture can be made with.
+    /// [`Error::Format`] with the line if the text is no TOML, has an unknown key, a value of the
+    /// wrong type, no model, or a number that no picture can be made with.
     pub fn parse(text: &str, path: &Path) -> Result<Self> {
         text::parse(text, path)
     }
 
-    /// The text of a scene file at `path` that draws the same, with a line for each thing that is not as if
-    /// nobody had said it. Files that are named lie beside it, or have their whole path. Which frame is pictured is not
-    /// in it.
+    /// The text of a scene file at `path` that draws the same picture. Only settings that differ
+    /// from their defaults have a line. Paths are relative if the file lies in the folder of `path`
+    /// or below, and absolute otherwise. The frame to draw is not in the text.
     ///
     /// # Errors
-    /// [`Error::Invalid`] as [`MethodChoice::method`], or if a path is not Unicode, which TOML cannot say.
+    /// [`Error::Invalid`] as [`MethodChoice::method`], or if a path is not Unicode, because TOML
+    /// cannot hold it.
     pub fn text(&self, path: &Path) -> Result<String> {
         text::write(self, path)
     }
 
-    /// The scene of one model, everything else left open.
+    /// A scene of one model, with all other choices left open.
     #[must_use]
     pub fn of_model(source: Source) -> Self {
         let model = Model {
@@ -254,7 +265,7 @@ impl SceneFile {
         Self { models: vec![model.clone()], ..Self::of_nothing(model.source.name()) }
     }
 
-    /// The scene of a [hierarchy](crate::io::hierarchy), everything else left open.
+    /// A scene of a [hierarchy](crate::io::hierarchy), with all other choices left open.
     #[must_use]
     pub fn of_hierarchy(folder: &Path) -> Self {
         Self { hierarchy: Some(folder.to_owned()), ..Self::of_nothing(stem(folder)) }
@@ -280,7 +291,7 @@ impl SceneFile {
         }
     }
 
-    /// The files that loading reads, but for those that models name.
+    /// The files that loading reads, except those that model files name.
     pub fn reads(&self) -> impl Iterator<Item = &Path> {
         let models = self.all_models().flat_map(|model| match &model.source {
             Source::File { path, texture, .. } => [Some(path.as_path()), texture.as_deref()],
@@ -299,7 +310,7 @@ impl SceneFile {
         models.chain(tables).chain(environment).chain(index)
     }
 
-    /// Whether the scene is one of objects.
+    /// Whether this is a scene of objects.
     #[must_use]
     pub fn has_objects(&self) -> bool {
         self.hierarchy.is_some()
@@ -307,21 +318,21 @@ impl SceneFile {
             || self.models.iter().any(|model| model.progressive)
     }
 
-    /// The models, and those of the geometries.
+    /// All models, including the models of the geometries.
     pub fn all_models(&self) -> impl Iterator<Item = &Model> {
         self.models.iter().chain(self.geometries.iter().map(|geometry| &geometry.model))
     }
 
-    /// The same, to be changed.
+    /// All models, for changes.
     pub fn all_models_mut(&mut self) -> impl Iterator<Item = &mut Model> {
         let of_geometries = self.geometries.iter_mut().map(|geometry| &mut geometry.model);
         self.models.iter_mut().chain(of_geometries)
     }
 
-    /// Whether there is such a frame.
+    /// Checks that the scene has a frame with this number.
     ///
     /// # Errors
-    /// [`Error::Usage`] if not.
+    /// [`Error::Usage`] if it has not.
     pub fn check_frame(&self, frame: u32) -> Result<()> {
         if frame < self.frames {
             return Ok(());
@@ -332,12 +343,13 @@ impl SceneFile {
         }))
     }
 
-    /// The camera in the frame that is pictured: what was chosen, and for the rest what shows `scene`, this one when loaded.
+    /// The camera in the frame to draw: the chosen parts, completed so that the camera shows
+    /// `scene`, which is this scene after loading.
     ///
-    /// A scene of one shape that is not transformed has the shape's own pose and lens. Any other is
-    /// framed from [`DEFAULT_SIDE`], see [`Camera::framing`]; where only the eye was chosen it
-    /// looks at the middle of [`Scene::bounding_sphere`], where only the target was chosen it looks
-    /// from [`DEFAULT_SIDE`] at a sphere of that radius around it.
+    /// A scene of one untransformed shape has the shape's own pose and lens. Any other scene is
+    /// framed from [`DEFAULT_SIDE`], see [`Camera::framing`]. If only the eye was chosen, it looks
+    /// at the middle of [`Scene::bounding_sphere`]. If only the target was chosen, the camera looks
+    /// from [`DEFAULT_SIDE`] at a sphere of that radius around the target.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`Camera::new`].
@@ -378,7 +390,7 @@ impl SceneFile {
 }
 
 impl SceneFile {
-    /// The shape that is all there is, where it is.
+    /// The shape, if the scene is nothing but one untransformed shape.
     fn shape(&self) -> Option<&Shape> {
         match self.models.as_slice() {
             [Model { source: Source::Shape { shape, .. }, transform, .. }]
@@ -390,13 +402,14 @@ impl SceneFile {
         }
     }
 
-    /// The lens, see [`SceneFile::camera`].
+    /// The lens that [`SceneFile::camera`] uses.
     fn lens(&self) -> Lens {
         let own = || self.shape().map(Shape::default_lens);
         self.camera.lens.or_else(own).unwrap_or(Lens::FieldOfView(DEFAULT_FIELD_OF_VIEW))
     }
 
-    /// The grouping that was chosen for a method; none: that of the file, or of the method.
+    /// The chosen grouping for a method. `None` leaves the choice to the scene's file or to the
+    /// method.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`GroupChoice::grouping`].
@@ -406,7 +419,7 @@ impl SceneFile {
     }
 }
 
-/// Whether an opacity for a whole model is in [0, 1].
+/// Checks that an opacity for a whole model is in [0, 1].
 ///
 /// # Errors
 /// [`Error::Invalid`] if it is not.
@@ -418,10 +431,10 @@ pub fn check_opacity(opacity: f32) -> Result<()> {
     }
 }
 
-/// Whether so many levels of prefiltered colours can be made for a model, or none.
+/// Checks that a model can have this number of levels of prefiltered colours, or none.
 ///
 /// # Errors
-/// [`Error::Invalid`] if they cannot.
+/// [`Error::Invalid`] if it cannot.
 pub fn check_mipmaps(levels: usize) -> Result<()> {
     if levels <= MOST_LEVELS {
         return Ok(());
@@ -429,10 +442,10 @@ pub fn check_mipmaps(levels: usize) -> Result<()> {
     Err(Error::Invalid(format!("mipmaps of {levels} levels; give 0 to {MOST_LEVELS}")))
 }
 
-/// Whether so many points of a file can be drawn.
+/// Checks that a prefix of this many points can be drawn.
 ///
 /// # Errors
-/// [`Error::Invalid`] if they cannot.
+/// [`Error::Invalid`] if it cannot.
 pub fn check_prefix(points: usize) -> Result<()> {
     if points > 0 {
         return Ok(());

@@ -1,4 +1,4 @@
-//! One model: its surfels and primitives where its file has them.
+//! Load one model: its surfels and primitives in the coordinates of its file.
 
 use super::{Draw, FileKind, Model, Source, read_model};
 use crate::error::{Error, Result};
@@ -10,12 +10,12 @@ use crate::source::derive::{self, Derive, Derived};
 use crate::source::plant;
 use std::path::Path;
 
-/// A model where its file has it.
+/// A model in the coordinates of its file.
 pub(super) struct ModelParts {
     pub(super) surfels: Surfels,
     pub(super) primitives: Primitives,
     pub(super) derived: Option<Derived>,
-    /// Whether colours, of all levels that are asked for, are those of a texture.
+    /// Whether all colours, at all levels asked for, come from a texture.
     pub(super) painted: bool,
 }
 
@@ -25,23 +25,23 @@ impl ModelParts {
     }
 }
 
-/// Whether a model has the colours of a texture, if there is one.
+/// Whether a model would show the colours of a texture.
 fn shows_texture(model: &Model) -> bool {
     model.color.is_none() && !matches!(model.draw, Draw::Ribbons | Draw::Tubes)
 }
 
-/// What a scene is loaded for.
+/// Why a scene is loaded.
 #[derive(Clone, Copy, PartialEq)]
 pub(super) enum Purpose<'a> {
-    /// To be drawn, whole.
+    /// To draw it; everything is read.
     Scene,
-    /// To be drawn by views, of which each reads what it needs of a hierarchy.
+    /// To draw views, each of which reads only what it needs of a hierarchy.
     View,
-    /// Vertices of polygons keep their opacities and these properties.
+    /// To choose candidates: vertices of polygons keep their opacities and these properties.
     Candidates(&'a [String]),
 }
 
-/// Whether a model can be drawn as it says, and may have its opacity and its texture.
+/// Refuses a model that cannot be drawn as chosen, or with the chosen opacity, texture or mipmaps.
 pub(super) fn check_draw(model: &Model, purpose: Purpose<'_>) -> Result<()> {
     model.draw.check(&model.source).map_err(Error::Invalid)?;
     if model.progressive && !matches!(model.source, Source::File { .. }) {
@@ -67,6 +67,7 @@ pub(super) fn check_draw(model: &Model, purpose: Purpose<'_>) -> Result<()> {
         };
         return Err(Error::Invalid(format!("{name}: {what}; remove the mipmaps")));
     }
+    // For candidates, a model is drawn as polygons that keep their opacities.
     let veiled = matches!(model.draw, Draw::Surfels | Draw::Points | Draw::Facets)
         || matches!(purpose, Purpose::Candidates(_));
     if model.opacity.is_some() && !veiled {
@@ -90,7 +91,7 @@ pub(super) fn read(
             let mut cloud = read_model(path, exec)?;
             cloud.properties = ply::properties(path, further)?;
             if model.draw == Draw::Polygons && !matches!(purpose, Purpose::Candidates(_)) {
-                // They are drawn opaque.
+                // Polygons are drawn opaque.
                 cloud.opacity = None;
             }
             if shows_texture(model) {
@@ -122,10 +123,11 @@ pub(super) fn read(
     }
 }
 
-/// Whether the vertices of a model have these properties, as far as its headers tell.
+/// Checks in the header of a model's file that its vertices have these properties.
 ///
 /// # Errors
-/// [`Error::Usage`] if there are names, but the model is no PLY; [`Error::Format`] as [`ply::properties`].
+/// [`Error::Usage`] if there are names, but the model is no PLY; [`Error::Format`] as
+/// [`ply::properties`].
 pub(in crate::io) fn check_properties(model: &Model, names: &[String]) -> Result<()> {
     match ply_of(model, names)? {
         Some(path) => ply::check_properties(path, names),
@@ -133,7 +135,7 @@ pub(in crate::io) fn check_properties(model: &Model, names: &[String]) -> Result
     }
 }
 
-/// The PLY that a model is of, if there are names of properties.
+/// The PLY file of a model, if there are names of properties to read from it.
 fn ply_of<'a>(model: &'a Model, names: &[String]) -> Result<Option<&'a Path>> {
     let Some(first) = names.first() else { return Ok(None) };
     match &model.source {
@@ -146,7 +148,7 @@ fn ply_of<'a>(model: &'a Model, names: &[String]) -> Result<Option<&'a Path>> {
     }
 }
 
-/// The first so many points of a file, or all, which are in an order if a prefix is drawn.
+/// The first `prefix` points of a file, or all; a prefix needs points without triangles and edges.
 fn first(cloud: Cloud, prefix: Option<usize>, progressive: bool) -> Result<Cloud> {
     let Some(count) = prefix.or(progressive.then_some(usize::MAX)) else { return Ok(cloud) };
     if !(cloud.triangles.is_empty() && cloud.edges.is_empty()) {
@@ -198,7 +200,7 @@ fn of_file(
             let (tubes, derived) = derive::tubes(cloud, options)?;
             ModelParts::new(Surfels::none(), Primitives { tubes, ..none }, derived)
         }
-        // Refused before any file is read.
+        // `check_draw` refuses this before any file is read.
         Draw::Lines => return Err(Error::Invalid("only a tree is drawn as lines".into())),
     })
 }

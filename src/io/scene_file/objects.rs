@@ -1,4 +1,4 @@
-//! Objects of a scene file, and where they are.
+//! List the objects of a scene file and their places.
 
 use super::{Model, SceneFile, places};
 use crate::error::{Error, Result};
@@ -11,35 +11,35 @@ use std::path::PathBuf;
 /// The most frames of a sequence.
 pub const MOST_FRAMES: u32 = 1_000_000;
 
-/// What objects are copies of: a model that is not drawn by itself. Its transform, its colour and its
-/// opacity are the geometry's own, in every object.
+/// A model that objects are copies of; it is not drawn by itself. Its transform, colour and opacity
+/// apply in every object.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Geometry {
-    /// What it is called.
+    /// The name of the geometry.
     pub name: String,
-    /// The threshold of its [levels of detail](crate::scene::objects::detail) in pixels; if absent
+    /// The threshold of its [levels of detail](crate::scene::objects::detail) in pixels; if absent,
     /// all surfels are drawn.
     pub detail: Option<f64>,
-    /// Where it comes from.
+    /// The model.
     pub model: Model,
 }
 
-/// An object of a geometry, or many.
+/// One object of a geometry, or many.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ObjectChoice {
-    /// What it is called. If absent the name of the geometry, a point, and how many objects of the
-    /// geometry come before it. Of a table or a scatter: this name, a point, and the number of the
-    /// row or the place, from 0.
+    /// The name of the object. If absent, it is the name of the geometry, a point, and the number
+    /// of earlier objects of that geometry. Objects of a table or a scatter are called by this
+    /// name, a point, and the number of the row or the place, from 0.
     pub name: Option<String>,
-    /// The geometry, by its place in [`SceneFile::geometries`].
+    /// The geometry, as an index into [`SceneFile::geometries`].
     pub geometry: usize,
-    /// Linear RGB, in place of the geometry's.
+    /// Linear RGB, in place of the geometry's colours.
     pub color: Option<Vec3>,
-    /// Where it is.
+    /// The places.
     pub places: Places,
 }
 
-/// Where objects are.
+/// The places of objects.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Places {
     /// One object, which may move.
@@ -48,14 +48,14 @@ pub enum Places {
     Table {
         /// The file.
         path: PathBuf,
-        /// What comes after the place of each row, see [`Similarity::then`].
+        /// The transform to apply after the place of each row, see [`Similarity::then`].
         transform: Similarity,
     },
-    /// Objects by chance.
+    /// Random places.
     Scatter {
-        /// Where.
+        /// The distribution of the places.
         scatter: Scatter,
-        /// What comes after each place, see [`Similarity::then`].
+        /// The transform to apply after each place, see [`Similarity::then`].
         transform: Similarity,
     },
 }
@@ -64,12 +64,12 @@ pub enum Places {
 const OF_AN_OBJECT: u64 = 768;
 
 impl SceneFile {
-    /// The objects: of each model one, then those that the file lists; `geometries` are numbered in
-    /// the same way.
+    /// The objects: one for each model, then the objects of the file. Geometries are numbered in
+    /// the same order.
     ///
     /// # Errors
-    /// As [`places::read`]; [`Error::Invalid`] if there are 2^32 or more, or if the process may not
-    /// hold them.
+    /// As [`places::read`]; [`Error::Invalid`] if there are 2^32 objects or more, or if the process
+    /// may not hold them.
     pub(in crate::io) fn objects(&self) -> Result<Vec<Object>> {
         let tables = self.objects.iter().map(|object| match &object.places {
             Places::Table { path, .. } => places::read(path).map(Some),
@@ -100,7 +100,8 @@ impl SceneFile {
         Ok(all)
     }
 
-    /// Appends an object, or all of a table or of a scatter. `before` counts those of the geometry.
+    /// Appends an object, or all objects of a table or a scatter. `before` counts the earlier
+    /// objects of the geometry.
     fn add(
         &self,
         object: &ObjectChoice,
@@ -123,6 +124,7 @@ impl SceneFile {
             Places::One(motion) => add(0, motion.clone(), *color),
             Places::Table { path, transform } => {
                 for (number, row) in (0..).zip(table.unwrap_or_default()) {
+                    // Refuse rather than choose one of two colours.
                     if row.color.is_some() && color.is_some() {
                         let what = "the rows have colours, and the object has one: remove one";
                         return Err(Error::format(path, what));

@@ -1,4 +1,4 @@
-//! From the name of a scene to what the scene says.
+//! Open a scene by its name.
 
 use super::{DEFAULT_COUNT, SceneFile, Source};
 use crate::error::{Error, Result};
@@ -9,17 +9,17 @@ use crate::scene::Cloud;
 use crate::source::{Shape, plant};
 use std::path::Path;
 
-/// What the tree of [`crate::source::plant`] is called.
+/// The name of the tree of [`crate::source::plant`].
 pub const TREE: &str = "tree";
 
-/// The names of all that can be made without a file: [`Shape::ALL`] and [`TREE`].
+/// The names of everything that needs no file: [`Shape::ALL`] and [`TREE`].
 #[must_use]
 pub fn shapes() -> String {
     let names: Vec<&str> = Shape::ALL.iter().map(Shape::name).chain([TREE]).collect();
     names.join(", ")
 }
 
-/// What a file is, by its extension.
+/// The kind of a file, by its extension.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum FileKind {
     /// A point cloud or a mesh.
@@ -32,7 +32,8 @@ pub enum FileKind {
     Exr,
 }
 
-/// Reads the model at `path`: OBJ by its extension, else PLY. Its texture is not read, see [`crate::io::texture::paint`].
+/// Reads the model at `path`: OBJ by its extension, PLY otherwise. Its texture is not read, see
+/// [`crate::io::texture::paint`].
 ///
 /// # Errors
 /// As [`obj::read`] and [`ply::read_with`].
@@ -44,10 +45,10 @@ pub fn read_model(path: &Path, exec: &Exec) -> Result<Cloud> {
 }
 
 impl FileKind {
-    /// What the file at `path` is.
+    /// The kind of the file at `path`.
     ///
     /// # Errors
-    /// [`Error::Usage`] if the extension is none that is known.
+    /// [`Error::Usage`] if the extension is unknown.
     pub fn of(path: &Path) -> Result<Self> {
         let extension = path.extension().map(|e| e.to_string_lossy().to_ascii_lowercase());
         match extension.as_deref() {
@@ -68,7 +69,8 @@ impl FileKind {
 }
 
 impl Source {
-    /// The procedural source of a name: a shape of about [`DEFAULT_COUNT`] surfels, or [`TREE`].
+    /// The procedural source with this name: a shape of about [`DEFAULT_COUNT`] surfels, or
+    /// [`TREE`].
     #[must_use]
     pub fn procedural(name: &str) -> Option<Self> {
         if name == TREE {
@@ -79,10 +81,8 @@ impl Source {
 }
 
 impl SceneFile {
-    /// The scene that a name stands for: a shape, `tree`, a .ply, an .obj, a scene .toml or the folder of
-    /// a [hierarchy](crate::io::hierarchy). From a name to
-    /// a picture in memory:
-    ///
+    /// Opens a scene by its name: a shape, `tree`, a .ply, an .obj, a scene .toml or the folder of
+    /// a [hierarchy](crate::io::hierarchy). This example gets from a name to a picture in memory:
     /// ```
     /// use splatref::frame::{Exec, Samples};
     /// use splatref::io::scene_file::SceneFile;
@@ -102,8 +102,8 @@ impl SceneFile {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Usage`] if the name is neither a shape nor that of a scene; else as
-    /// [`SceneFile::read`]. A model is not read yet.
+    /// [`Error::Usage`] if the name is neither a shape nor a scene; else as [`SceneFile::read`].
+    /// The model itself is not read yet.
     pub fn open(name: impl AsRef<Path>) -> Result<Self> {
         let path = name.as_ref();
         if let Some(source) = path.to_str().and_then(Source::procedural) {

@@ -1,16 +1,18 @@
-//! Tables of places: an object a row, from CSV or PLY.
+//! Place one object for each row of a table, from CSV or PLY.
 //!
-//! | columns | | |
+//! | columns | default | meaning |
 //! |---|---|---|
-//! | `x y z` | always | translation, world units |
-//! | `scale` | 1 if absent | finite and > 0 |
-//! | `axis_x axis_y axis_z degrees` | together | the turn, see [`transform::rotation`] |
-//! | `r g b` | together | linear RGB for all of the object |
+//! | `x y z` | required | translation, world units |
+//! | `scale` | 1 | finite and > 0 |
+//! | `axis_x axis_y axis_z degrees` | no rotation; give all or none | the rotation, see [`transform::rotation`] |
+//! | `r g b` | the object's colour; give all or none | linear RGB for the whole object |
 //!
-//! A CSV file is text: the names of the columns in the first line, in any order, then a row a line,
-//! numbers between commas. Blanks around names and numbers and empty lines are skipped; there are no
-//! quotes. Numbers are read as f64. A PLY file has the columns as properties of its element `vertex`,
-//! each a number; its other properties are skipped, as are other elements.
+//! A CSV file is text. The first line has the names of the columns, in any order. Each further line
+//! is a row of numbers between commas. Blanks around names and numbers are skipped, and so are
+//! empty lines; there are no quotes. Numbers are read as f64.
+//!
+//! A PLY file has the columns as properties of its element `vertex`, each a number. Other
+//! properties and other elements are skipped.
 
 use crate::error::{Error, Result};
 use crate::io::{Reason, input, ply};
@@ -23,18 +25,19 @@ use std::path::Path;
 const NAMES: [&str; 11] =
     ["x", "y", "z", "scale", "axis_x", "axis_y", "axis_z", "degrees", "r", "g", "b"];
 
-/// An object of a table.
+/// A row of a table: an object.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Row {
     pub(super) place: Similarity,
     pub(super) color: Option<Vec3>,
 }
 
-/// Reads a table.
+/// Reads a table of places.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read; [`Error::Format`], with the line or the vertex, if columns
-/// are missing, given twice or, in CSV, unknown, if there are no rows, or if a row is no place.
+/// [`Error::Io`] if the file cannot be read. [`Error::Format`], with the line or the vertex, if
+/// columns are missing, given twice or, in CSV, unknown, if there are no rows, or if a row is no
+/// valid place.
 pub(super) fn read(path: &Path) -> Result<Vec<Row>> {
     let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
     let extension = path.extension().map(|end| end.to_string_lossy().to_ascii_lowercase());
@@ -74,7 +77,7 @@ fn csv(bytes: &[u8]) -> Reason<Vec<Row>> {
     if rows.is_empty() { Err("there are no rows below the header".into()) } else { Ok(rows) }
 }
 
-/// The numbers of a line.
+/// Parses the numbers of a line.
 fn numbers(line: &str, names: &[&str], values: &mut Vec<f64>) -> Reason<()> {
     values.clear();
     for (i, word) in line.split(',').map(str::trim).enumerate() {
@@ -88,7 +91,7 @@ fn numbers(line: &str, names: &[&str], values: &mut Vec<f64>) -> Reason<()> {
     Err(format!("{} values below {} columns", values.len(), names.len()))
 }
 
-/// Where each of [`NAMES`] is in a row.
+/// The column of each of [`NAMES`].
 struct Columns([Option<usize>; NAMES.len()]);
 
 impl Columns {

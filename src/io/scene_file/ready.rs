@@ -1,4 +1,4 @@
-//! From a scene file to a session.
+//! Prepare a scene file for drawing: load it, and resolve camera, method and groups.
 
 use super::model::Purpose;
 use super::{Loaded, Number, OutputSettings, SceneFile};
@@ -14,39 +14,40 @@ use crate::source::flatten;
 use std::borrow::Cow;
 use std::path::Path;
 
-/// What a scene file says, loaded and resolved: all that the picture of a frame needs.
+/// A loaded scene with resolved settings: everything that the picture of a frame needs.
 #[derive(Clone, Debug)]
 pub struct Ready {
-    /// The scene, and how it came about.
+    /// The scene, with a report about its models.
     pub loaded: Loaded,
-    /// Where the scene is seen from.
+    /// The camera.
     pub camera: Camera,
-    /// What is computed.
+    /// The method and its settings.
     pub method: Method,
-    /// How groups are made; none: those of the scene, or as the method says.
+    /// How groups are made; `None` leaves the choice to the scene or the method.
     pub grouping: Option<Grouping>,
-    /// The frame.
+    /// The frame to draw.
     frame: u32,
-    /// How the camera moves, if it does, and its lens.
+    /// The motion of the camera and its lens, if the camera moves.
     motion: Option<(CameraMotion, Lens)>,
 }
 
 impl SceneFile {
-    /// Loads the scene in the frame that is pictured and resolves camera and method. What is wrong
-    /// with the settings is said before much is read. Of a hierarchy that is read which the camera draws, in each frame anew.
+    /// Loads the scene in the frame to draw, and resolves camera and method. Errors in the settings
+    /// are found before large files are read. A hierarchy is read as far as the camera draws it,
+    /// anew in each frame.
     ///
-    /// `progress` is told the name of a step, how much of it is done, and of how much.
+    /// `progress` gets the name of a step, how much of it is done, and the total.
     ///
     /// # Errors
     /// As [`SceneFile::check_frame`], [`SceneFile::load`], [`SceneFile::camera`] and [`Ready::at`];
-    /// [`crate::Error::Invalid`] if a setting is
-    /// out of range or not of the method, or if the method cannot draw the scene.
+    /// [`crate::Error::Invalid`] if a setting is out of range or unknown to the method, or if the
+    /// method cannot draw the scene.
     pub fn ready(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Ready> {
         self.check_drawing()?;
         self.placed(self.load_for(Purpose::View, exec, progress)?, exec, progress)
     }
 
-    /// What can be wrong with a frame before anything is loaded.
+    /// Finds the errors of a frame that need no loaded scene.
     fn check_drawing(&self) -> Result<(Method, Option<Grouping>)> {
         let method = self.method.method()?;
         let grouping = self.grouping(&method)?;
@@ -54,11 +55,12 @@ impl SceneFile {
         Ok((method, grouping))
     }
 
-    /// The same of what has been loaded, by this scene file or by one that differs in what is asked of objects with
-    /// levels of detail, in how the scene is drawn or in what is left of it.
+    /// The same for a scene that is already loaded. It may have been loaded by a scene file that
+    /// differs in its levels of detail, in how the scene is drawn, or in what is stored of a
+    /// picture.
     ///
     /// # Errors
-    /// As [`SceneFile::ready`], but for those of files.
+    /// As [`SceneFile::ready`], except for errors of files.
     pub fn ready_of(&self, loaded: Loaded, exec: &Exec) -> Result<Ready> {
         self.placed(loaded, exec, &|_, _, _| ())
     }
@@ -81,7 +83,7 @@ impl SceneFile {
 }
 
 impl Ready {
-    /// The same scene in another frame, in the memory of this one.
+    /// The same scene in another frame; reuses the memory of this one.
     ///
     /// # Errors
     /// As [`Ready::camera_at`], [`Objects::at`], [`Objects::seen_from`] and [`flatten()`].
@@ -117,7 +119,7 @@ impl Ready {
         self.frame
     }
 
-    /// What names the scene in the files of states: its SHA-256, with objects as in frame 0.
+    /// The identity of the scene in files of states: its SHA-256, with objects as in frame 0.
     ///
     /// # Errors
     /// As [`Objects::at`].
@@ -133,11 +135,11 @@ impl Ready {
         }
     }
 
-    /// What the frame before saw, from a file.
+    /// Reads from a file what the frame before saw.
     ///
     /// # Errors
-    /// As [`state::read`]; [`Error::Invalid`] if the method carries nothing from frame to frame, and
-    /// [`Error::Format`] if the state is not of the frame before.
+    /// As [`state::read`]; [`Error::Invalid`] if the method carries nothing from frame to frame,
+    /// and [`Error::Format`] if the state does not belong to the frame before.
     pub fn state(&self, path: &Path) -> Result<Seen> {
         let Method::Deferred(settings) = &self.method else {
             let what = format!(
@@ -160,12 +162,12 @@ impl Ready {
         Ok(seen)
     }
 
-    /// Puts the objects in their places of the frame, as the camera sees them. What a method is given of them is decided here:
-    /// the objects, or all their surfels.
+    /// Puts the objects in their places of the frame, as the camera sees them. The method then gets
+    /// the objects, or all their surfels if it does not draw objects.
     fn place(&mut self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<()> {
         let Loaded { scene, unread, .. } = &mut self.loaded;
         if let Some(objects) = scene.objects.take() {
-            // Those of the last frame make room.
+            // Free the surfels of the last frame first.
             (scene.surfels, scene.primitives) = (Surfels::none(), Primitives::default());
             let view = objects.at(self.frame)?.seen_from(&self.camera, exec)?;
             drop(objects);
@@ -180,7 +182,8 @@ impl Ready {
         self.method.check_scene(scene)
     }
 
-    /// A session of the scene and the method, and how groups were made, if they were.
+    /// Prepares a session of the scene and the method; also says how groups were made, if they
+    /// were.
     ///
     /// # Errors
     /// As [`Session::prepare`].
@@ -194,7 +197,7 @@ impl Ready {
 }
 
 impl OutputSettings {
-    /// Whether passes store all as it is, for what is said of no other pictures.
+    /// Checks that passes store everything in `f32`, for callers that accept no other pictures.
     ///
     /// # Errors
     /// [`Error::Usage`] with a reason.
@@ -205,11 +208,11 @@ impl OutputSettings {
         Err(Error::Usage(format!("{why}; give --storage f32 and --depth-storage f32")))
     }
 
-    /// A picture in the number type and with the planes that are asked for, as files hold it.
+    /// Draws a picture in the chosen number type and with the chosen planes, as files hold it.
     ///
     /// # Errors
-    /// As [`Session::render`], [`Session::define`] and [`Session::stored`], and [`Error::Invalid`] if other formats
-    /// are asked for in f64.
+    /// As [`Session::render`], [`Session::define`] and [`Session::stored`], and [`Error::Invalid`]
+    /// if other formats are chosen with f64.
     pub fn draw<'s>(
         self,
         session: &'s mut Session<'_>,

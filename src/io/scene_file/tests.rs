@@ -32,7 +32,7 @@ fn splats(file: &SceneFile) -> SplatSettings {
     settings
 }
 
-/// The one line that a bad file gives.
+/// The one line of a bad file's refusal.
 fn refused(text: &str) -> String {
     let error = SceneFile::parse(text, Path::new("a/scene.toml")).unwrap_err();
     assert_eq!(error.exit_code(), 1);
@@ -112,7 +112,7 @@ fn mipmaps_are_made_on_loading_dropped_or_kept() {
     let exec = Exec::sequential();
     let expected = crate::index::mipmap::build(&plain, 3, &exec, &|_, _, _| ()).unwrap();
     assert_eq!(made.mipmap(), Some(&expected));
-    // They go with the surfels into a place, and into a file and out of it.
+    // They stay with the surfels through a transform, and through writing and reading a file.
     let moved = of(&format!("{board}mipmaps = 3\n[model.transform]\nscale = 2\n"));
     assert_eq!(moved.mipmap(), Some(&expected));
     let folder = tempfile::tempdir().unwrap();
@@ -126,7 +126,7 @@ fn mipmaps_are_made_on_loading_dropped_or_kept() {
     assert_eq!(read("mipmaps = 0").mipmap(), None);
     assert_eq!(read("mipmaps = 2").mipmap().unwrap().of(7), &expected.of(7)[..2]);
     assert_eq!(read("color = [1, 0, 0]").mipmap(), None, "one colour for all");
-    // A geometry of objects has them too.
+    // Geometries of objects have them too.
     let object = format!(
         "{}name = \"a\"\nmipmaps = 3\n[[object]]\nof = \"a\"\n",
         board.replace("model", "geometry")
@@ -170,7 +170,7 @@ fn what_is_absent_has_its_default() {
     assert_eq!(parse(&format!("light = []\n{SHAPE}")).lights, []);
 }
 
-/// Every array, with a value too many and with one too few.
+/// Every array, with one value too many and with one too few.
 #[test]
 fn arrays_have_as_many_values_as_they_must() {
     let model = "[[model]]\nshape = \"torus\"\n";
@@ -326,7 +326,7 @@ fn models_are_joined_in_their_order() {
     assert_eq!(loaded.dropped.position, 1);
     let derived = loaded.models[1].derived.unwrap();
     assert_eq!((derived.normals, derived.radii), (Origin::Neighbours, Origin::Neighbours));
-    // The radii of the file's own derivation, twice as large.
+    // The radii that the file alone would derive, twice as large.
     assert!(surfels.radius()[50..].iter().all(|&r| r > 1.9 && r < 3.0), "{:?}", surfels.radius());
 }
 
@@ -398,7 +398,7 @@ fn what_the_camera_leaves_open_shows_the_scene() {
     let own = Camera::new(40, 30, shape.default_pose(), shape.default_lens()).unwrap();
     assert_eq!(file.camera(&scene).unwrap(), own, "a shape has a pose of its own");
 
-    // A shape that was moved is framed like any other model.
+    // A transformed shape is framed like any other model.
     file.models[0].transform.translation = DVec3::new(100.0, 0.0, 0.0);
     let scene = load(&file).scene;
     let (middle, radius) = scene.surfels.bounding_sphere();
@@ -406,7 +406,7 @@ fn what_the_camera_leaves_open_shows_the_scene() {
     let framed = Camera::framing(40, 30, (middle, radius), DEFAULT_SIDE, lens).unwrap();
     assert_eq!(file.camera(&scene).unwrap(), framed);
 
-    // The rest follows from what was chosen: the middle of the picture is the target.
+    // The rest follows from the choices: the middle of the picture is the target.
     let looks_at = |camera: &Camera, target: DVec3| {
         let p = camera.view_from_world.as_dmat4().transform_point3(target);
         assert!(p.x.abs() < 1e-4 && p.y.abs() < 1e-4 && p.z < 0.0, "{p}");

@@ -1,16 +1,17 @@
 //! The operators, and which of their results need no rounding.
 //!
-//! An operator first takes its operands for bounded. If they are not, or divide by what may be 0,
-//! the bound of the result is infinite, NaN, or beyond the largest `f32`, and with that one test
-//! the operator is left to its rare cases, out of line.
+//! An operator first assumes that its operands are bounded. If an operand is unbounded, or a
+//! divisor may be 0, the bound of the result is infinite, NaN, or beyond the largest `f32`. One
+//! test finds all these cases, and the operator calls a function out of line for them, because they
+//! are rare.
 
 use super::{Ball, Profile, common};
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
-/// Whether an operation on exact operands has this result exactly.
+/// Whether an operation on exact operands has exactly this result.
 ///
-/// The result in `f64` is within 2^-53 of the exact one, so that if the former is an `f32`, that is
-/// what the exact one rounds to.
+/// The result in `f64` is within 2^-53 of the exact result. So if the `f64` result is an `f32`, the
+/// exact result rounds to it.
 #[inline(always)]
 pub(super) fn is_exact<P: Profile>(result: f64, radii: f64) -> bool {
     P::ROUNDS_TO_NEAREST && radii == 0.0 && f64::from(result as f32) == result
@@ -33,7 +34,7 @@ impl<P: Profile> Add for Ball<P> {
     }
 }
 
-/// A sum that is not bounded, or of terms that are not.
+/// A sum that is not bounded, or has unbounded terms.
 #[cold]
 #[inline(never)]
 fn rare_sum<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
@@ -43,10 +44,10 @@ fn rare_sum<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
             let sum = P::sum(middle, [&a, &b]);
             Ball { radius: Ball::<P>::unbounded(middle, sum.radius.is_nan()).radius, ..sum }
         }
-        // Infinite exactly, or unbounded.
+        // One term is exactly infinite, or unbounded.
         (true, false) => Ball::new(middle, b.radius),
         (false, true) => Ball::new(middle, a.radius),
-        // Infinities of both signs.
+        // Both may be infinite, with opposite signs.
         (false, false) => Ball::unbounded(middle, true),
     }
 }
@@ -117,7 +118,7 @@ fn quotient<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
     let spread = (m.abs() * s + n.abs() * r) / (n.abs() * (n.abs() - s));
     let quotient = Ball::new(middle, Ball::<P>::reach(middle, spread, P::QUOTIENT, P::TINY));
     let divides = !b.may_be_zero() & (n.abs() + s <= P::LARGEST_DIVISOR);
-    // The dividend may be 0, the divisor infinite.
+    // The dividend may be 0, or the divisor infinite.
     let common = quotient.is_in_range() & divides & (middle != 0.0);
     if common { quotient } else { rare_quotient(a, b) }
 }
@@ -145,7 +146,7 @@ impl<P: Profile> Neg for Ball<P> {
     type Output = Self;
     #[inline(always)]
     fn neg(self) -> Self {
-        // The terms are those of the opposite sum.
+        // The terms now stand for the opposite sum.
         Self { middle: -self.middle, ..self }
     }
 }

@@ -1,4 +1,4 @@
-//! What is taken of the ends of an interval: bounds and hulls, which round nothing.
+//! Bounds and hulls: computed from the ends of an interval, without rounding.
 
 use super::{Ball, Profile, SLACK, larger};
 
@@ -21,7 +21,7 @@ pub(super) fn at_least<P: Profile>(x: Ball<P>, low: Ball<P>) -> Ball<P> {
     around(middle, [larger(x.low(), low.low()), larger(x.high(), low.high())])
 }
 
-/// `x`, `low` where `x < low`, or `high` where that is greater.
+/// `x`, `low` where `x < low`, or `high` where the result is greater than `high`.
 #[inline(never)]
 pub(super) fn clamped<P: Profile>(x: Ball<P>, low: Ball<P>, high: Ball<P>) -> Ball<P> {
     if (x.low() >= low.high()) & (x.high() <= high.low()) {
@@ -34,14 +34,15 @@ pub(super) fn clamped<P: Profile>(x: Ball<P>, low: Ball<P>, high: Ball<P>) -> Ba
         smaller(larger(x.low(), low.low()), high.low()),
         smaller(larger(x.high(), low.high()), high.high()),
     ];
-    // Infinite ends that are equal: infinity, exactly.
+    // The ends are the same infinity, so the result is exactly that infinity.
     if ends[0] == ends[1] { Ball::exact(middle) } else { around(middle, ends) }
 }
 
-/// Both of two values, about the one that the midpoints choose.
+/// The hull of two values, about the one that the midpoints choose.
 #[inline(never)]
 pub(super) fn hull<P: Profile>(middle: bool, yes: Ball<P>, no: Ball<P>) -> Ball<P> {
     let (chosen, other) = if middle { (yes, no) } else { (no, yes) };
+    // About equal midpoints the larger radius holds both, without any slack.
     if chosen.middle.to_bits() == other.middle.to_bits() {
         return Ball::new(chosen.middle, larger(chosen.radius, other.radius));
     }
@@ -50,13 +51,13 @@ pub(super) fn hull<P: Profile>(middle: bool, yes: Ball<P>, no: Ball<P>) -> Ball<
 }
 
 impl<P: Profile> Ball<P> {
-    /// Both of two values, about this one.
+    /// The hull of this value and another, about this one.
     #[must_use]
     pub(crate) fn either(self, other: Self) -> Self {
         hull(true, self, other)
     }
 
-    /// Both of two triples.
+    /// The hulls of two triples.
     pub(crate) fn either_of(a: [Self; 3], b: [Self; 3]) -> [Self; 3] {
         [0, 1, 2].map(|c| a[c].either(b[c]))
     }

@@ -1,18 +1,18 @@
-//! The operations of [`Common`](super::Common) balls: without a branch, and each part of a result by
-//! itself, as a choice between whole balls is no vector.
+//! The operations of [`Common`](super::Common) balls. They have no branch, and they choose each
+//! part of a result separately, because a choice between whole balls does not vectorize.
 
 use super::{Ball, Profile, Three};
 
-/// Whether an operation on exact operands has this result exactly, as for every other ball.
+/// Whether an operation on exact operands has exactly this result, as for every other ball.
 #[inline(always)]
 fn is_exact<P: Profile>(result: f64, radii: f64) -> bool {
     P::ROUNDS_TO_NEAREST & (radii == 0.0) & (f64::from(result as f32) == result)
 }
 
-/// A result: exact, with this radius if it is common, else unknown.
+/// Builds a result: exact, or with this radius if the result is common, else unknown.
 #[inline(always)]
 fn result<P: Profile>(middle: f64, radius: f64, exact: bool, common: bool) -> Ball<P> {
-    // A comparison that NaN fails.
+    // NaN fails this comparison.
     let common = common & (middle.abs() + radius <= f64::from(f32::MAX));
     let radius = if common { radius } else { f64::NAN };
     Ball::new(middle, if exact { 0.0 } else { radius })
@@ -32,7 +32,7 @@ pub(super) fn product<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
     let (m, n, r, s) = (a.middle, b.middle, a.radius, b.radius);
     let middle = m * n;
     let spread = m.abs() * s + n.abs() * r + r * s;
-    // 0 times what is bounded, of which NaN is not.
+    // 0 times a bounded ball; a NaN radius is not bounded.
     let zero = (a.is_zero() | b.is_zero()) & (spread == 0.0);
     let exact = is_exact::<P>(middle, r + s) | zero;
     result(middle, Ball::<P>::reach(middle, spread, P::PRODUCT, P::TINY), exact, true)
@@ -44,14 +44,14 @@ pub(super) fn quotient<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
     let middle = m / n;
     let spread = (m.abs() * s + n.abs() * r) / (n.abs() * (n.abs() - s));
     let divides = !b.may_be_zero() & (n.abs() + s <= P::LARGEST_DIVISOR);
-    // 0 divided by what is bounded.
+    // 0 divided by a bounded ball.
     let zero = divides & a.is_zero() & n.is_finite();
     let exact = is_exact::<P>(middle, r + s) | zero;
     let radius = Ball::<P>::reach(middle, spread, P::QUOTIENT, P::TINY);
     result(middle, radius, exact, divides)
 }
 
-/// The square root of what is not below 0.
+/// The square root of a number that is not below 0.
 #[inline(always)]
 pub(super) fn root<P: Profile>(x: Ball<P>) -> Ball<P> {
     let (middle, low) = (x.middle.sqrt(), x.low());
@@ -72,7 +72,7 @@ pub(super) fn root_of_squares<P: Profile>(x: Ball<P>) -> Ball<P> {
     Ball::new(middle, if x.low() < 0.0 { near_zero.radius } else { root.radius })
 }
 
-/// One of two balls; unknown if it is not decided which.
+/// Chooses one of two balls; unknown if the choice is undecided.
 #[inline(always)]
 pub(super) fn select<P: Profile>(truth: Three, yes: Ball<P>, no: Ball<P>) -> Ball<P> {
     let choose = |yes: f64, no: f64| if truth.middle() { yes } else { no };
@@ -85,7 +85,7 @@ pub(super) fn select<P: Profile>(truth: Three, yes: Ball<P>, no: Ball<P>) -> Bal
     }
 }
 
-/// `x`, or `low` where `x < low`; unknown if it is not decided which.
+/// `x`, or `low` where `x < low`; unknown if the comparison is undecided.
 #[inline(always)]
 pub(super) fn at_least<P: Profile>(x: Ball<P>, low: Ball<P>) -> Ball<P> {
     let (above, below) = (x.low() >= low.high(), x.high() <= low.low());
@@ -112,12 +112,12 @@ mod tests {
         all
     }
 
-    /// Counts the results that are the plain ball's; the others have to be unknown.
+    /// Counts the results that equal the plain ball's; all others must be unknown.
     fn hold<P: Profile>(common: Ball<Common<P>>, plain: Ball<P>, found: &mut [usize; 2]) {
         let bits = |x: f64| x.to_bits();
         let same = bits(common.middle) == bits(plain.middle)
             && bits(common.radius) == bits(plain.radius)
-            // What follows of its terms.
+            // The next sum shows that the terms are equal too.
             && bits((common.rounding_as::<P>() + Ball::ONE).radius) == bits((plain + Ball::ONE).radius);
         assert!(same || common.radius.is_nan(), "{common:?} is not {plain:?}");
         found[usize::from(same && plain.radius.is_finite())] += 1;

@@ -3,7 +3,7 @@
 use super::{Ball, Profile};
 use crate::number::lanes::LANES;
 
-/// A ball for each lane, each of its parts a vector.
+/// A ball for each lane; each part of the balls is a vector.
 #[derive(Clone, Copy)]
 pub(crate) struct BallLanes<P: Profile> {
     middle: [f64; LANES],

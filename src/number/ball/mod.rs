@@ -1,15 +1,20 @@
-//! A number with a radius: all values that a right implementation in `f32` may have.
+//! A number with a radius: every value that a correct `f32` implementation may compute.
 //!
-//! A [`Ball`] is a midpoint and a radius, both `f64`. The midpoint is the value of the same formula
-//! in `f64`, bit for bit. The radius bounds how far from the midpoint an `f32` may lie that was
-//! computed by the same operations from the same inputs, each operation rounding as its [`Profile`]
-//! allows. What holds for one operation holds for a formula: the operands may be any values of
-//! their balls, together.
+//! Evaluate a formula in [`Ball`]s and you get, beside the value, how far a client's `f32` may lie
+//! from it. A [`Ball`] is a midpoint and a radius, both `f64`:
 //!
-//! # The radius
+//! - The midpoint is the value of the same formula in `f64`, bit for bit.
+//! - The radius bounds how far an `f32` result may lie from the midpoint. It assumes that the
+//!   client does the same operations on the same inputs, and that each operation rounds as the
+//!   [`Profile`] allows.
 //!
-//! With the operands x and y of midpoints m and n and radii r and s, the *spread* of an operation is
-//! what the operands' errors can make of its exact value, second-order terms included:
+//! The bound holds for whole formulas because it holds for each operation: the operands may be any
+//! values of their balls, in any combination.
+//!
+//! # How the radius of a result is computed
+//!
+//! Let the operands x and y have midpoints m and n and radii r and s. The *spread* of an operation
+//! is how much the operands' errors can change its exact result, second-order terms included:
 //!
 //! ```text
 //!   x + y, x - y   r + s
@@ -27,38 +32,43 @@
 //!   -x, |x|        r
 //! ```
 //!
-//! An operation that rounds adds its rounding, c of the [`Profile`] in units of u = 2^-24:
+//! An operation that rounds adds its own rounding. The constant c comes from the [`Profile`], in
+//! units of u = 2^-24:
 //!
 //! ```text
 //!   radius = (spread + c u (1 + 2^-20) (|midpoint| + spread) + tiny) (1 + 2^-40)
 //! ```
 //!
-//! Sums have c = 1 where each operation rounds to nearest; [`Gpu`] says what they cost where terms
-//! are added in any order. `tiny`, for all but sums and square roots that round to nearest, is what an
-//! operation loses below the normal numbers: of [`Ieee`] 1.000002 2^-150.
-//! The factors 1 + 2^-20 and 1 + 2^-40 are more than the rounding errors of the `f64` operations of
-//! the midpoint and of the radius. No rounding mode is changed. Where the ends m - r and m + r of an
-//! interval are needed, they too are moved outwards by about 2^-40 r. So a radius is defined to
-//! about 2^-39 of itself, not to the bit; a midpoint is, to the bit.
+//! For sums, c = 1 where each operation rounds to nearest; [`Gpu`] says what sums cost where terms
+//! are added in any order. `tiny` is what an operation loses below the normal numbers: 1.000002
+//! 2^-150 for [`Ieee`]. It is 0 for sums and square roots that round to nearest.
 //!
-//! - **Exact operations.** Where operations round to nearest, both radii are 0 and the midpoint of the
-//!   result is an `f32`, the radius is 0; an infinity is an `f32`, so 1 / 0 of exact numbers is
-//!   exactly +inf, and so is a bounded ball and +inf. 0 times a bounded ball, and 0 divided by one that cannot be 0, are exactly 0.
-//! - **Unbounded.** A radius of +inf stands for any number or infinity, a radius of NaN for NaN too:
-//!   a quotient whose divisor may be 0, a result that may exceed the largest `f32`. Whether such a
-//!   ball is finite is undecided.
-//! - **Bounds** ([`Real::at_least`], [`Real::at_most`], [`Real::clamped`]) are taken of both ends of
+//! The factors 1 + 2^-20 and 1 + 2^-40 exceed the rounding errors of the `f64` operations that
+//! compute the midpoint and the radius. So no rounding mode has to be changed. Where a formula
+//! needs the ends m - r and m + r of an interval, the ends are also moved outwards by about 2^-40
+//! r. A radius is therefore defined to about 2^-39 of itself, not to the bit; a midpoint is defined
+//! to the bit.
+//!
+//! - **Exact operations.** The radius is 0 where operations round to nearest, both radii are 0 and
+//!   the midpoint of the result is an `f32`. An infinity is an `f32`, so 1 / 0 of exact numbers is
+//!   exactly +inf, and so is a bounded ball plus +inf. 0 times a bounded ball is exactly 0, and so
+//!   is 0 divided by a ball that cannot be 0.
+//! - **Unbounded.** A radius of +inf stands for any number or infinity, and a radius of NaN
+//!   includes NaN too. A quotient whose divisor may be 0 is unbounded, and so is a result that may
+//!   exceed the largest `f32`. Whether an unbounded ball is finite is undecided.
+//! - **Bounds** ([`Real::at_least`], [`Real::at_most`], [`Real::clamped`]) apply to both ends of
 //!   the interval, and round nothing.
 //!
-//! # Comparisons
+//! # When a comparison is certain
 //!
-//! A comparison gives a [`Three`]: certain where the distance of the midpoints exceeds (r + s) (1 +
-//! 2^-40) or both radii are 0, else undecided. [`Real::select`] gives the hull of both values where
-//! the truth is undecided.
+//! A comparison gives a [`Three`]. It is certain where the distance of the midpoints exceeds (r +
+//! s) (1 + 2^-40) or both radii are 0, and undecided otherwise. Where the truth is undecided,
+//! [`Real::select`] gives the hull of both values.
 //!
-//! First order is not enough: with the product r s left out, 110 of 2,965 depths of edge-on splats
-//! far from the origin escaped. The test of this module runs the crate's formulas in numbers that
-//! round by a coin, and twins of this ball that round too little, which the test must catch.
+//! First-order bounds are not enough: with the product r s left out, 110 of 2,965 depths of edge-on
+//! splats far from the origin escaped. The tests of this module run the crate's formulas in numbers
+//! that round by the toss of a coin. They also run variants of this ball that round too little,
+//! which the tests must catch.
 
 mod angle;
 mod arithmetic;
@@ -86,33 +96,34 @@ use std::fmt::Debug;
 pub struct Ball<P: Profile = Ieee> {
     /// The value of the formula in `f64`.
     pub middle: f64,
-    /// >= 0; +inf: any number or infinity; NaN: NaN as well.
+    /// At least 0; +inf: any number or infinity; NaN: NaN as well.
     pub radius: f64,
     terms: P::Terms,
 }
 
-/// u, half the distance of 1 from the next `f32`, and a little more: the `f64` midpoint rounds too.
+/// u, half the distance of 1 from the next `f32`, and a little more because the `f64` midpoint
+/// rounds too.
 const U: f64 = (1.0 + 1.0 / 1_048_576.0) / 16_777_216.0;
 
 /// More than the rounding errors of a radius.
 const SLACK: f64 = 1.0 + 1.0 / 1_099_511_627_776.0;
 
 impl<P: Profile> Ball<P> {
-    /// A ball of a midpoint and a radius.
+    /// Makes a ball from a midpoint and a radius.
     #[inline(always)]
     #[must_use]
     pub const fn new(middle: f64, radius: f64) -> Self {
         Self { middle, radius, terms: P::NO_SUM }
     }
 
-    /// A value that is known: what a file holds, whatever its format.
+    /// A known value: what a file holds, whatever its format.
     #[inline(always)]
     #[must_use]
     pub const fn exact(value: f64) -> Self {
         Self::new(value, 0.0)
     }
 
-    /// Whether a value is in the ball.
+    /// Whether the ball contains this value.
     #[must_use]
     pub fn contains(&self, value: f64) -> bool {
         let unbounded = !self.radius.is_finite();
@@ -120,10 +131,10 @@ impl<P: Profile> Ball<P> {
         anything || value == self.middle || (value - self.middle).abs() <= self.radius * SLACK
     }
 
-    /// How far the midpoints of two numbers are apart, in units of the sum of their radii.
+    /// The distance between the midpoints of two numbers, in units of the sum of their radii.
     ///
-    /// Beyond 1 the comparison of the two is certain. +inf where both are exact; 0 where a radius is
-    /// not finite.
+    /// Beyond 1 the comparison of the two is certain. +inf where both are exact; 0 where a radius
+    /// is not finite.
     #[must_use]
     pub fn distance(self, other: Self) -> f64 {
         let reach = self.radius + other.radius;
@@ -136,9 +147,11 @@ impl<P: Profile> Ball<P> {
         }
     }
 
-    /// How far the midpoint is from that of a number that is known: in units of the sum of their
-    /// radii, as [`Ball::distance`], but 0 for equal ones, +inf for two that are exact and differ,
-    /// and for NaN unless the ball has it.
+    /// The distance of the midpoint from a known number's midpoint, in units of the sum of their
+    /// radii.
+    ///
+    /// As [`Ball::distance`], with three exceptions: 0 for equal midpoints, +inf for two exact
+    /// numbers that differ, and +inf for NaN unless the ball contains NaN.
     #[must_use]
     pub fn misfit(self, found: Self) -> f64 {
         let reach = self.radius + found.radius;
@@ -153,8 +166,8 @@ impl<P: Profile> Ball<P> {
         }
     }
 
-    /// [`Ball::misfit`] without a branch, so that a loop over it becomes vectors; NaN where a radius is not
-    /// finite and the midpoints differ.
+    /// [`Ball::misfit`] without a branch, so that a loop over it vectorizes; NaN where a radius is
+    /// not finite and the midpoints differ.
     #[inline(always)]
     pub(crate) fn misfit_of_bounded(self, found: Self) -> f64 {
         let reach = self.radius + found.radius;
@@ -188,7 +201,7 @@ impl<P: Profile> Ball<P> {
 
     #[inline(always)]
     fn may_be_zero(&self) -> bool {
-        // Also where the radius is NaN.
+        // A NaN radius also means that the ball may be 0.
         !(self.middle.abs() > self.radius * SLACK)
     }
 
@@ -197,7 +210,8 @@ impl<P: Profile> Ball<P> {
         self.middle == 0.0 && self.radius == 0.0
     }
 
-    /// The result of an operation: its midpoint, its spread, and its rounding in units of u.
+    /// Builds the result of an operation from its midpoint, its spread, and its rounding in units
+    /// of u.
     #[inline(always)]
     fn rounded(middle: f64, spread: f64, units: f64, tiny: f64) -> Self {
         let ball = Self::new(middle, Self::reach(middle, spread, units, tiny));
@@ -208,7 +222,7 @@ impl<P: Profile> Ball<P> {
         }
     }
 
-    /// The radius of such a result, if that is bounded.
+    /// The radius of the result of an operation, if the result is bounded.
     #[inline(always)]
     fn reach(middle: f64, spread: f64, units: f64, tiny: f64) -> f64 {
         let rounding = units * U * (middle.abs() + spread) + tiny;
@@ -218,18 +232,18 @@ impl<P: Profile> Ball<P> {
     /// Whether all values are finite `f32`.
     #[inline(always)]
     fn is_in_range(&self) -> bool {
-        // A comparison that NaN fails.
+        // NaN fails this comparison.
         self.middle.abs() + self.radius <= f64::from(f32::MAX)
     }
 
-    /// A ball that no number bounds.
+    /// A ball without bounds.
     #[cold]
     #[inline(never)]
     fn unbounded(middle: f64, may_be_nan: bool) -> Self {
         Self::new(middle, if may_be_nan { f64::NAN } else { f64::INFINITY })
     }
 
-    /// The same ball where operations round in another way.
+    /// Reinterprets this ball under another rounding profile.
     #[inline(always)]
     pub(crate) fn rounding_as<Q: Profile<Terms = P::Terms>>(self) -> Ball<Q> {
         Ball { middle: self.middle, radius: self.radius, terms: self.terms }
@@ -256,7 +270,7 @@ impl<P: Profile> Real for Ball<P> {
     fn from_i64(value: i64) -> Self {
         let middle = value as f64;
         let error = (f64::from(value as f32) - middle).abs();
-        // Beyond 2^53 the midpoint is rounded too.
+        // Beyond 2^53 the midpoint itself is rounded too.
         let radius = if error == 0.0 { 0.0 } else { error * SLACK + middle.abs() * f64::EPSILON };
         Self::new(middle, radius)
     }
@@ -273,7 +287,7 @@ impl<P: Profile> Real for Ball<P> {
 
     #[inline]
     fn to_pixel(self) -> PixelRange {
-        // The ends of what a pixel can be, where there is no bound. A cast saturates.
+        // An unbounded ball gets the whole range that a pixel can have. A cast saturates.
         let high = if self.radius.is_nan() { f64::INFINITY } else { self.high() };
         PixelRange::new(self.low() as u32, (high as u32).min(1 << 22))
     }
@@ -310,7 +324,7 @@ impl<P: Profile> Real for Ball<P> {
             return Self::exact(middle);
         }
         let spread = powers::exponential(middle, self.radius * SLACK, self.high());
-        // The argument that costs most is the greatest of the ball.
+        // The largest argument of the ball costs most.
         let units = P::exponential(self.middle.abs() + self.radius);
         Self::rounded(middle, spread, units, P::TINY)
     }
@@ -325,11 +339,11 @@ impl<P: Profile> Real for Ball<P> {
             return powers::between(self, exponent);
         }
         let ends = [self.low(), self.high()];
-        // Comparisons that NaN fails.
+        // NaN fails these comparisons.
         if !(exponent.radius == 0.0 && exponent.middle >= 0.0 && ends[1].is_finite()) {
             return Self::unbounded(middle, true);
         }
-        // A number below 0 is one that is 0 but for its radius.
+        // The base is not negative, so an end below 0 is only an effect of the radius.
         let bases = ends.map(|end| larger(end, 0.0));
         let spread =
             powers::power(middle, (self.middle, self.radius * SLACK), bases, exponent.middle);
@@ -396,10 +410,10 @@ fn root<P: Profile>(x: Ball<P>) -> Ball<P> {
         return Ball::exact(middle);
     }
     let low = x.low();
-    // A comparison that NaN fails.
+    // NaN fails this comparison.
     if low >= 0.0 {
         let spread = x.radius / (middle + low.sqrt());
-        // The root of a normal number is one; that of a flushed one is 0.
+        // The root of a normal number is normal; the root of a flushed number is 0.
         return Ball::rounded(middle, spread, P::ROOT, 0.0);
     }
     Ball::unbounded(middle, true)
@@ -408,7 +422,7 @@ fn root<P: Profile>(x: Ball<P>) -> Ball<P> {
 /// The square root of a sum of squares, which may be 0.
 #[inline(never)]
 fn root_of_squares<P: Profile>(x: Ball<P>) -> Ball<P> {
-    // Comparisons that NaN fails.
+    // NaN fails these comparisons.
     if x.low() < 0.0 && x.high().is_finite() {
         let middle = x.middle.sqrt();
         let spread = larger(middle, x.high().sqrt() - middle);
@@ -417,20 +431,20 @@ fn root_of_squares<P: Profile>(x: Ball<P>) -> Ball<P> {
     root(x)
 }
 
-/// Whether one ball is below another, by a comparison of exact numbers.
+/// Whether one ball is below another, given the comparison of exact numbers.
 #[inline(always)]
 fn less<P: Profile>(a: Ball<P>, b: Ball<P>, compare: fn(f64, f64) -> bool) -> Three {
     let (middle, reach) = (compare(a.middle, b.middle), a.radius + b.radius);
     if reach == 0.0 {
         return middle.into();
     }
-    // Subtraction keeps the sign, and its relative error is less than the slack. NaN decides
-    // nothing.
+    // Subtraction keeps the sign, and its relative error is less than the slack. NaN leaves the
+    // comparison undecided.
     let (gap, reach) = (b.middle - a.middle, reach * SLACK);
     Three::new([gap > reach, middle, !(-gap > reach)])
 }
 
-/// The larger of two; NaN if either is.
+/// The larger of two numbers; NaN if either is NaN.
 #[inline(always)]
 fn larger(a: f64, b: f64) -> f64 {
     if a > b || a.is_nan() { a } else { b }

@@ -1,15 +1,16 @@
-//! What the operands' errors can make of powers.
+//! How the operands' errors spread through exponentials and powers.
 
 use super::{Ball, Profile, SLACK, larger};
 use crate::number::Real;
 
-/// More than what the functions of [`elementary`](crate::number::elementary) lose of their result.
+/// More than the relative error of the functions of [`elementary`](crate::number::elementary).
 const LOST: f64 = 1.0 / 1_125_899_906_842_624.0;
 
-/// The spread of e^x, of which `middle` is e^m, for numbers up to `reach` from m, the greatest `high`.
+/// The spread of e^x for numbers up to `reach` from m; `middle` is e^m, and `high` is the greatest
+/// x.
 #[inline(always)]
 pub(super) fn exponential(middle: f64, reach: f64, high: f64) -> f64 {
-    // A comparison that NaN fails.
+    // NaN fails this comparison.
     if reach <= 1.0 {
         let more = reach + reach * reach;
         middle * more + middle * (1.0 + more) * LOST
@@ -19,16 +20,16 @@ pub(super) fn exponential(middle: f64, reach: f64, high: f64) -> f64 {
     }
 }
 
-/// The spread of x^y, of which `middle` is m^y, for numbers up to `reach` from m, the least and the greatest
-/// `ends`, none below 0.
+/// The spread of x^y for numbers up to `reach` from m; `middle` is m^y. `ends` are the least and
+/// the greatest x, neither below 0.
 ///
-/// With x = m (1 + e), (1 + e)^y <= `e^(y e)` bounds from above; from below Bernoulli's inequality does if
-/// y >= 1, else the slope of the power at 1 - |e|.
+/// With x = m (1 + e), the bound from above is (1 + e)^y <= `e^(y e)`. The bound from below is
+/// Bernoulli's inequality if y >= 1, else the slope of the power at 1 - |e|.
 #[inline(always)]
 pub(super) fn power(middle: f64, (m, reach): (f64, f64), ends: [f64; 2], y: f64) -> f64 {
     let part = reach / m;
     let z = y * part;
-    // Comparisons that NaN fails.
+    // NaN fails these comparisons.
     if (0.0..=0.5).contains(&part) && z <= 1.0 {
         let more = z + z * z;
         middle * (more + 2.0 * z * part) + middle * (1.0 + more) * LOST
@@ -38,11 +39,11 @@ pub(super) fn power(middle: f64, (m, reach): (f64, f64), ends: [f64; 2], y: f64)
     }
 }
 
-/// x^y, between the powers of both ends of y: a power is monotonic in its exponent.
+/// x^y, between the powers of both ends of y, because a power is monotonic in its exponent.
 pub(super) fn between<P: Profile>(base: Ball<P>, exponent: Ball<P>) -> Ball<P> {
     let middle = base.middle.pow(exponent.middle);
     let ends = [exponent.low(), exponent.high()];
-    // Comparisons that NaN fails.
+    // NaN fails these comparisons.
     if !(ends[0] >= 0.0 && ends[1].is_finite()) {
         return Ball::unbounded(middle, true);
     }
@@ -57,8 +58,8 @@ pub(super) fn between<P: Profile>(base: Ball<P>, exponent: Ball<P>) -> Ball<P> {
 mod tests {
     use super::*;
 
-    /// Holds a spread against the ends of the interval, of which both differences are 2^-51 of the largest off
-    /// at most; where little is left out, that is little.
+    /// Checks a spread against the ends of the interval. Both differences are off by at most 2^-51
+    /// of the largest number; with `close` set, the spread must be tight.
     fn hold(spread: f64, [least, middle, most]: [f64; 3], close: bool) {
         let exact = larger(middle - least, most - middle);
         let error = most / 2_251_799_813_685_248.0;
@@ -66,7 +67,7 @@ mod tests {
         assert!(!close || spread <= 1.2 * exact + 4.0 * error, "{spread} of {exact}");
     }
 
-    /// The ends about m, and how far the farther is from m, all without an error.
+    /// The ends about m, and how far the farther end is from m, all without an error.
     fn about(m: f64, reach: f64) -> ([f64; 2], f64) {
         let ends = [m - reach, m + reach];
         (ends, larger(m - ends[0], ends[1] - m))

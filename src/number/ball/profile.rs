@@ -1,4 +1,4 @@
-//! How an implementation may round.
+//! Choose which roundings an implementation may use.
 
 use super::Ball;
 use crate::number::lanes::LANES;
@@ -7,56 +7,61 @@ use std::marker::PhantomData;
 
 /// What an implementation promises about its operations, in units of u = 2^-24 of the result.
 pub trait Profile: Copy + Send + Sync + 'static {
-    /// What a ball must know of the sum that it is, so that its terms may be added in another order.
+    /// What a ball must remember of the sum that produced it, so that its terms may be added in
+    /// another order.
     type Terms: Copy + Send + Sync;
-    /// What it must know of a number that is no sum.
+    /// The terms of a number that is not a sum.
     const NO_SUM: Self::Terms;
 
-    /// Whether an operation gives the `f32` nearest to the exact result, so that what needs no
-    /// rounding is exact.
+    /// Whether an operation gives the `f32` nearest to the exact result, so that a result that
+    /// needs no rounding is exact.
     const ROUNDS_TO_NEAREST: bool;
     /// Whether numbers below the normal ones may become 0.
     const FLUSHES: bool;
     /// Rounding of a product.
     const PRODUCT: f64;
-    /// Of a quotient.
+    /// Rounding of a quotient.
     const QUOTIENT: f64;
-    /// The largest divisor of which a quotient keeps that promise; the least is the least normal number.
+    /// The largest divisor for which a quotient keeps its promise; the least is the least normal
+    /// number.
     const LARGEST_DIVISOR: f64;
-    /// Of a square root.
+    /// Rounding of a square root.
     const ROOT: f64;
     /// The most that an operation loses below the normal numbers.
     const TINY: f64;
-    /// Whether nothing is known of the results of rare operations, see `common.rs`.
+    /// Whether the results of rare operations are unknown, see `common.rs`.
     const COMMON_ONLY: bool = false;
 
     /// Rounding of the exponential of a number of at most this absolute value.
     fn exponential(argument: f64) -> f64;
-    /// Rounding of a power of a base between two.
+    /// Rounding of a power whose base lies between these two.
     fn power(bases: [f64; 2], exponent: f64) -> f64;
-    /// The sum of bounded terms, of midpoint `middle`; its radius counts if the sum is bounded too.
+    /// The sum of bounded terms, of midpoint `middle`. The radius is valid only if the sum is
+    /// bounded too.
     fn sum(middle: f64, terms: [&Ball<Self>; 2]) -> Ball<Self>;
     /// Whether the terms of a sum may be added in any order.
     const ADDS_IN_ANY_ORDER: bool = false;
-    /// If so, the sum of midpoint `middle` of some terms that are no sums: the magnitude of all, their
-    /// number, and the radius that they bring along. Its radius counts if every sum of the first is bounded.
+    /// Where terms may be added in any order: the sum, of midpoint `middle`, of terms that are not
+    /// sums. The triple holds the magnitude of all terms, their number, and the radius that they
+    /// bring along. The radius is valid only if every partial sum is bounded.
     fn total(middle: f64, _terms: [f64; 3]) -> Ball<Self> {
         Ball::new(middle, f64::NAN)
     }
-    /// The terms of one of two sums: number by number, as a choice between wholes is no vector.
+    /// Chooses the terms of one of two sums, number by number, because a choice between wholes does
+    /// not vectorize.
     fn choose(truth: bool, yes: Self::Terms, no: Self::Terms) -> Self::Terms;
     /// The terms of [`LANES`] numbers side by side, number by number for the same reason.
     type TermLanes: Copy + Send + Sync;
-    /// Those of numbers that are no sums.
+    /// The terms of lanes that are not sums.
     const NO_SUMS: Self::TermLanes;
     /// Puts the terms of a number into a lane.
     fn put_terms(lanes: &mut Self::TermLanes, lane: usize, terms: Self::Terms);
-    /// The terms of a lane.
+    /// Reads the terms of a lane.
     fn terms_of(lanes: &Self::TermLanes, lane: usize) -> Self::Terms;
 }
 
-/// Each operation rounds once, to nearest, and a product may be fused with the sum it goes into:
-/// IEEE 754, the definition of the crate.
+/// IEEE 754, the definition of the crate: each operation rounds once, to nearest. A product may be
+/// fused with the sum that it goes into.
 #[derive(Clone, Copy, Debug)]
 pub struct Ieee;
 
@@ -95,34 +100,37 @@ impl Profile for Ieee {
     fn terms_of(_lanes: &(), _lane: usize) {}
 }
 
-/// What WGSL and Vulkan publish for `f32`; an ulp is at most 2 u of its number.
+/// What WGSL and Vulkan publish for `f32`. An ulp is at most 2 u of its number.
 ///
 /// | operation | published | here, in u of the result |
 /// |---|---|---|
 /// | x + y, x - y, x y | correctly rounded, up or down | 2 |
 /// | x / y | 2.5 ulp for \|y\| from 2^-126 to 2^126 | 5; unbounded where y may be of another size |
 /// | inversesqrt x | 2 ulp | 4 |
-/// | sqrt x | that of 1 / inversesqrt x | 4 + 5 |
+/// | sqrt x | as 1 / inversesqrt x | 4 + 5 |
 /// | e^x, 2^x | 3 + 2 \|x\| ulp | 6 + 4 \|x\| |
-/// | log2 x | 3 ulp, but 2^-21 for x from 0.5 to 2 | in those of x^y alone |
-/// | x^y | that of exp2(y log2 x) | 6 + 4 \|z\| + 8 \|z\| + 8 y, z = y log2 x |
+/// | log2 x | 3 ulp, but 2^-21 for x from 0.5 to 2 | used only in x^y |
+/// | x^y | as exp2(y log2 x) | 6 + 4 \|z\| + 8 \|z\| + 8 y, z = y log2 x |
 /// | atan2(y, x) | 4096 ulp | 8192 |
 ///
-/// Products are fused with sums, the terms of sums added in any order, and numbers below the normal ones
-/// flushed to 0, those that are read as well as those that are computed. So a number that may be less
-/// than 2^-126 may be 0, and a quotient by it has no bounds.
+/// The compiler may fuse products with sums, and may add the terms of sums in any order. The GPU
+/// may flush numbers below the normal ones to 0, both the numbers that it reads and the ones that
+/// it computes. So a number that may be less than 2^-126 may be 0, and a quotient by it has no
+/// bounds.
 ///
-/// Source: WGSL (W3C), "Differences from IEEE-754", "Accuracy of Concrete Floating Point Expressions",
-/// "Reassociation and Fusion"; Vulkan (Khronos), appendix "Vulkan Environment for SPIR-V", "Precision of
-/// Individual Operations". The two say the same but for atan2: Vulkan grants its 4096 ulp to every
-/// operand, WGSL for a normal y and for |x| from 2^-126 to 2^126, and says nothing of others.
-/// `Decided:` those of Vulkan. A direction beside a plane of the axes has an operand that may be 0, and
-/// to the letter of WGSL no pixel there could be judged. Neither sin and cos (2^-11, from -pi to pi) nor acos (that of
-/// atan2(sqrt(1 - x x), x), in WGSL at least 6.77e-5) are in any formula that is judged.
+/// Source: WGSL (W3C), "Differences from IEEE-754", "Accuracy of Concrete Floating Point
+/// Expressions", "Reassociation and Fusion"; Vulkan (Khronos), appendix "Vulkan Environment for
+/// SPIR-V", "Precision of Individual Operations". The two agree except about atan2. Vulkan grants
+/// its 4096 ulp to every operand. WGSL grants them for a normal y and for |x| from 2^-126 to 2^126,
+/// and says nothing about other operands. `Decided:` this profile follows Vulkan. A direction
+/// beside a plane of the axes has an operand that may be 0, so by the letter of WGSL no pixel there
+/// could be judged. Two published accuracies are not used, because no judged formula has these
+/// functions: sin and cos (2^-11, from -pi to pi), and acos (as atan2(sqrt(1 - x x), x), in WGSL at
+/// least 6.77e-5).
 ///
 /// A compiler adds the terms of a sum in any order across the functions of a formula, and not every
-/// such sum has a name. So a ball carries the magnitude of its terms, how many additions there are,
-/// and the radius that the terms brought along:
+/// such sum has a name. So a ball carries the magnitude of its terms, the number of additions, and
+/// the radius that the terms brought along:
 ///
 /// ```text
 ///   magnitude = sum of |m| + r       n = additions since the last other operation
@@ -131,7 +139,7 @@ impl Profile for Ieee {
 #[derive(Clone, Copy, Debug)]
 pub struct Gpu;
 
-/// The terms of a sum; without additions, of a number that is none.
+/// The terms of a sum. With 0 additions the number is not a sum.
 #[derive(Clone, Copy, Debug)]
 pub struct SumTerms {
     magnitude: f64,
@@ -178,15 +186,16 @@ impl Profile for Gpu {
         6.0 + 4.0 * argument
     }
     fn power(bases: [f64; 2], exponent: f64) -> f64 {
+        // 0 times the logarithm of 0 would be NaN.
         if exponent == 0.0 {
             return Self::exponential(0.0);
         }
-        // What is smaller than 2^-150 is flushed, so that the argument of exp2 is no larger.
+        // A result below 2^-150 is flushed, so the argument of exp2 needs no larger bound.
         let argument = |base| {
             let logarithm = elementary::ln(base) / std::f64::consts::LN_2;
             (exponent * logarithm).abs().at_most(150.0)
         };
-        // The least and the greatest base; of bases on one side of 1 that farther from 1 has the larger.
+        // The base farthest from 1 has the largest logarithm; it is one of the two ends.
         let argument = if bases[1] <= 1.0 {
             argument(bases[0])
         } else if bases[0] >= 1.0 {
@@ -194,7 +203,7 @@ impl Profile for Gpu {
         } else {
             argument(bases[0]).at_least(argument(bases[1]))
         };
-        // The logarithm is 3 ulp or 2^-21 = 8 u off, times the exponent; the product 2 u.
+        // The logarithm is 3 ulp or 2^-21 = 8 u off, times the exponent; the product adds 2 u.
         let lost = 8.0 * exponent + 8.0 * argument;
         Self::exponential(argument) + lost
     }
@@ -211,7 +220,7 @@ impl Profile for Gpu {
     const ADDS_IN_ANY_ORDER: bool = true;
     #[inline(always)]
     fn total(middle: f64, [magnitude, additions, radius]: [f64; 3]) -> Ball<Self> {
-        // Each term is an addition, the first one to 0.
+        // Each term is an addition; the first one is added to 0.
         let ball = SumTerms { magnitude, additions, radius }.ball(middle);
         Ball { radius: if additions == 0.0 { 0.0 } else { ball.radius }, ..ball }
     }
@@ -238,9 +247,12 @@ impl Profile for Gpu {
     }
 }
 
-/// Rounds as `P`, without a branch, so that a loop over balls becomes vectors: nothing is known of a result
-/// that is not bounded, of an infinite operand, or of a choice that is undecided. Its radius is NaN, which is sound; every other ball is that of `P`, bit for bit. What
-/// was decided is what `P` decides, as nothing decides of NaN.
+/// Rounds as `P`, without a branch, so that a loop over balls vectorizes.
+///
+/// A result is unknown if it is not bounded, if an operand is infinite, or if a choice is
+/// undecided. An unknown result has the radius NaN, which is sound. Every other ball equals the
+/// ball of `P`, bit for bit. A comparison that is decided here is decided the same way by `P`,
+/// because NaN decides nothing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Common<P>(PhantomData<P>);
 

@@ -3,10 +3,10 @@
 use crate::number::{Pixel, Truth};
 use std::ops::{BitAnd, BitOr, Not};
 
-/// Yes, no, or undecided; and what the midpoints say.
+/// Yes, no, or undecided; and the answer of the midpoints.
 ///
-/// `&`, `|` and `!` are the operators of Kleene's logic. Of the midpoints they are those of the same
-/// formula in `f64`.
+/// `&`, `|` and `!` are the operators of Kleene's logic. On the midpoints they give the result of
+/// the same formula in `f64`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Three {
     certainly: bool,
@@ -15,20 +15,21 @@ pub struct Three {
 }
 
 impl Three {
-    /// Whether all values say yes, the midpoints do, and some do: each implies the next.
+    /// Whether all values say yes, the midpoints say yes, and some values say yes: each implies the
+    /// next.
     #[inline(always)]
     pub(crate) fn new([certainly, middle, possibly]: [bool; 3]) -> Self {
         Self { certainly, middle, possibly }
     }
 
-    /// What the midpoints say.
+    /// The answer of the midpoints.
     #[inline(always)]
     #[must_use]
     pub fn middle(self) -> bool {
         self.middle
     }
 
-    /// What all values say; none if some say yes and some no.
+    /// The answer that all values agree on; none if some say yes and some no.
     #[inline(always)]
     #[must_use]
     pub fn decided(self) -> Option<bool> {

@@ -1,19 +1,20 @@
-//! Sums of products that are added up one after the other, side by side.
+//! Several running sums of products, side by side.
 
 use super::{Ball, Common, Profile, common};
 use crate::number::lanes::LANES;
 use std::marker::PhantomData;
 
-/// N sums of as many terms each: every one the ball that `+` makes of the same terms from 0 on, bit for
-/// bit, or unknown.
+/// N sums with equally many terms. Each is the ball that `+` makes of the same terms from 0 on, bit
+/// for bit, or unknown.
 ///
-/// Terms are no sums themselves. What [`Common`] balls do not know makes a sum unknown.
+/// No term may itself be a sum. A term that [`Common`] balls do not know makes the sum unknown.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Totals<P: Profile, const N: usize> {
     middle: [f64; N],
-    /// Of a profile that adds terms in any order the radii that the terms brought along, else the sum's.
+    /// The radii that the terms brought along if the profile adds terms in any order, else the
+    /// sum's radius.
     radius: [f64; N],
-    /// The size of the terms, of such a profile.
+    /// The magnitude of the terms, used only if the profile adds terms in any order.
     magnitude: [f64; N],
     terms: f64,
     profile: PhantomData<P>,
@@ -29,7 +30,7 @@ impl<P: Profile, const N: usize> Totals<P, N> {
         profile: PhantomData,
     };
 
-    /// Adds a term to each.
+    /// Adds a term to each sum.
     #[inline(always)]
     pub(crate) fn add(&mut self, terms: [Ball<Common<P>>; N]) {
         let Self { middle, radius, magnitude, .. } = *self;
@@ -63,7 +64,7 @@ impl<P: Profile, const N: usize> Totals<P, N> {
             } else {
                 Ball::new(middle, radius)
             };
-            // No sum of the first terms was larger. A comparison that NaN fails.
+            // No partial sum was larger than this bound. NaN fails this comparison.
             let most = if P::ADDS_IN_ANY_ORDER { 2.0 * magnitude } else { 0.0 };
             known &= most + ball.radius <= f64::from(f32::MAX);
         }
@@ -127,7 +128,7 @@ mod tests {
     use super::super::{Gpu, Ieee};
     use super::*;
 
-    /// Sums of these terms against those of `+`; how many are known.
+    /// Compares sums of these terms with the sums of `+`; returns how many are known.
     fn compare<P: Profile>(terms: &[[Ball<P>; 2]]) -> usize {
         let (mut totals, mut plain) = (Totals::<P, 2>::NONE, [Ball::exact(0.0); 2]);
         let mut known = 0;
@@ -137,7 +138,7 @@ mod tests {
             let Some(balls) = totals.balls() else { continue };
             known += 1;
             for (own, plain) in balls.into_iter().zip(plain) {
-                // And what follows of its terms.
+                // The next sum shows that the terms are equal too.
                 for (a, b) in [(own, plain), (own + Ball::exact(0.3), plain + Ball::exact(0.3))] {
                     assert_eq!(a.middle.to_bits(), b.middle.to_bits());
                     assert_eq!(a.radius.to_bits(), b.radius.to_bits(), "{a:?} is not {b:?}");
@@ -158,7 +159,7 @@ mod tests {
             .collect();
         assert_eq!(compare(&products), products.len());
         assert_eq!(compare::<P>(&[]), 0);
-        // What is exact stays exact where operations round to nearest.
+        // An exact sum stays exact where operations round to nearest.
         assert_eq!(compare(&[[Ball::<P>::exact(0.5); 2], [Ball::exact(0.25); 2]]), 2);
         let large = Ball::exact(f64::from(f32::MAX));
         assert!(compare(&[[Ball::<P>::exact(1.0), large], [Ball::exact(1.0), large]]) < 2);

@@ -1,8 +1,9 @@
-//! A camera over the frames of a sequence.
+//! Move a camera over the frames of a sequence.
 //!
-//! A [`CameraMotion`] is a list of keys, each a frame and a [`Pose`]. In a frame that has a key the
-//! pose is the key's, bit for bit; before the first key the first, after the last the last; between
-//! two equal poses theirs. Between other keys a and b everything is computed in f64, of a frame f:
+//! A [`CameraMotion`] is a list of keys, each a frame and a [`Pose`]. In a frame that has a key,
+//! the pose is the key's pose, bit for bit. Before the first key it is the first pose, and after
+//! the last key the last. Between two equal poses it is that pose. Between other keys a and b
+//! everything is computed in f64, for a frame f:
 //!
 //! ```text
 //!   s         (f - f_a) / (f_b - f_a), with the frames of the keys
@@ -13,8 +14,8 @@
 //!   up        m's second column
 //! ```
 //!
-//! The rotation of a pose has the columns r, v and b, its distance is `distance` of
-//! [`super::Camera::new`], which then makes the camera of this eye, target and up.
+//! The rotation of a pose has the columns r, v and b, and its distance is `distance` of
+//! [`super::Camera::new`]. That function then makes the camera from this eye, target and up.
 
 use super::{Pose, axes};
 use crate::error::{Error, Result};
@@ -36,10 +37,10 @@ struct Key {
 }
 
 impl CameraMotion {
-    /// By keys in ascending frames.
+    /// Makes a motion from keys in ascending frames.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if there is no key, if frames do not ascend, or, of a pose, as
+    /// [`Error::Invalid`] if there is no key, if frames do not ascend, or, for a pose, as
     /// [`super::Camera::new`].
     pub fn new(keys: Vec<(u32, Pose)>) -> Result<Self> {
         if keys.is_empty() {
@@ -65,7 +66,7 @@ impl CameraMotion {
         self.keys.iter().map(|key| (key.frame, key.pose))
     }
 
-    /// Where it is in a frame.
+    /// The pose in a frame.
     #[must_use]
     pub fn at(&self, frame: u32) -> Pose {
         let after = self.keys.partition_point(|key| key.frame < frame);
@@ -74,6 +75,7 @@ impl CameraMotion {
             return self.keys[nearest].pose;
         };
         let a = &self.keys[before];
+        // No arithmetic, so that the pose keeps its bits.
         if b.frame == frame || a.pose == b.pose {
             return b.pose;
         }

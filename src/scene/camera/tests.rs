@@ -1,4 +1,4 @@
-//! The formulas of the pages, operation by operation, give the bits of the cameras.
+//! The documented formulas, operation by operation, give the bits of the cameras.
 
 use super::*;
 use crate::number::{elementary, random};
@@ -66,7 +66,7 @@ fn eye(v: [[f64; 4]; 3]) -> V {
     [x, y, z].map(|c| c * (1.0 / whole))
 }
 
-/// The rows of a camera's view matrix, but for the last.
+/// The rows of a camera's view matrix, except the last.
 fn rows(camera: &Camera) -> [[f32; 4]; 3] {
     [0, 1, 2].map(|i| camera.view_from_world.row(i).to_array())
 }
@@ -90,7 +90,7 @@ fn lens(i: u64) -> Lens {
 }
 
 fn same(camera: &Camera, rows_and_near: ([[f32; 4]; 3], f32), scale: f32) {
-    // Bits: -0 is not +0.
+    // Compares bits, because -0 is not +0.
     let bits = |rows: [[f32; 4]; 3]| rows.map(|row| row.map(f32::to_bits));
     assert_eq!(bits(rows(camera)), bits(rows_and_near.0));
     assert_eq!(camera.view_from_world.row(3).to_array(), [0.0, 0.0, 0.0, 1.0]);
@@ -109,7 +109,7 @@ fn a_camera_has_the_bits_of_its_formulas() {
         let (place, target) = (numbers(i, 0).map(|c| c * 9.0), numbers(i, 1));
         let up = numbers(i, 2).map(|c| c * tiny);
         let pose = Pose { eye: place.into(), target: target.into(), up: up.into() };
-        // Some have an up along the view.
+        // Some poses have an up along the view.
         let Ok(camera) = Camera::new(33, 24, pose, lens(i)) else { continue };
         same(&camera, looking(place, target, up), scale(24.0, lens(i)));
         cameras += 1;

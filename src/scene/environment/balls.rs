@@ -1,15 +1,15 @@
-//! Light in balls: all that right implementations may find in a direction.
+//! Light in balls: all values that a correct implementation may compute for a direction.
 
 use super::{Environment, Map, scaled, sky};
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Vector3};
 use std::f64::consts::PI;
 
-/// The most columns or rows of which the places of a direction are followed.
+/// The most columns or rows over which a direction's possible places are followed.
 const MOST: i64 = 8;
 
 impl Environment {
-    /// [`Environment::radiance`] in balls; anything where the direction is not known well enough.
+    /// [`Environment::radiance`] in balls; unbounded where the direction is not known well enough.
     pub(crate) fn enclosure<P: Profile>(&self, direction: Vector3<Ball<P>>) -> [Ball<P>; 3] {
         let direction = scaled(direction);
         match self {
@@ -20,11 +20,12 @@ impl Environment {
 }
 
 impl Map {
-    /// Bilinear in each square of four pixel centres that the direction may lie in: a ball that holds
-    /// what all of them give. They meet without a jump, across the seam too. Beside a pole, or where
-    /// there are more than 8 in a row or a column, it is anything.
+    /// Interpolates bilinearly in each square of four pixel centres that the direction may lie in,
+    /// and returns a ball that holds all the results. The squares meet without a jump, across the
+    /// seam too. The ball is unbounded beside a pole, or where there are more than 8 squares in a
+    /// row or a column.
     fn enclosure<P: Profile>(&self, direction: Vector3<Ball<P>>) -> [Ball<P>; 3] {
-        // What rounds to nearest in `f32` is a constant of every implementation.
+        // pi rounded to nearest in `f32` is a constant that every implementation shares.
         let pi = Ball::new(PI, PI / 16_777_216.0);
         let [s, t] = self.place(direction, pi, Ball::angle);
         let (Some([left, right]), Some([upper, lower])) = (ends(s), ends(t)) else {
@@ -44,17 +45,17 @@ impl Map {
 
 /// The least and the greatest integer part of a number; none if there are too many between them.
 fn ends<P: Profile>(x: Ball<P>) -> Option<[i64; 2]> {
-    // A little more than the radius, as the comparisons of balls have it.
+    // A little more than the radius, as in the comparisons of balls.
     let reach = x.radius * (1.0 + f64::from(f32::EPSILON));
-    // A comparison that NaN fails.
+    // NaN fails this comparison.
     if !(2.0 * reach < MOST as f64 - 1.0) {
         return None;
     }
     Some([x.middle - reach, x.middle + reach].map(|end| end.floor() as i64))
 }
 
-/// How far a number is from its integer part, if that is this one: in [0, 1], but for what rounding may
-/// add where the sum is taken in another order than for the integer part.
+/// How far a number is above this integer, if this is its integer part. The result is in [0, 1],
+/// plus the rounding of a sum that is computed in another order than for the integer part.
 fn beyond<P: Profile>(x: Ball<P>, integer: i64) -> Ball<P> {
     let part = x - Ball::exact(integer as f64);
     part.clamped(Ball::exact(-part.radius), Ball::exact(1.0 + part.radius))

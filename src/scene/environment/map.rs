@@ -1,4 +1,4 @@
-//! Latitude-longitude maps.
+//! Use a latitude-longitude picture as an environment.
 //!
 //! ```text
 //!    u  0      1/4     1/2     3/4     1
@@ -10,10 +10,10 @@
 //! ```
 //!
 //! Seen from within, u grows to the right: the map is not mirrored. This is the orientation of
-//! OpenEXR's environment maps (latitude 0, longitude 0 is +z, longitude pi/2 is +x, longitude falls
-//! from left to right) and of Mitsuba. Departs: OpenEXR puts the centres of the first and the last
-//! pixel on the borders u, v = 0 and 1; here, as in every texture unit and in the maps that are to
-//! be had, the centre of pixel (i, j) is at ((i + 1/2) / width, (j + 1/2) / height).
+//! Mitsuba and of OpenEXR's environment maps (latitude 0, longitude 0 is +z, longitude pi/2 is +x,
+//! longitude falls from left to right). Departs: OpenEXR puts the centres of the first and the last
+//! pixel on the borders u, v = 0 and 1. Here the centre of pixel (i, j) is at ((i + 1/2) / width,
+//! (j + 1/2) / height), as in every texture unit and in the maps that you can download.
 
 use crate::error::{Error, Result};
 use crate::frame::Plane;
@@ -26,11 +26,12 @@ use crate::scene::light::MAX_RADIANCE;
 pub struct Map(Plane<[f32; 3]>);
 
 impl Map {
-    /// A map of these pixels.
+    /// Makes a map from these pixels.
     ///
     /// # Errors
     /// [`Error::Invalid`] if the plane is empty, not twice as wide as high or wider than
-    /// [`MAX_EXTENT`], or if a component is not in [0, [`MAX_RADIANCE`]]; the pixel is named.
+    /// [`MAX_EXTENT`], or if a component is not in [0, [`MAX_RADIANCE`]]; the error names the
+    /// pixel.
     pub fn new(mut pixels: Plane<[f32; 3]>) -> Result<Self> {
         let width = pixels.width();
         Self::check_size(width, pixels.height())?;
@@ -43,12 +44,12 @@ impl Map {
                  [0, {MAX_RADIANCE}]"
             )));
         }
-        // -0 becomes 0.
+        // Adding 0 turns -0 into 0.
         pixels.values_mut().as_flattened_mut().iter_mut().for_each(|value| *value += 0.0);
         Ok(Self(pixels))
     }
 
-    /// Whether a map can have this size.
+    /// Checks that a map may have this size.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`Map::new`].
@@ -70,7 +71,7 @@ impl Map {
 
     /// Linear RGB radiance from a unit direction, bilinear between the four nearest pixel centres.
     ///
-    /// With a map of W x H pixels, every operation rounded in this order:
+    /// For a map of W x H pixels, every operation is rounded in this order:
     ///
     /// ```text
     ///   u = atan2(x, 0 - z) / (2 pi)           s = u W - 1/2     i = floor(s)    f = s - i
@@ -81,21 +82,24 @@ impl Map {
     ///   result   upper + (lower - upper) g
     /// ```
     ///
-    /// pi is atan2(0, -1), rounded like every angle. u wraps around; half a pixel from the poles
-    /// the first and the last row are repeated, as a texture unit clamps, so that at a pole itself
-    /// the light depends on the side one comes from. A vertical direction has u = 0, whatever the
-    /// signs of its zeros. With columns of one colour that colour is given exactly.
+    /// pi is atan2(0, -1), rounded like every angle. u wraps around. Half a pixel from the poles
+    /// the first and the last row are repeated, as a texture unit clamps. So at a pole itself the
+    /// light depends on the side from which you approach it. A vertical direction has u = 0,
+    /// whatever the signs of its zeros. Where the columns have one colour, the result is exactly
+    /// that colour.
     #[must_use]
     pub fn radiance<R: Exact>(&self, direction: Vector3<R>) -> [R; 3] {
         let width = R::from_f32(self.0.width() as f32);
         let [s, t] = self.place(direction, R::ZERO.atan2(-R::ONE), R::atan2);
         let (i, j) = (s.floor(), t.floor());
-        // u is at most 1/2: i and i + 1 are columns as they are, or once the width is added.
+        // u is at most 1/2, so i and i + 1 are valid columns as they are, or once the width is
+        // added.
         let column = |i: R| (if i < R::ZERO { i + width } else { i }).to_pixel();
         self.between([column(i), column(i + R::ONE)], j.to_pixel(), [s - i, t - j])
     }
 
-    /// s and t, with pi and the angle of the point (x, y), called with y and x, from the x axis.
+    /// s and t. `pi` is the constant, and `angle`, called with y and x, gives the angle of the
+    /// point (x, y) from the x axis.
     pub(crate) fn place<R: Real>(
         &self,
         direction: Vector3<R>,
@@ -106,13 +110,14 @@ impl Map {
         let half = R::from_f32(0.5);
         let [width, height] =
             [self.0.width(), self.0.height()].map(|size| R::from_f32(size as f32));
-        // 0 - z is +0 for either zero, so that the angle does not see the sign.
+        // 0 - z is +0 for either zero, so the angle does not depend on the sign of z.
         let u = angle(x, R::ZERO - z) / (pi + pi);
         let v = angle((x * x + z * z).root_of_squares(), y) / pi;
         [u * width - half, (v * height - half).at_least(R::ZERO)]
     }
 
-    /// Between the pixels of two columns in a row and the next, f and g away from the first ones.
+    /// Interpolates between two columns in a row and the next row, f and g away from the first
+    /// ones.
     pub(crate) fn between<R: Real>(&self, columns: [u32; 2], upper: u32, [f, g]: [R; 2]) -> [R; 3] {
         let lower = if upper < self.0.height() - 1 { upper + 1 } else { upper };
         let mix = |a: R, b: R, by: R| a + (b - a) * by;
@@ -153,7 +158,7 @@ mod tests {
         Map::new(Plane::from_values(2 * height, height, values)).unwrap()
     }
 
-    /// The colour that shows its direction.
+    /// The colour that encodes its direction.
     fn shown(d: Vector3<f64>) -> [f64; 3] {
         [d.x + 1.0, d.y + 1.0, d.z + 1.0]
     }
@@ -170,7 +175,8 @@ mod tests {
         ] {
             assert!((d - Vector3::new(x, y, z)).length() < 1e-15, "the test's own map");
         }
-        // A pixel of its own colour for each eighth of the horizon: its corners meet at the axes.
+        // One pixel with its own colour for each eighth of the horizon: its corners meet at the
+        // axes.
         let columns: Vec<[f32; 3]> = (0..8).map(|i| [i as f32, 0.0, 0.0]).collect();
         let map = Map::new(Plane::from_values(8, 4, columns.repeat(4))).unwrap();
         let red = |x: f32, z: f32| map.radiance(Vector3::new(x, 0.0, z))[0];
@@ -218,7 +224,7 @@ mod tests {
                 let [u, v] = [0, 1].map(|c| f64::from(random::unit(u64::from(height), 2 * i + c)));
                 let d = direction(u, v);
                 let (expected, found) = (shown(d), map.radiance(d));
-                // Above the first centres the first row stands for what is up to h/2 away.
+                // Above the first centres, the first row stands for directions up to h/2 away.
                 let clamped = v < 0.5 / f64::from(height) || v > 1.0 - 0.5 / f64::from(height);
                 let bound = if clamped { h / 2.0 + h * h / 8.0 } else { h * h / 4.0 } + 1e-6;
                 for c in 0..3 {
@@ -231,10 +237,10 @@ mod tests {
         }
     }
 
-    /// Across the seam, and across a pole where the rows beside it are of one colour.
+    /// Across the seam, and across a pole where the rows beside it have one colour.
     #[test]
     fn nothing_jumps() {
-        // Random pixels, but for the rows at the poles.
+        // Random pixels, except in the rows at the poles.
         let values = (0..512_u64).map(|i| match i {
             0..32 => [1.0, 2.0, 3.0],
             480.. => [3.0, 2.0, 1.0],

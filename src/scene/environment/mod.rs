@@ -1,7 +1,7 @@
-//! What surrounds a scene, infinitely far away: light as a function of direction alone.
+//! Surround a scene with light from infinitely far away, a function of direction alone.
 //!
 //! - [`map`]: a latitude-longitude picture.
-//! - [`mod@sky`]: a procedural sky, for those who have no picture.
+//! - [`mod@sky`]: a procedural sky, if you have no picture.
 
 mod balls;
 pub mod map;
@@ -24,9 +24,9 @@ impl Environment {
     /// Linear RGB radiance that arrives from a world-space direction of any length > 0: finite
     /// numbers >= 0.
     ///
-    /// The unit direction is taken in this order: each component divided by the largest magnitude
-    /// of the three, so that no square leaves the range; then [`Vector3::normalized`]. Decided: the
-    /// null vector and a direction that is not finite look straight up.
+    /// The unit direction is computed in this order. First each component is divided by the largest
+    /// magnitude of the three, so that no square leaves the range; then [`Vector3::normalized`].
+    /// Decided: the null vector and a direction that is not finite look straight up.
     #[must_use]
     pub fn radiance<R: Exact>(&self, direction: Vector3<R>) -> [R; 3] {
         let direction = unit(direction);
@@ -37,7 +37,7 @@ impl Environment {
     }
 }
 
-/// A direction of length 1; of the null vector or of one that is not finite, nothing of the kind.
+/// A direction of length 1; the null vector and directions that are not finite give no unit vector.
 pub(crate) fn scaled<R: Real>(d: Vector3<R>) -> Vector3<R> {
     let largest = d.x.abs().at_least(d.y.abs()).at_least(d.z.abs());
     Vector3::new(d.x / largest, d.y / largest, d.z / largest).normalized()
@@ -46,7 +46,7 @@ pub(crate) fn scaled<R: Real>(d: Vector3<R>) -> Vector3<R> {
 /// The unit direction, see [`Environment::radiance`].
 fn unit<R: Exact>(d: Vector3<R>) -> Vector3<R> {
     let scaled = scaled(d);
-    // 0/0 and inf/inf are NaN, whose vector has no length.
+    // 0/0 and inf/inf are NaN, and a vector with NaN has no length.
     if scaled == Vector3::ZERO { Vector3::new(R::ZERO, R::ONE, R::ZERO) } else { scaled }
 }
 
@@ -64,7 +64,7 @@ mod tests {
     fn the_length_of_a_direction_does_not_matter() {
         for environment in both() {
             let expected = environment.radiance(Vector3::new(0.5_f32, -0.25, 0.125));
-            // 2^120 and 2^-140: their squares are no numbers of f32, the second is subnormal.
+            // 2^120 and 2^-140: the square of the first overflows f32, the second is subnormal.
             for scale in [4.0, f32::from_bits(0x7B80_0000), f32::from_bits(1 << 9)] {
                 let direction = Vector3::new(0.5 * scale, -0.25 * scale, 0.125 * scale);
                 assert_eq!(environment.radiance(direction), expected, "{scale}");

@@ -1,7 +1,7 @@
-//! A sky in closed form: from the colour of the horizon to that of the zenith, a ground, a sun with
-//! its glow, and a soft pattern in which one sees how directions are bent.
+//! A sky in closed form: a gradient from the horizon to the zenith, a ground, a sun with its glow,
+//! and a soft pattern that shows how directions are bent.
 //!
-//! Decided, all of it: no paper prescribes a sky. It is smooth, uses + - * / alone, and all of its
+//! Decided, all of it: no paper prescribes a sky. It is smooth, uses only + - * /, and all of its
 //! constants are exact in `f32`.
 
 use crate::number::{Real, Vector3};
@@ -12,18 +12,18 @@ pub const ZENITH: [f32; 3] = [0.125, 0.25, 0.625];
 pub const HORIZON: [f32; 3] = [0.75, 0.8125, 0.875];
 /// Linear RGB of the ground.
 pub const GROUND: [f32; 3] = [0.1875, 0.15625, 0.125];
-/// Linear RGB that the sun adds where it stands.
+/// Linear RGB that the sun adds at its centre.
 pub const SUN: [f32; 3] = [24.0, 20.0, 16.0];
 /// Linear RGB that the glow around the sun adds in its middle.
 pub const GLOW: [f32; 3] = [0.75, 0.625, 0.375];
-/// Seven times the unit direction towards the sun: to the left, above and behind a camera that
-/// looks along -z.
+/// Seven times the unit direction towards the sun. The sun is to the left, above and behind a
+/// camera that looks along -z.
 pub const TOWARDS_SUN: [f32; 3] = [-2.0, 3.0, 6.0];
 
 /// Linear RGB radiance from the unit direction (x, y, z).
 ///
-/// With S(a) = (a a)(3 - 2 a) of a brought into [0, 1], and T(a) the Chebyshev polynomial of degree
-/// 32, five times a <- 2 (a a) - 1:
+/// S(a) = (a a)(3 - 2 a), with a brought into [0, 1]. T(a) is the Chebyshev polynomial of degree
+/// 32, computed by doing a <- 2 (a a) - 1 five times:
 ///
 /// ```text
 ///   h = 1 - y, at most 1     sky = ZENITH + (HORIZON - ZENITH) ((h h)(h h))
@@ -34,9 +34,9 @@ pub const TOWARDS_SUN: [f32; 3] = [-2.0, 3.0, 6.0];
 ///   radiance = base pattern + (SUN sun + GLOW glow)
 /// ```
 ///
-/// The pattern has three families of soft rings, 16 around each axis, and does not change with
-/// the signs of the components or their order. The disc of the sun fades between 1.8 and 2.5
-/// degrees from its middle.
+/// The pattern has three families of soft rings, 16 around each axis. It does not change with the
+/// signs of the components or their order. The disc of the sun fades between 1.8 and 2.5 degrees
+/// from its middle.
 #[must_use]
 pub fn radiance<R: Real>(direction: Vector3<R>) -> [R; 3] {
     let Vector3 { x, y, z } = direction;
@@ -58,13 +58,13 @@ pub fn radiance<R: Real>(direction: Vector3<R>) -> [R; 3] {
     })
 }
 
-/// 0 to 1 between 0 and 1, with level ends.
+/// Rises from 0 to 1 between 0 and 1, with level ends.
 fn smooth<R: Real>(a: R) -> R {
     let a = a.at_least(R::ZERO).at_most(R::ONE);
     (a * a) * (R::from_f32(3.0) - R::from_f32(2.0) * a)
 }
 
-/// cos(32 angle) of cos(angle), by cos(2 angle) = 2 cos(angle)^2 - 1.
+/// cos(32 angle) from cos(angle), by cos(2 angle) = 2 cos(angle)^2 - 1.
 fn chebyshev<R: Real>(a: R) -> R {
     (0..5).fold(a, |a, _| R::from_f32(2.0) * (a * a) - R::ONE)
 }
@@ -89,7 +89,7 @@ mod tests {
         Vector3::new(d.x as f32, d.y as f32, d.z as f32)
     }
 
-    /// The same sky by angles and powers in place of polynomials.
+    /// The same sky by angles and powers instead of polynomials.
     fn by_angles(d: Vector3<f64>) -> [f64; 3] {
         let ring = |a: f64| {
             let other = (1.0 - a * a).sqrt();
@@ -127,8 +127,8 @@ mod tests {
             let single = radiance(single(d));
             for c in 0..3 {
                 assert!((found[c] - expected[c]).abs() < 1e-10, "{d:?}");
-                // Half an ulp of k, 2^-25, times the slope of the sun's edge, 1.5 * 2^11 * 24; and
-                // the roundings on the way to it.
+                // Half an ulp of k, 2^-25, times the slope of the sun's edge, 1.5 * 2^11 * 24; plus
+                // the roundings on the way to k.
                 assert!((f64::from(single[c]) - expected[c]).abs() < 0.02, "{d:?}");
                 assert!(found[c] >= 0.06 && found[c] <= 26.0, "{d:?} {found:?}");
             }
@@ -141,7 +141,8 @@ mod tests {
         for d in directions(3, 4000).map(single) {
             let sun_side = |d: Vector3<f32>| -2.0 * d.x + 3.0 * d.y + 6.0 * d.z > 0.0;
             let others = [Vector3::new(-d.x, d.y, d.z), Vector3::new(d.z, d.y, d.x)];
-            // A pattern that knows no order would be the same product; ours is rounded in order.
+            // In exact arithmetic the pattern does not depend on the order; here the product is
+            // rounded in order.
             let close = |a: [f32; 3], b: [f32; 3]| (0..3).all(|c| (a[c] - b[c]).abs() <= 2e-7);
             for other in others.into_iter().filter(|&o| !sun_side(o) && !sun_side(d)) {
                 assert!(close(radiance(d), radiance(other)), "{d:?}");
@@ -168,8 +169,8 @@ mod tests {
         assert!(directions(5, 5000).all(blue_above_brown));
     }
 
-    /// The steepest part is the edge of the sun: 24 * 1.5 * 2^11 a unit of k, and k changes by at
-    /// most sin(2.6 degrees) an angle there.
+    /// The steepest part is the edge of the sun: 24 * 1.5 * 2^11 per unit of k, and there k changes
+    /// by at most sin(2.6 degrees) per angle.
     #[test]
     fn it_is_smooth() {
         let step = 1e-7;

@@ -1,8 +1,8 @@
-//! Ids of scenes of objects: an object's index and a surfel's index in one number \[GBP04, 4.2\].
+//! Put an object's index and a surfel's index into one id \[GBP04, 4.2\].
 //!
-//! An id has 32 bits, of which the lowest n are the surfel's index in its object and the others the
-//! object's number, or 40 where 32 do not suffice. [`Split`] says how many are whose. Of the splits
-//! in this order the first that fits a scene is taken:
+//! An id has 32 bits, or 40 where 32 do not suffice. The lowest n bits are the surfel's index in
+//! its object, and the others are the object's number. [`Split`] says how many bits each gets. A
+//! scene takes the first of these splits that fits:
 //!
 //! ```text
 //!   Even      n = 20: at most 4096 objects of at most 2^20 surfels
@@ -14,25 +14,28 @@
 //!             2^(40 - n) - 2^8 objects of at most 2^n surfels
 //! ```
 //!
-//! Objects are numbered from 0 in the order of the scene, in `Two` those of each scheme on their own; in
-//! `Stencil(n)` object o has the number o + floor(o / (2^(32 - n) - 1)), in `Stencil(32)` o. `Single` takes the least n with which the
-//! largest object fits, or does not fit.
-//! [`NO_ID`] is never a surfel, and never the lowest 32 bits of one: a split in which a surfel would
-//! have them does not fit. (`Decided:` \[GBP04\] calls it the most improbable indicator; a scene in which it does occur
-//! takes the next split.) Planes of ids hold the lowest 32 bits; the
-//! stages of [`deferred`](crate::method::deferred) leave the highest 8 of wider ones in planes beside them.
-//! A plane of wide ids without them is not judged: two surfels of one picture may show the same number there.
-//! Where surfels are counted, as in the text of an explanation or of a verdict by a method that draws all
-//! surfels one by one, they are counted in the order of their ids; so are those of a verdict on wide ids, and
-//! the ids of a scene that has primitives, which are counted on after the surfels.
+//! Objects are numbered from 0 in the order of the scene; in `Two` the objects of each scheme are
+//! numbered separately. In `Stencil(n)` object o has the number o + floor(o / (2^(32 - n) - 1)), in
+//! `Stencil(32)` o. `Single` takes the least n with which the largest object fits, or does not fit.
 //!
-//! Of an object with [levels of detail](super::detail) only those surfels have ids that a view looks
-//! at, so that the split may change from frame to frame: \[GBP04, 4.2\] has its two schemes for the
+//! [`NO_ID`] is never a surfel, and never the lowest 32 bits of one: a split in which a surfel
+//! would have them does not fit. (`Decided:` \[GBP04\] calls it the most improbable indicator; a
+//! scene in which it does occur takes the next split.) Planes of ids hold the lowest 32 bits; the
+//! stages of [`deferred`](crate::method::deferred) leave the highest 8 of wider ids in planes
+//! beside them. A plane of wide ids without the highest bits is not judged, because two surfels of
+//! one picture may show the same number there.
+//!
+//! Where surfels are counted, they are counted in the order of their ids. This applies to the text
+//! of an explanation or of a verdict by a method that draws all surfels one by one. It also applies
+//! to a verdict on wide ids, and to the ids of a scene that has primitives: there the count
+//! continues with the primitives after the surfels.
+//!
+//! In an object with [levels of detail](super::detail) only the surfels that a view looks at have
+//! ids, so the split may change from frame to frame. \[GBP04, 4.2\] has its two schemes for the
 //! forest because most trees are far away.
 //!
-//! The order of every sum and of every tie in a scene of objects is that of
-//! the ids: `Even`, `Single` and `Stencil` keep the order of the scene, `Two` has the large objects
-//! first.
+//! The order of every sum and of every tie in a scene of objects is the order of the ids: `Even`,
+//! `Single` and `Stencil` keep the order of the scene, `Two` puts the large objects first.
 
 use crate::error::{Error, Result};
 use crate::frame::NO_ID;
@@ -42,11 +45,11 @@ use crate::frame::NO_ID;
 pub enum Split {
     /// 12 bits of the object, 20 of the surfel.
     Even,
-    /// 11 and 20 bits, or 14 and 17, after a bit that says which.
+    /// 11 and 20 bits, or 14 and 17, after one bit that says which.
     Two,
-    /// So many bits of the surfel, 0 to 32; the others are the object's.
+    /// This many bits of the surfel, 0 to 32; the others are the object's.
     Single(u32),
-    /// So many bits of the surfel, 0 to 32, of 40 in all; the others are the object's.
+    /// This many bits of the surfel, 0 to 32, of 40 in all; the others are the object's.
     Stencil(u32),
 }
 
@@ -56,7 +59,7 @@ const SMALL: u32 = 17;
 /// Bits of the number of an object in [`Split::Two`], large and small.
 const LARGE_OBJECTS: u32 = 11;
 const SMALL_OBJECTS: u32 = 14;
-/// Bits of ids with those of the stencil buffer.
+/// Bits of ids that include the stencil buffer's bits.
 const WIDE: u32 = 40;
 /// The scheme bit of [`Split::Two`].
 const SCHEME: u64 = 1 << 31;
@@ -73,21 +76,22 @@ pub struct Ids {
     first: Vec<u64>,
     /// The objects in the order of their ids.
     order: Vec<u32>,
-    /// How many surfels come before each of them, in that order.
+    /// How many surfels come before each object, in that order.
     before: Vec<u64>,
 }
 
 impl Ids {
-    /// The ids of objects of so many surfels each, by the first split that fits.
+    /// Makes the ids of objects with these numbers of surfels, by the first split that fits.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if none fits; with the limit, and `name` of the object that breaks it.
+    /// [`Error::Invalid`] if none fits; with the limit, and the `name` of the object that breaks
+    /// it.
     pub fn new(counts: Vec<u32>, name: impl Fn(usize) -> String) -> Result<Self> {
         Self::first(counts.clone(), counts, name)
     }
 
-    /// The ids of the first so many surfels of objects that have `all` of them: of what a
-    /// [view](super::detail) looks at.
+    /// Makes the ids of the first surfels of each object: the ones that a [view](super::detail)
+    /// looks at. `counts` are their numbers, and `all` are the numbers of all surfels.
     ///
     /// # Errors
     /// As [`Ids::new`].
@@ -99,6 +103,7 @@ impl Ids {
         let fits = splits.into_iter().find_map(|split| Self::of(split, &counts));
         fits.map(|fits| Self { all, ..fits }).ok_or_else(|| {
             let objects = counts.len();
+            // Either one object has too many surfels for its bits, or there are too many objects.
             let large = counts.iter().position(|&count| count == most && count > 1 << LARGE);
             let what = match large {
                 Some(object) => format!(
@@ -117,7 +122,7 @@ impl Ids {
         })
     }
 
-    /// The ids by a split of one's own; none if it does not fit.
+    /// Makes the ids with a chosen split; none if it does not fit.
     #[must_use]
     pub fn of(split: Split, counts: &[u32]) -> Option<Self> {
         let numbers = |bits: u32| 0..1_u64 << bits;
@@ -139,6 +144,8 @@ impl Ids {
                 Split::Single(bits) => (objects.next()? << bits, 1 << bits),
                 Split::Stencil(bits) => {
                     let last = (1 << (32 - bits)) - 1;
+                    // A number whose lowest bits are all 1 could give a surfel the lowest 32 bits
+                    // of `NO_ID`.
                     let number = objects.find(|number| bits == 32 || number & last != last);
                     (number? << bits, 1 << bits)
                 }
@@ -159,7 +166,7 @@ impl Ids {
         Some(Self { split, before, all: counts.clone(), counts, first, order })
     }
 
-    /// The same surfels by another split; none if they do not fit.
+    /// The same surfels with another split; none if they do not fit.
     #[must_use]
     pub fn split_as(&self, split: Split) -> Option<Self> {
         Some(Self { all: self.all.clone(), ..Self::of(split, &self.counts)? })
@@ -202,7 +209,7 @@ impl Ids {
         self.all[object as usize]
     }
 
-    /// How many surfels of an object have ids: the first.
+    /// How many of an object's first surfels have ids.
     #[must_use]
     pub fn count(&self, object: u32) -> u32 {
         self.counts[object as usize]
@@ -220,17 +227,18 @@ impl Ids {
         self.first[object as usize] + u64::from(surfel)
     }
 
-    /// The id of which so many others are less; none if there are no more.
+    /// The id that has this many lower ids; none if there are not enough ids.
     #[must_use]
     pub fn nth(&self, rank: u64) -> Option<u64> {
         let after = self.before.partition_point(|&before| before <= rank);
-        // Of objects without surfels the last one has the rank of the one after.
+        // Several objects may have this rank as their start; all but the last of them have no
+        // surfels.
         let (&object, before) = (self.order.get(after.checked_sub(1)?)?, self.before[after - 1]);
         let surfel = rank - before;
         (surfel < u64::from(self.count(object))).then(|| self.first[object as usize] + surfel)
     }
 
-    /// How many ids are less than an id; none if it is the id of no surfel.
+    /// How many ids are lower than an id; none if the id belongs to no surfel.
     #[must_use]
     pub fn rank(&self, id: u64) -> Option<u64> {
         let (object, surfel) = self.find(id)?;
@@ -239,7 +247,7 @@ impl Ids {
         Some(self.before[place] + u64::from(surfel))
     }
 
-    /// The object and the surfel of an id; none if it is the id of none.
+    /// The object and the surfel of an id; none if the id belongs to no surfel.
     #[must_use]
     pub fn find(&self, id: u64) -> Option<(u32, u32)> {
         let after = self.order.partition_point(|&object| self.first[object as usize] <= id);
@@ -248,8 +256,8 @@ impl Ids {
         (surfel < u64::from(self.count(object))).then_some((object, surfel as u32))
     }
 
-    /// Ascending ids object by object: each object with those of its surfels. What is the id of no surfel
-    /// is left out.
+    /// Splits ascending ids object by object: each object with the ids of its surfels. Ids that
+    /// belong to no surfel are left out.
     pub fn runs<'a>(&'a self, ids: &'a [u64]) -> impl Iterator<Item = (u32, &'a [u64])> {
         let mut rest = ids;
         std::iter::from_fn(move || {
@@ -278,7 +286,7 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The split of the ids, not the ids: of a million objects nobody wants to read them.
+    /// The split of the ids, not the ids: nobody wants to read a million of them.
     fn split_of(counts: &[u32]) -> Result<Split> {
         Ids::new(counts.to_vec(), |object| format!("o{object}")).map(|ids| ids.split())
     }
@@ -366,14 +374,15 @@ mod tests {
                     prop_assert!(rank == 0 || ids.nth(rank - 1).unwrap() < id);
                 }
                 prop_assert_eq!(ids.nth(total), None);
-                // As runs all ids are there once, object by object, and those of none are not.
+                // In runs, all ids are there once, object by object, and ids of no surfel are not.
                 let mut some: Vec<u64> = (0..total.min(9)).filter_map(|rank| ids.nth(rank)).collect();
                 some.extend([u64::MAX - 1, u64::MAX]);
                 let runs = ids.runs(&some);
                 let runs = runs.flat_map(|(object, run)| run.iter().map(move |&id| (object, id)));
                 let found = some.iter().filter_map(|&id| ids.find(id).map(|(object, _)| (object, id)));
                 prop_assert!(runs.eq(found));
-                // The id after the last of an object is nobody's, or the first of the next.
+                // The id after the last one of an object belongs to no surfel, or is the first of
+                // the next object.
                 let end = ids.id(object as u32, counts[object]);
                 prop_assert!(ids.find(end).is_none_or(|(_, surfel)| surfel == 0));
                 prop_assert_eq!(ids.find(u64::from(NO_ID)), None);

@@ -1,27 +1,35 @@
-//! Scenes of objects: geometries that are in memory once, and objects that use them, each in its
-//! place, which may change from frame to frame.
+//! Scenes of objects: a geometry is in memory once, and many objects use it, each in a place that
+//! may change from frame to frame.
 //!
 //! - [`ids`]: an object and a surfel in one number.
 //! - [`motion`]: where an object is in a frame.
-//! - [`detail`]: which surfels of an object a view draws, of a geometry with levels of detail.
+//! - [`detail`]: which surfels a view draws of an object whose geometry has levels of detail.
 //! - [`outline`]: objects whose geometries are read when a view needs them.
 //! - `place`: surfels of objects in their places.
 //!
-//! A surfel of an object is that of its geometry, placed by [`Similarity::apply`] with the object's
-//! place in the frame, and then checked as [`Surfels::new`] checks a surfel, which makes its normal a
-//! unit vector again. A scene has colours, opacities or half axes if an object, or the surfels of a geometry that an
-//! object uses, has, and colours also if the primitives of one have; if none has a colour, that of the material holds. What only some of the objects have the others get: the colour
-//! [`Objects::fill`], the opacity 1, the half axes of [`super::cloud::half_axes`], of
-//! the placed normal and radius, before the normal is made a unit vector again. The colour of an object
-//! stands in the place of that of its geometry.
+//! A surfel of an object is a surfel of its geometry, placed by [`Similarity::apply`] with the
+//! object's place in the frame. It is then checked as [`Surfels::new`] checks a surfel, which makes
+//! its normal a unit vector again.
 //!
-//! `Decided:` the median radius, the unit of epsilon, is the lower median, the element of rank
-//! (n - 1) / 2 over all surfels of all objects in the frame, of the objects' median
-//! radii, each its geometry's times the object's scale (in f64, rounded to f32) and counted once for
-//! each of its surfels: neither what is seen of a scene nor how it is selected changes
-//! epsilon; where scales move, epsilon does from frame to frame. Of objects with levels of detail all
-//! radii that are drawn count, each once: epsilon has to be that of the discs that lie over each other,
-//! and those of a level far away are large. Where nothing is drawn it is 0.
+//! A scene has colours, opacities or half axes if an object has them, or the surfels of a geometry
+//! that an object uses. It also has colours if the primitives of such a geometry have colours. If
+//! nothing has a colour, the colour of the material applies. Objects that lack what others have get
+//! these values:
+//!
+//! - the colour [`Objects::fill`];
+//! - the opacity 1;
+//! - the half axes of [`super::cloud::half_axes`], from the placed normal and radius, before the
+//!   normal is made a unit vector again.
+//!
+//! The colour of an object replaces the colour of its geometry.
+//!
+//! `Decided:` the median radius, the unit of epsilon, is a lower median: the element of rank
+//! (n - 1) / 2 over all surfels of all objects in the frame. Each surfel counts with its object's
+//! median radius: the geometry's median radius times the object's scale, in f64, rounded to f32. So
+//! epsilon does not change with the visible part of a scene or with how it is selected; where
+//! scales move, epsilon changes from frame to frame. Objects with levels of detail instead count
+//! all radii that are drawn, each once. Epsilon has to fit the discs that lie over each other, and
+//! the discs of a level far away are large. Where nothing is drawn the median radius is 0.
 
 pub mod detail;
 pub mod ids;
@@ -41,29 +49,30 @@ pub use motion::Motion;
 use place::Extent;
 use std::sync::Arc;
 
-/// What objects are copies of: surfels and primitives in coordinates of their own.
+/// The model that objects are copies of: surfels and primitives in coordinates of their own.
 #[derive(Clone, Debug)]
 pub struct Geometry {
-    /// What it is called.
+    /// The geometry's name.
     pub name: String,
-    /// Its surfels; of a tree all nodes.
+    /// The surfels; for a tree, all nodes.
     pub surfels: Surfels,
-    /// What there is beside them.
+    /// Triangles, ribbons and tubes beside the surfels.
     pub primitives: Primitives,
-    /// Which of its surfels are drawn, see [`Geometry::with_detail`] and [`Geometry::with_prefix`]; none: all.
+    /// Which surfels are drawn, see [`Geometry::with_detail`] and [`Geometry::with_prefix`]; none
+    /// means all.
     pub detail: Option<Detail>,
 }
 
-/// A geometry in some place.
+/// A geometry in a place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Object {
-    /// What it is called.
+    /// The object's name.
     pub name: String,
-    /// The geometry, by its index.
+    /// The index of its geometry.
     pub geometry: usize,
     /// Where it is.
     pub motion: Motion,
-    /// Linear RGB for all of it, in place of the geometry's.
+    /// Linear RGB for the whole object; replaces the geometry's colour.
     pub color: Option<Vec3>,
 }
 
@@ -73,7 +82,7 @@ pub struct Objects {
     geometries: Arc<[Geometry]>,
     objects: Arc<[Object]>,
     ids: Arc<Ids>,
-    /// Of each geometry.
+    /// One extent for each geometry.
     extents: Arc<[Extent]>,
     fill: Vec3,
     frame: u32,
@@ -84,16 +93,16 @@ pub struct Objects {
     shown: Arc<[Shown]>,
     median_radius: f32,
     bounding_sphere: (DVec3, f64),
-    /// The hash of what geometries are read from, if they are known by that.
+    /// The hash of the files that geometries are read from, if the hash identifies them.
     source: Option<[u8; 32]>,
 }
 
 impl Objects {
-    /// Objects in frame 0. `fill` is the colour of those without one, if some have one.
+    /// Makes objects in frame 0. `fill` is the colour of objects without one, if some have one.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if there is no object, if one has a geometry that does not exist, if its
-    /// surfels leave the range of f32, or as [`Ids::new`].
+    /// [`Error::Invalid`] if there is no object, if an object's geometry does not exist, if an
+    /// object's surfels leave the range of f32, or as [`Ids::new`].
     pub fn new(geometries: Vec<Geometry>, objects: Vec<Object>, fill: Vec3) -> Result<Self> {
         let extents = geometries.iter().map(Extent::new).collect();
         Self::assembled(geometries, extents, objects, fill)
@@ -130,18 +139,19 @@ impl Objects {
         still.at(0)
     }
 
-    /// Ids for all surfels of all objects.
+    /// Makes ids for all surfels of all objects.
     fn ids_of_all(&self) -> Result<Ids> {
         let count = |object: &Object| self.extents[object.geometry].count;
         let counts = self.objects.iter().map(count).collect();
         Ids::new(counts, |object| self.objects[object].name.clone())
     }
 
-    /// The same objects in another frame, with all their surfels: of those with levels of detail
-    /// the ones that they were made of.
+    /// Moves the objects to another frame, with all their surfels. Objects with levels of detail
+    /// get the surfels that they were made of.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if surfels of an object leave the range of f32 there, and as [`Ids::new`].
+    /// [`Error::Invalid`] if surfels of an object leave the range of f32 there, and as
+    /// [`Ids::new`].
     pub fn at(&self, frame: u32) -> Result<Self> {
         let places: Vec<_> = self.objects.iter().map(|object| object.motion.at(frame)).collect();
         let at_rest = |object: &Object| {
@@ -179,19 +189,20 @@ impl Objects {
         &self.objects
     }
 
-    /// Where each object is.
+    /// The place of each object.
     #[must_use]
     pub fn places(&self) -> &[Similarity] {
         &self.places
     }
 
-    /// The same objects with ids by another split, which stands until the next frame; none if it does not fit.
+    /// Replaces the ids by another split, which holds until the next frame; none if the split does
+    /// not fit.
     #[must_use]
     pub fn split_as(&self, split: Split) -> Option<Self> {
         Some(Self { ids: Arc::new(self.ids.split_as(split)?), ..self.clone() })
     }
 
-    /// The ids of their surfels.
+    /// The ids of the surfels.
     #[must_use]
     pub fn ids(&self) -> &Ids {
         &self.ids
@@ -203,13 +214,13 @@ impl Objects {
         self.fill
     }
 
-    /// The frame in which they are.
+    /// The frame that the objects are in.
     #[must_use]
     pub fn frame(&self) -> u32 {
         self.frame
     }
 
-    /// Whether they are at the same places in every frame.
+    /// Whether the objects have the same places in every frame.
     #[must_use]
     pub fn are_still(&self) -> bool {
         self.objects.iter().all(|object| object.motion.is_still())
@@ -227,20 +238,20 @@ impl Objects {
         &self.geometries[self.objects[object as usize].geometry]
     }
 
-    /// How many surfels the geometry of an object has, read or not.
+    /// How many surfels the geometry of an object has, whether they have been read or not.
     pub(super) fn count_of_all(&self, object: u32) -> u32 {
         self.extents[self.objects[object as usize].geometry].count
     }
 
-    /// The boxes of the surfels of an object, in the coordinates of its geometry.
+    /// The boxes around the surfels of an object, in the coordinates of its geometry.
     #[must_use]
     pub fn boxes(&self, object: u32) -> &Boxes {
         &self.extents[self.objects[object as usize].geometry].boxes
     }
 
-    /// A sphere around all surfels and primitives of an object: middle and radius, in f64. It is that of the
-    /// geometry by the rule of [`super::Scene::bounding_sphere`], whose middle is placed as a point is, and
-    /// whose radius is scaled; nothing is rounded to f32.
+    /// A sphere around all surfels and primitives of an object: middle and radius, in f64. It is
+    /// the sphere of the geometry by the rule of [`super::Scene::bounding_sphere`]. Its middle is
+    /// placed as a point is, its radius is scaled, and nothing is rounded to f32.
     #[must_use]
     pub fn sphere(&self, object: u32) -> (DVec3, f64) {
         let place = &self.places[object as usize];
@@ -248,14 +259,14 @@ impl Objects {
         (place.rotation * (middle * place.scale) + place.translation, radius * place.scale)
     }
 
-    /// Whether there are primitives in an object.
+    /// Whether some object has primitives.
     #[must_use]
     pub fn have_primitives(&self) -> bool {
         self.objects.iter().any(|object| self.extents[object.geometry].primitives)
     }
 
     /// A sphere around everything: the middle of the box around the objects' spheres, and the
-    /// farthest that one of them reaches from there; in f64.
+    /// farthest distance that one of the spheres reaches from there; in f64.
     #[must_use]
     pub fn bounding_sphere(&self) -> (DVec3, f64) {
         self.bounding_sphere
@@ -277,7 +288,7 @@ impl Objects {
     fn median_of_medians(&self) -> f32 {
         let of = |(object, place): (&Object, &Similarity)| {
             let (count, median) = self.extents[object.geometry].at_rest;
-            // The median of radii that are scaled is the median, scaled: rounding keeps their order.
+            // The median of scaled radii is the scaled median, because rounding keeps their order.
             ((f64::from(median) * place.scale) as f32, u64::from(count))
         };
         let mut medians: Vec<_> = self.objects.iter().zip(&self.places).map(of).collect();

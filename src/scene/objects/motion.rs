@@ -1,8 +1,8 @@
-//! Motion: where something is in a frame of a sequence.
+//! Move an object over the frames of a sequence.
 //!
-//! A [`Motion`] is a list of keys, each a frame and a [`Similarity`]. In a frame that has a key it
-//! is the key's, bit for bit; before the first key the first, after the last the last. Between the
-//! keys a and b everything is computed in f64, of a frame f:
+//! A [`Motion`] is a list of keys, each a frame and a [`Similarity`]. In a frame that has a key,
+//! the place is the key's place, bit for bit. Before the first key it is the first place, and after
+//! the last key the last. Between the keys a and b everything is computed in f64, for a frame f:
 //!
 //! ```text
 //!   s            (f - f_a) / (f_b - f_a), with the frames of the keys
@@ -16,12 +16,14 @@
 //!                then divided by its length, and made a matrix
 //! ```
 //!
-//! p u + q v is a product and a product, then their sum; sin and atan2 are those of
-//! [`crate::number::elementary`]; a length is the root of the sum of four squares. Sums of four run `((w + x) + y) + z`. A key every half turn or more often says which way an
-//! object turns; a key after a whole turn says that the object rests.
+//! p u + q v is a product and a product, then their sum. sin and atan2 are the functions of
+//! [`crate::number::elementary`]. A length is the root of the sum of four squares. Sums of four run
+//! `((w + x) + y) + z`. Set a key at least every half turn to say which way an object turns; a key
+//! after a whole turn means that the object rests.
 //!
 //! The quaternion (w, x, y, z) of a rotation m (`m.r.c`: row, column) is found from its greatest
-//! component, the first in the order w, x, y, z of those with the greatest square, of
+//! component. That is the first, in the order w, x, y, z, of the components with the greatest
+//! square:
 //!
 //! ```text
 //!   4 w w = ((1 + m00) + m11) + m22        4 x x = ((1 + m00) - m11) - m22
@@ -48,20 +50,20 @@ use crate::error::{Error, Result};
 use crate::number::elementary;
 use glam::{DMat3, DVec3};
 
-/// Where something is over the frames of a sequence, see the [module](self).
+/// Where an object is over the frames of a sequence, see the [module](self).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Motion {
     keys: Vec<(u32, Similarity)>,
 }
 
 impl Motion {
-    /// At rest.
+    /// A motion that stays at one place.
     #[must_use]
     pub fn still(place: Similarity) -> Self {
         Self { keys: vec![(0, place)] }
     }
 
-    /// By keys in ascending frames.
+    /// Makes a motion from keys in ascending frames.
     ///
     /// # Errors
     /// [`Error::Invalid`] if there is no key, if frames do not ascend, or as [`Similarity::check`].
@@ -87,13 +89,13 @@ impl Motion {
         &self.keys
     }
 
-    /// Whether it is at the same place in every frame.
+    /// Whether the place is the same in every frame.
     #[must_use]
     pub fn is_still(&self) -> bool {
         self.keys.iter().all(|(_, place)| *place == self.keys[0].1)
     }
 
-    /// Where it is in a frame.
+    /// The place in a frame.
     #[must_use]
     pub fn at(&self, frame: u32) -> Similarity {
         let after = self.keys.partition_point(|(of, _)| *of < frame);
@@ -102,6 +104,7 @@ impl Motion {
             return self.keys[nearest].1;
         };
         let (first, a) = self.keys[before];
+        // No arithmetic, so that the place keeps its bits.
         if last == frame || a == b {
             return b;
         }
@@ -109,7 +112,7 @@ impl Motion {
     }
 }
 
-/// The similarity at the part `s` of the way from `a` to `b`.
+/// The similarity at the fraction `s` of the way from `a` to `b`.
 fn between(a: &Similarity, b: &Similarity, s: f64) -> Similarity {
     Similarity {
         rotation: slerp(&a.rotation, &b.rotation, s),
@@ -122,9 +125,11 @@ fn between(a: &Similarity, b: &Similarity, s: f64) -> Similarity {
 pub(crate) fn slerp(a: &DMat3, b: &DMat3, s: f64) -> DMat3 {
     let (p, mut q) = (quaternion(a), quaternion(b));
     let mut c = dot(p, q);
+    // q and -q are the same rotation; the closer one gives the shorter way.
     if c < 0.0 {
         (q, c) = (q.map(|part| -part), -c);
     }
+    // Between nearly equal rotations the division by k would lose the digits.
     let turned: [f64; 4] = if c >= 1.0 - 1.0 / 1_099_511_627_776.0 {
         std::array::from_fn(|i| p[i] + s * (q[i] - p[i]))
     } else {
@@ -216,7 +221,7 @@ mod tests {
         ) {
             let axis = DVec3::from_array(axis);
             prop_assume!(axis.length() > 0.1);
-            // About one axis a part of the way is a part of the angle.
+            // About one axis, a part of the way is a part of the angle.
             let [a, b] = [start, start + turn].map(|degrees| rotation(axis, degrees));
             let truth = rotation(axis, start + s * turn);
             let off = (slerp(&a, &b, s) - truth).to_cols_array();

@@ -1,9 +1,10 @@
-//! Objects whose geometries are read when a view needs them.
+//! Read only the geometries that a view needs.
 //!
-//! What a view draws of an object with a [prefix](super::detail::prefix), and of its finer ones, is a function of a few
-//! numbers of each geometry, its [`Outline`]: how many surfels there are, how densely they cover, what bounds them. So
-//! objects can be made of outlines, [seen](Objects::seen_from) by a camera, and then only that be read which is drawn.
-//! The objects that result draw what those with all surfels and primitives do, bit for bit.
+//! What a view draws of an object with a [prefix](super::detail::prefix), and of its finer objects,
+//! depends on a few numbers of each geometry, its [`Outline`]: how many surfels there are, how
+//! densely they cover, and what bounds them. So you can make objects from outlines, let a camera
+//! [see](Objects::seen_from) them, and then read only what is drawn. The resulting objects draw the
+//! same as objects with all surfels and primitives, bit for bit.
 
 use super::detail::prefix::{Estimate, Prefix};
 use super::place::Extent;
@@ -13,8 +14,8 @@ use crate::scene::{Boxes, Primitives, Surfels, bounds};
 use glam::{DVec3, Vec3};
 use std::sync::Arc;
 
-/// What bounds surfels and primitives together, by the rules of [`crate::scene::Scene::bounds`] and
-/// [`crate::scene::Scene::bounding_sphere`].
+/// The box and the sphere around surfels and primitives together, by the rules of
+/// [`crate::scene::Scene::bounds`] and [`crate::scene::Scene::bounding_sphere`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Bounds {
     /// The corner of the box with the least coordinates.
@@ -26,11 +27,11 @@ pub struct Bounds {
 }
 
 impl Bounds {
-    /// Those of surfels and primitives.
+    /// The bounds of surfels and primitives.
     #[must_use]
     pub fn of(surfels: &Surfels, primitives: &Primitives) -> Self {
         let (low, high) = bounds::corners(surfels, primitives);
-        // -0 becomes 0.
+        // Adding 0 turns -0 into 0.
         let (low, high) = (low + Vec3::ZERO, high + Vec3::ZERO);
         Self { low, high, radius: bounds::sphere(surfels, primitives).1 }
     }
@@ -42,30 +43,31 @@ impl Bounds {
     }
 }
 
-/// What views ask of a geometry that has not been read: of surfels in an order, all of one radius, with colours, and
-/// without half axes and prefiltered colours; and of primitives.
+/// What views need to know of a geometry that has not been read. Its surfels are in an order, all
+/// have one radius and a colour, and none has half axes or prefiltered colours. It may have
+/// primitives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Outline {
-    /// What it is called.
+    /// The geometry's name.
     pub name: String,
     /// How many surfels there are, and how densely they cover; none without surfels.
     pub surfels: Option<(u32, Estimate)>,
-    /// The radius of each.
+    /// The radius of every surfel.
     pub radius: f32,
-    /// Whether they have opacities.
+    /// Whether the surfels have opacities.
     pub opacity: bool,
-    /// Whether there are primitives; if so, whether they have colours.
+    /// Whether the primitives have colours; none if there are no primitives.
     pub primitives: Option<bool>,
-    /// What bounds all of it.
+    /// The bounds of everything.
     pub bounds: Bounds,
 }
 
-/// What is drawn of a geometry.
+/// The part of a geometry that is drawn.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Needed {
-    /// So many of its first surfels.
+    /// How many of its first surfels are drawn.
     pub surfels: u32,
-    /// Whether its primitives are.
+    /// Whether its primitives are drawn.
     pub primitives: bool,
 }
 
@@ -87,8 +89,8 @@ impl Extent {
 }
 
 impl Objects {
-    /// Objects of which no geometry has been read. What they are read from is known by `source`, a hash; two scenes
-    /// with the same are the same.
+    /// Makes objects whose geometries have not been read. `source` is a hash that identifies what
+    /// they are read from: two scenes with the same hash are the same.
     ///
     /// # Errors
     /// As [`Objects::new`].
@@ -112,20 +114,20 @@ impl Objects {
         Ok(all.with_source(source))
     }
 
-    /// The same objects, known by what they are read from.
+    /// The same objects, identified by what they are read from.
     #[must_use]
     pub(crate) fn with_source(self, source: [u8; 32]) -> Self {
         Self { source: Some(source), ..self }
     }
 
-    /// The hash of what geometries are read from, which may be as views need them; none if they are known by what is in
-    /// memory.
+    /// The hash of the source that geometries are read from, as views need them; none if the
+    /// objects are identified by their contents in memory.
     #[must_use]
     pub fn source(&self) -> Option<&[u8; 32]> {
         self.source.as_ref()
     }
 
-    /// What the view draws of each geometry: the most that one of its objects does.
+    /// What the view draws of each geometry: the most that any of its objects draws.
     #[must_use]
     pub fn needed(&self) -> Vec<Needed> {
         let mut all = vec![Needed::default(); self.geometries.len()];
@@ -138,11 +140,11 @@ impl Objects {
         all
     }
 
-    /// The same objects with what the view draws of each geometry, and nothing else: `read` gives so much of the
-    /// geometry of an index.
+    /// Loads what the view draws of each geometry, and nothing else. `read` gets the index of a
+    /// geometry and returns the needed part of it.
     ///
     /// # Errors
-    /// Those of `read`.
+    /// The errors of `read`.
     pub fn with_needed(
         mut self,
         mut read: impl FnMut(usize, Needed) -> Result<(Surfels, Primitives)>,
@@ -150,7 +152,7 @@ impl Objects {
         let needed = self.needed();
         let known = |geometry: &Geometry| (geometry.name.clone(), geometry.detail.clone());
         let known: Vec<_> = self.geometries.iter().map(known).collect();
-        // What another view needed makes room.
+        // Frees what another view needed.
         self.geometries = Arc::new([]);
         let (mut geometries, mut extents) = (Vec::new(), Vec::new());
         for (index, (needed, (name, detail))) in needed.into_iter().zip(known).enumerate() {

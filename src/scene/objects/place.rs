@@ -11,28 +11,28 @@ use crate::scene::{Boxes, Mipmap, Primitives, Surfels, bounds};
 use glam::{DVec3, Vec3};
 use std::ops::Range;
 
-/// So many surfels are placed by one job.
+/// How many surfels one job places.
 const CHUNK: usize = 1 << 13;
 
-/// Numbers of placed surfels stay between this and its inverse, 2^-100: far from where f32 ends, so
-/// that no surfel that is one becomes none.
+/// Numbers of placed surfels stay between this, 2^-100, and its inverse. That is far from where f32
+/// ends, so a valid surfel stays valid.
 const LEAST: f64 = 1.0 / 1_267_650_600_228_229_401_496_703_205_376.0;
 
-/// What is asked of a geometry for each of its objects in each frame.
+/// The numbers of a geometry that each of its objects needs in each frame.
 #[derive(Clone, Debug)]
 pub(super) struct Extent {
     pub(super) boxes: Boxes,
-    /// Around surfels and primitives: middle and radius.
+    /// The sphere around surfels and primitives: middle and radius.
     pub(super) sphere: (DVec3, f64),
     /// The least of all radii and half axes.
     pub(super) least: f64,
-    /// How many surfels there are, read or not.
+    /// How many surfels there are, whether they have been read or not.
     pub(super) count: u32,
     /// How many are drawn where no camera is known, and their median radius.
     pub(super) at_rest: (u32, f32),
-    /// What surfels have.
+    /// Which attributes the surfels have.
     pub(super) has: Has,
-    /// Whether there are primitives, and some with colours.
+    /// Whether there are primitives, and whether some have colours.
     pub(super) primitives: bool,
     pub(super) colored: bool,
 }
@@ -66,7 +66,7 @@ impl Extent {
         }
     }
 
-    /// Whether surfels stay surfels in a place.
+    /// Whether surfels stay valid in a place.
     pub(super) fn is_in_range(&self, place: &Similarity) -> bool {
         let (middle, radius) = self.sphere;
         let far = (middle.length() + radius) * place.scale + place.translation.length();
@@ -76,18 +76,19 @@ impl Extent {
 
 /// Surfels that one job places.
 enum Part<'a> {
-    /// Those of ranges that are drawn, object by object.
+    /// The drawn surfels of ranges, object by object.
     Ranges(Vec<(u32, Range<u32>)>),
-    /// Those of some ids.
+    /// The surfels with these ids.
     Ids(&'a [u64]),
 }
 
-/// What surfels have beside positions, normals and radii: colours, opacities and half axes.
+/// Which attributes surfels have beside positions, normals and radii: colours, opacities and half
+/// axes.
 type Has = [bool; 3];
 
 impl Objects {
-    /// All surfels that are drawn, in the order of their ids, and the primitives in the order of
-    /// the scene.
+    /// Places all surfels that are drawn, in the order of their ids, and the primitives in the
+    /// order of the scene.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] as [`crate::scene::indexed::Indexed::new`].
@@ -96,7 +97,7 @@ impl Objects {
         Ok((self.gather(jobs(all.collect()), exec), self.primitives()?))
     }
 
-    /// The primitives of all objects that are drawn with theirs, in their places, in the order of the scene.
+    /// Places the primitives of all objects that draw theirs, in the order of the scene.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] as [`crate::scene::indexed::Indexed::new`].
@@ -116,19 +117,20 @@ impl Objects {
         placed.collect()
     }
 
-    /// The surfels of some ids, which ascend, with their prefiltered colours; an id that is none is left out.
+    /// Places the surfels with these ascending ids, with their prefiltered colours; ids that belong
+    /// to no surfel are left out.
     #[must_use]
     pub fn some(&self, ids: &[u64], exec: &Exec) -> Surfels {
         self.gather(ids.chunks(CHUNK).map(Part::Ids).collect(), exec)
     }
 
-    /// The surfels of ranges that are drawn, without colours and opacities.
+    /// Places the drawn surfels of ranges, without colours and opacities.
     pub(crate) fn shapes(&self, ranges: Vec<(u32, Range<u32>)>, exec: &Exec) -> Surfels {
         let [.., tangents] = self.has();
         self.gather_with(jobs(ranges), ([false, false, tangents], 0), exec)
     }
 
-    /// Surfels with all that some have.
+    /// Places surfels with all attributes that some surfels have.
     fn gather(&self, parts: Vec<Part<'_>>, exec: &Exec) -> Surfels {
         self.gather_with(parts, (self.has(), self.levels()), exec)
     }
@@ -170,7 +172,7 @@ impl Objects {
         self.objects.iter().any(|object| self.extents[object.geometry].colored)
     }
 
-    /// Whether some surfels or primitives have colours, which all surfels have then.
+    /// Whether some surfels or primitives have colours; then all surfels have.
     pub(crate) fn have_colors(&self) -> bool {
         self.has()[0]
     }
@@ -183,7 +185,8 @@ impl Objects {
     }
 
     /// The levels of prefiltered colours of the geometry that has the most; 0 if none has any.
-    /// `Decided:` a geometry with fewer has its last one, or its colour, in the place of the others.
+    /// `Decided:` in a geometry with fewer, its last level, or its colour, stands for the missing
+    /// ones.
     fn levels(&self) -> usize {
         let geometries = self.objects.iter().map(|object| &self.geometries[object.geometry]);
         let levels = geometries.filter_map(|geometry| geometry.surfels.mipmap());
@@ -199,6 +202,7 @@ impl Objects {
             let i = i as usize;
             let [mut position, mut normal] = [surfels.position()[i], surfels.normal()[i]];
             let mut radius = surfels.radius()[i];
+            // An object in the identity place keeps every bit of its surfels.
             if moves {
                 place.place(&mut position);
                 place.turn(&mut normal);
@@ -212,11 +216,11 @@ impl Objects {
                     None => half_axes(normal, radius),
                 });
             }
-            // It has a direction: it was a unit vector before it was turned.
+            // The normal has a direction, because it was a unit vector before it was turned.
             unit(&mut normal);
             if let Some(colors) = &mut to.color {
                 let own = || surfels.color().map(|colors| colors[i]);
-                // -0 becomes 0.
+                // Adding 0 turns -0 into 0.
                 let shown = color.or_else(own).unwrap_or(self.fill) + Vec3::ZERO;
                 colors.push(shown);
                 if let Some(mipmap) = &mut to.mipmap {
@@ -234,7 +238,7 @@ impl Objects {
     }
 }
 
-/// Ranges in jobs of about [`CHUNK`] surfels.
+/// Divides ranges into jobs of about [`CHUNK`] surfels.
 fn jobs(ranges: Vec<(u32, Range<u32>)>) -> Vec<Part<'static>> {
     let (mut jobs, mut job, mut room) = (Vec::new(), Vec::new(), CHUNK);
     for (object, mut range) in ranges {

@@ -29,14 +29,14 @@ fn ellipses() -> Surfels {
     Surfels::new(Cloud { tangents: Some(tangents), opacity, mipmap, ..cloud }).unwrap().0
 }
 
-/// So many prefiltered colours a surfel.
+/// Prefiltered colours with `levels` levels for each surfel.
 fn levels(surfels: usize, levels: usize) -> Mipmap {
     let colors = (0..surfels * levels).map(|i| Vec3::new(0.25, 0.0, i as f32 / 1e5));
     Mipmap::new(levels, colors.collect()).unwrap()
 }
 
-/// Two geometries, of which only one has opacities and half axes and one has more prefiltered colours,
-/// and four objects.
+/// Two geometries and four objects. Only one geometry has opacities and half axes, and one has more
+/// prefiltered colours.
 fn objects() -> Objects {
     let sphere = Shape::Sphere.surfels(20_000, 3).unwrap();
     let mipmap = levels(sphere.len(), 3);
@@ -78,7 +78,7 @@ fn objects_have_the_bits_of_models_in_their_places() {
     assert_eq!(placed.mipmap(), models.mipmap());
     assert_eq!(placed.mipmap().unwrap().levels(), 3);
 
-    // Some of them are those of all.
+    // Some of them equal the ones among all.
     let ids = objects.ids();
     let every: Vec<_> = ids
         .order()

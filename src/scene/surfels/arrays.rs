@@ -1,10 +1,10 @@
-//! Surfels that need no check, while they are put together.
+//! Surfels under construction, which need no check.
 
 use super::Surfels;
 use crate::scene::Mipmap;
 use glam::{DVec3, Vec3};
 
-/// Surfels that need no check, while they are put together.
+/// Surfels under construction, which need no check.
 pub(in crate::scene) struct Arrays {
     pub(in crate::scene) position: Vec<Vec3>,
     pub(in crate::scene) normal: Vec<Vec3>,
@@ -16,8 +16,8 @@ pub(in crate::scene) struct Arrays {
 }
 
 impl Arrays {
-    /// None yet; with colours, opacities and half axes or not, and with so many levels of prefiltered
-    /// colours, if not 0.
+    /// Starts empty: with colours, opacities and half axes or not, and with this many levels of
+    /// prefiltered colours, if not 0.
     pub(in crate::scene) fn new([color, opacity, tangents]: [bool; 3], levels: usize) -> Self {
         Self {
             position: Vec::new(),
@@ -30,7 +30,7 @@ impl Arrays {
         }
     }
 
-    /// Room for so many more.
+    /// Reserves room for this many more.
     pub(in crate::scene) fn reserve(&mut self, count: usize) {
         self.position.reserve(count);
         self.normal.reserve(count);
@@ -40,7 +40,7 @@ impl Arrays {
         self.tangents.iter_mut().for_each(|tangents| tangents.reserve(count));
     }
 
-    /// Appends others, that have what these have.
+    /// Appends arrays that have the same attributes.
     pub(in crate::scene) fn append(&mut self, others: Self) {
         self.position.extend(others.position);
         self.normal.extend(others.normal);
@@ -53,7 +53,8 @@ impl Arrays {
         mipmaps.for_each(|(to, from)| to.colors_mut().extend(from.colors()));
     }
 
-    /// The surfels; the median radius and the sphere may be those of a whole of which these are a part.
+    /// Finishes the surfels; the median radius and the sphere may belong to a whole of which these
+    /// are a part.
     pub(in crate::scene) fn into_surfels(
         self,
         median_radius: f32,

@@ -18,7 +18,7 @@ fn degenerate_surfels_are_dropped_and_counted_once() {
 #[test]
 fn threads_change_nothing() {
     let number = |i: usize, salt: u32| (i as u32 ^ salt).wrapping_mul(0x9E37_79B9);
-    // Any bits: of every kind of degenerate surfel there are some, in every chunk.
+    // Any bits, so that every chunk has every kind of degenerate surfel.
     let any = |i, salt| f32::from_bits(number(i, salt));
     let vector = |i, salt| Vec3::new(any(i, salt), any(i, salt + 1), any(i, salt + 2));
     let unit = |i, salt| number(i, salt) as f32 / u32::MAX as f32;

@@ -15,7 +15,7 @@ fn noise(seed: u64) -> impl Fn(u32, u32) -> [f32; 3] {
     move |x, y| [0, 1, 2].map(|c| unit(seed, u64::from(x) << 32 | u64::from(y) << 2 | c))
 }
 
-/// An ellipse of these half axes, the longer one turned so many radians.
+/// An ellipse with these half axes, the longer one turned by `angle` radians.
 fn turned(long: f64, short: f64, angle: f64) -> Ellipse {
     let (s, c) = (sin(angle), cos(angle));
     Ellipse::of(DVec2::new(c, s) * long, DVec2::new(-s, c) * short)
@@ -46,7 +46,7 @@ fn cells_are_exact_means_of_odd_sizes() {
     }
 }
 
-/// What the page says, cell by cell, of all cells that there are in 33 tiles.
+/// The mean as the module page defines it, cell by cell, over all cells in 33 tiles.
 fn by_the_page(texture: &Texture, at: DVec2, m: Ellipse, repeats: [bool; 2]) -> Option<Vec3> {
     let [half, diff] = [(m.xx + m.yy) / 2.0, (m.xx - m.yy) / 2.0];
     let root = (diff * diff + m.xy * m.xy).sqrt();
@@ -127,7 +127,8 @@ proptest! {
     }
 }
 
-/// The integral over the texture, its texels being squares of one colour, by 6 x 6 points a texel: no pyramid, no g.
+/// The integral over the texture, with texels as squares of one colour, by 6 x 6 points a texel: no
+/// pyramid, no g.
 fn integral(
     size: [u32; 2],
     color: impl Fn(u32, u32) -> [f32; 3],
@@ -153,7 +154,8 @@ fn integral(
     sum / weight
 }
 
-/// Of a checkerboard of squares of 8 texels, of noise, and of a ramp; the differences are what the cells and g blur.
+/// For a checkerboard of squares of 8 texels, for noise, and for a ramp; the differences come from
+/// the blur by cells and by g.
 #[test]
 fn means_are_near_the_integrals() {
     let board = |x: u32, y: u32| [((x / 8 + y / 8) % 2) as f32; 3];
@@ -186,7 +188,7 @@ fn means_are_near_the_integrals() {
 fn a_ramp_has_its_value_at_the_centre() {
     let (width, height) = (100, 80);
     let texture = texture(width, height, |x, y| [x as f32 + 0.5, y as f32 + 0.5, 0.0]);
-    // Of a point the mean is of its neighbours, by weights that are smooth and not linear.
+    // The mean of a point averages its neighbours, with weights that are smooth and not linear.
     for (long, short, most) in
         [(0.0, 0.0, 0.2), (2.0, 1.0, 0.1), (8.0, 4.0, 0.05), (20.0, 20.0, 0.05)]
     {
@@ -216,7 +218,7 @@ fn the_first_row_is_at_the_top() {
     assert_eq!(at(&repeated, 0.625, 0.75), expected);
     assert_eq!(at(&repeated, -7.375, 5.75), expected);
     assert_eq!(at(&repeated, 0.0, 0.75), Vec3::new(1.5, 0.0, 0.0), "between 3 and 0");
-    // One axis alone; what is not finite does not count.
+    // One axis alone repeats; a coordinate that is not finite does not count.
     let one =
         Coordinates::Corners(vec![[Vec2::new(1.5, 0.5), Vec2::new(0.0, f32::NAN), Vec2::ZERO]]);
     assert_eq!(one.repeats(), [true, false]);

@@ -1,8 +1,8 @@
-//! Reflection and refraction of an environment, pixel by pixel: \[ZP06 5.2.3\], eqs. 11 and 12.
+//! Reflect and refract an environment, pixel by pixel: \[ZP06 5.2.3\], eqs. 11 and 12.
 //!
-//! The nearest layer of a pixel is a thin sheet of clear material, its opacity alpha the part of it
-//! that is covered by opaque colour. With the view vector v towards the eye and the normal n, both
-//! of unit length in world space and n . v >= 0, per colour channel c:
+//! The nearest layer of a pixel is a thin sheet of clear material. Its opacity alpha is the part of
+//! the sheet that opaque colour covers. The view vector v towards the eye and the normal n are unit
+//! vectors in world space with n . v >= 0. For each colour channel c:
 //!
 //! ```text
 //!   l   = 1 + layers(alpha_total of the other layers, alpha)
@@ -12,26 +12,27 @@
 //!           + (1 - F_c) ((1 - alpha) C_O_c + (1 - hidden) (1 - alpha)^l env(T_c)_c))
 //! ```
 //!
-//! `C_F` is the Phong colour of the composited nearest layer, `C_O` the average of the images of
-//! the other layers over black. One ratio for each channel is chromatic dispersion.
+//! `C_F` is the Phong colour of the composited nearest layer. `C_O` is the average of the images of
+//! the other layers over black. One ratio for each channel gives chromatic dispersion.
 //!
 //! Decided: the paper combines the parts "using" Fresnel's equations without saying how.
-//! - The equations are the exact ones of an unpolarized dielectric, not Schlick's approximation,
-//!   which has no total reflection and no Brewster angle, and misses the ratios near 1.
+//! - The equations are the exact ones of an unpolarized dielectric, not Schlick's approximation.
+//!   Schlick's has no total reflection and no Brewster angle, and is wrong for ratios near 1.
 //! - Opacity covers the optics: F acts on the part 1 - alpha of a surface. So an opaque pixel is
-//!   its Phong colour exactly, a nearly opaque one nearly so, and without reflection (F = 0) the
+//!   its Phong colour exactly, and a nearly opaque one nearly so. Without reflection (F = 0) the
 //!   result is the paper's alpha `C_F` + (1 - alpha) `C_O` over the absorbed environment.
 //! - l counts the nearest layer itself, so that eq. 11 attenuates by it too.
-//! - Opaque surfels among the other layers hide the environment, `hidden` says in what part; eq. 11
-//!   alone, made for one opacity everywhere, would let light through them.
-//! - `C_O` is seen straight through the surface, not refracted: there is nothing to look it up in.
-//! - [`BendingLayers::Single`] is Fig. 14 a: reflection and refraction at the nearest surface alone,
-//!   l = 1 and `C_O` = hidden = 0.
-//! - A normal that faces away is turned round: a sheet has two sides.
+//! - Opaque surfels among the other layers hide the environment; `hidden` says what part of it. Eq.
+//!   11 alone, made for one opacity everywhere, would let light through them.
+//! - `C_O` is seen straight through the surface, not refracted, because there is nothing to look it
+//!   up in.
+//! - [`BendingLayers::Single`] is Fig. 14 a: reflection and refraction at the nearest surface
+//!   alone, l = 1 and `C_O` = hidden = 0.
+//! - A normal that faces away is turned round, because a sheet has two sides.
 //!
-//! A law that follows: in an environment of radiance 1, a surface of colour 1 before layers that
-//! send what they absorb, `C_O` = 1 - (1 - alpha)^(l - 1), sends 1, whatever the angle and the
-//! ratios.
+//! A law follows. Take an environment of radiance 1, and a surface of colour 1 in front of layers
+//! that send what they absorb, `C_O` = 1 - (1 - alpha)^(l - 1). The surface sends 1, whatever the
+//! angle and the ratios.
 
 #[cfg(test)]
 mod tests;
@@ -44,8 +45,8 @@ use crate::setting::Words;
 /// How many surfaces bend the light: the count l of the module page.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum BendingLayers {
-    /// The nearest alone: l = 1. Nothing but the environment is seen behind the nearest surface:
-    /// `C_O` and `hidden` count as 0.
+    /// Only the nearest: l = 1. Behind the nearest surface only the environment is seen: `C_O` and
+    /// `hidden` count as 0.
     Single,
     /// As many as the accumulated opacity tells: l = 1 + [`layers`], not rounded to an integer; 1
     /// where alpha is 0.
@@ -63,7 +64,7 @@ pub struct Refraction {
     /// Refraction ratios of red, green and blue: the index outside over the index inside, 2/3 from
     /// air to glass. In (0, 4].
     pub ratio: [f32; 3],
-    /// How many surfaces.
+    /// How many surfaces bend the light.
     pub layers: BendingLayers,
 }
 
@@ -71,7 +72,7 @@ pub struct Refraction {
 pub const MAX_RATIO: f32 = 4.0;
 
 impl Refraction {
-    /// Whether the ratios are in range.
+    /// Checks that the ratios are in range.
     ///
     /// # Errors
     /// [`Error::Invalid`] if one is not in (0, [`MAX_RATIO`]].
@@ -102,7 +103,7 @@ pub struct NearestLayer<R> {
 pub struct Behind<R> {
     /// `C_O`: linear RGB, blended over black.
     pub color: [R; 3],
-    /// The opacities of the layers in front of the first opaque one, summed.
+    /// The sum of the opacities of the layers in front of the first opaque one.
     pub opacity: R,
     /// The part of the groups in which an opaque surfel hides the environment, in [0, 1].
     pub hidden: R,
@@ -118,10 +119,10 @@ pub fn reflect<R: Real>(view: Vector3<R>, normal: Vector3<R>) -> Vector3<R> {
     normal * (cosine + cosine) - view
 }
 
-/// The direction in which light is seen through `layers` surfaces, eq. 12: the sine of its angle is
-/// ratio^layers times that of the angle of incidence, in the plane of `view` and `normal`, on the
-/// other side of the surface. None under total internal reflection, where that sine is > 1; at 1 it
-/// runs along the surface.
+/// The direction in which light is seen through `layers` surfaces, eq. 12. The sine of its angle is
+/// ratio^layers times the sine of the angle of incidence. The direction lies in the plane of `view`
+/// and `normal`, on the other side of the surface. None under total internal reflection, where that
+/// sine is > 1; at 1 the direction runs along the surface.
 ///
 /// `view` points from the surface to the eye; both are unit vectors, n . v >= 0; `ratio` > 0,
 /// `layers` >= 0.
@@ -133,7 +134,7 @@ pub fn reflect<R: Real>(view: Vector3<R>, normal: Vector3<R>) -> Vector3<R> {
 ///   T = t m - n sqrt(k)
 /// ```
 ///
-/// The two forms of k are equal; each is taken where it does not cancel. Where s = 0 the direction
+/// The two forms of k are equal; each is used where it does not cancel. Where s = 0 the direction
 /// is -n for every ratio. With m = 1, as for no layers, T is -v up to the rounding of t.
 #[must_use]
 pub fn refract<R: Exact>(
@@ -146,7 +147,7 @@ pub fn refract<R: Exact>(
     there.then_some(direction)
 }
 
-/// Whether there is a direction of [`refract`], and which.
+/// Whether [`refract`] has a direction, and the direction.
 fn bent<R: Real>(
     view: Vector3<R>,
     normal: Vector3<R>,
@@ -172,8 +173,8 @@ fn bent<R: Real>(
     (k.ge(R::ZERO) | !slanted, direction)
 }
 
-/// The part of the light that `layers` layers of opacity `alpha` let through, eq. 11:
-/// (1 - alpha)^layers, in \[0, 1\].
+/// The part of the light that passes through `layers` layers of opacity `alpha`, eq. 11: (1 -
+/// alpha)^layers, in \[0, 1\].
 ///
 /// `alpha` is brought into [0, 1]; `layers` >= 0. No layers let everything through, opaque or not.
 #[inline]
@@ -185,7 +186,7 @@ pub fn absorption<R: Real>(alpha: R, layers: R) -> R {
 /// The part of unpolarized light that the surface of a dielectric reflects, in [0, 1]: Fresnel's
 /// equations.
 ///
-/// `cosine` is that of the angle of incidence, in [0, 1]; `ratio` in (0, [`MAX_RATIO`]].
+/// `cosine` is the cosine of the angle of incidence, in [0, 1]; `ratio` in (0, [`MAX_RATIO`]].
 ///
 /// ```text
 ///   k = (1 - ratio)(1 + ratio) + (ratio cosine)(ratio cosine)      1 if k < 0: total reflection
@@ -194,7 +195,8 @@ pub fn absorption<R: Real>(alpha: R, layers: R) -> R {
 ///   (s s + p p) / 2
 /// ```
 ///
-/// At grazing incidence everything is reflected, but by a ratio of 1, which is no surface: nothing.
+/// At grazing incidence everything is reflected, except with a ratio of 1: that is no surface, and
+/// reflects nothing.
 #[must_use]
 pub fn fresnel<R: Real>(cosine: R, ratio: R) -> R {
     let scaled = ratio * cosine;
@@ -206,7 +208,7 @@ pub fn fresnel<R: Real>(cosine: R, ratio: R) -> R {
     R::select(k.lt(R::ZERO), R::ONE, part)
 }
 
-/// The number of layers of opacity `alpha` whose opacities sum to `total`: total / alpha, and 0
+/// How many layers of opacity `alpha` have opacities that sum to `total`: total / alpha, and 0
 /// where `alpha` is 0. \[ZP06 5.2.3\]
 #[inline]
 #[must_use]
@@ -218,9 +220,9 @@ pub fn layers<R: Real>(total: R, alpha: R) -> R {
 ///
 /// `view` is the unit vector from the surface to the eye in world space: the ray of the pixel,
 /// [`crate::splat::View::ray`], normalized and turned round. Sums and products are rounded in the
-/// order of the module page, (1 - hidden) and (1 - alpha)^l first; n is normalized, then turned
-/// round if n . v < 0; the cosine is at most 1, alpha at least 0 and at most 1. A normal of no
-/// length sees straight through the surface.
+/// order of the module page, (1 - hidden) and (1 - alpha)^l first. n is normalized, then turned
+/// round if n . v < 0. The cosine is at most 1, alpha at least 0 and at most 1. Where the normal
+/// has no length, light passes straight through the surface.
 #[must_use]
 pub fn shade<R: Exact>(
     environment: &Environment,
@@ -232,7 +234,7 @@ pub fn shade<R: Exact>(
     shade_before(|direction| environment.radiance(direction), refraction, view, nearest, behind)
 }
 
-/// The same before the light that arrives from a direction.
+/// [`shade`] with any function that gives the light from a direction.
 pub(crate) fn shade_before<R: Real>(
     light: impl Fn(Vector3<R>) -> [R; 3],
     refraction: &Refraction,
@@ -258,6 +260,7 @@ pub(crate) fn shade_before<R: Real>(
     [0, 1, 2].map(|c| {
         let ratio = R::from_f32(refraction.ratio[c]);
         let (there, direction) = bent(view, normal, ratio, count);
+        // Where there certainly is no refracted direction, there is no light to look up.
         let beyond = if there.possibly() { light(direction)[c] } else { R::ZERO };
         let f = R::select(there, fresnel(cosine, ratio), R::ONE);
         let beyond = R::select(there, beyond, R::ZERO);

@@ -1,4 +1,4 @@
-//! Pixels side by side: in every lane the operations of the definition, in its order.
+//! Pixels side by side: every lane does the operations of the definition, in its order.
 //!
 //! Pixels are gathered into arrays, shaded in straight loops, and scattered. A branch of the
 //! definition becomes a choice between two results; only the powers differ, see [`Exact::powers`].
@@ -12,7 +12,7 @@ use crate::number::{Ball, Exact, Real, Vector3};
 
 /// One row of the picture.
 pub(super) struct ShadedRow<'a, R> {
-    /// Which.
+    /// The row's number.
     pub(super) y: usize,
     /// t, +inf where a pixel is empty.
     pub(super) depth: &'a [R],
@@ -57,6 +57,7 @@ fn group<R: Exact>(
 ) {
     let mut depth = [R::ZERO; LANES];
     depth.copy_from_slice(&row.depth[first..first + LANES]);
+    // Empty stretches of a picture are common and need no shading.
     if !any(&mask(|i| depth[i].is_finite())) {
         *pixels = [[R::ZERO; 3]; LANES];
         return;
@@ -92,8 +93,8 @@ fn group<R: Exact>(
 }
 
 impl<R: Exact> Shader<R> {
-    /// [`Shader::pixel`] of surfaces at a block of pixels, in rows of so many columns, whose first
-    /// is (x, y).
+    /// [`Shader::pixel`] for surfaces at a block of pixels, in rows of `COLUMNS` pixels; the first
+    /// pixel is (x, y).
     #[inline(always)]
     pub(crate) fn block<const COLUMNS: usize>(
         &self,
@@ -121,7 +122,7 @@ impl<R: Exact> Shader<R> {
         color
     }
 
-    /// [`Shader::surfel`] of several surfels: their positions and normals in world space.
+    /// [`Shader::surfel`] for several surfels, with positions and normals in world space.
     #[inline(always)]
     pub(crate) fn surfels(
         &self,
@@ -139,7 +140,7 @@ impl<R: Exact> Shader<R> {
         self.points(&points, normals, surface)
     }
 
-    /// The colours of surfaces at points in view space, whose normals are in world space.
+    /// The colours of surfaces at points in view space; the normals are in world space.
     #[inline(always)]
     pub(crate) fn points(
         &self,
@@ -157,7 +158,7 @@ impl<R: Exact> Shader<R> {
 }
 
 impl<P: Profile> Shader<Ball<Common<P>>> {
-    /// [`Shader::surface`] of several pixels: of each colour what common balls know.
+    /// [`Shader::surface`] for several pixels, as far as common balls know each colour.
     #[inline(always)]
     pub(crate) fn surfaces(
         &self,
@@ -220,7 +221,7 @@ fn put_balls<P: Profile>(lanes: &mut [BallLanes<P>; 3], i: usize, v: Vector3<Bal
     lanes[2].put(i, v.z);
 }
 
-/// The colours of these points in view space, before the lights of a scene.
+/// The colours of these points in view space, under the lights of a scene.
 #[inline(always)]
 fn lit<R: Exact>(
     shader: &Shader<R>,

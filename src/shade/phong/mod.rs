@@ -1,7 +1,7 @@
-//! Deferred Phong shading.
+//! Shade a picture with deferred Phong shading.
 //!
 //! In view space, for a pixel at depth t with normal n (turned from world to view space) and
-//! surface colour s (that of the pixel, or the material's where the scene has none):
+//! surface colour s (the pixel's own, or the material's where the scene has no colours):
 //!
 //! ```text
 //!   p = (x, y, -t)      perspective: x = ((X - cx)/fx) t, y = -((Y - cy)/fy) t; else without t
@@ -10,22 +10,26 @@
 //!              ((diffuse (n . l)) s + specular (r . v)^shininess)     r = n (2 (n . l)) - l
 //! ```
 //!
-//! l is a vector of view space: of a directional light its `towards`, turned to view space
-//! ([`View::direction`]) and then divided by its length; of a headlight its `towards` divided by its
-//! length; of a point light (q - p) divided by its length, q its position in view space
-//! ([`View::point`]). v is divided by its length too; n, of length 1 in world
-//! space, is turned to view space and not divided again. Lights are added in the order of the
-//! scene.
+//! l is a vector of view space:
+//!
+//! - for a directional light, its `towards`, turned to view space ([`View::direction`]) and then
+//!   divided by its length;
+//! - for a headlight, its `towards` divided by its length;
+//! - for a point light, (q - p) divided by its length, with q its position in view space
+//!   ([`View::point`]).
+//!
+//! v is divided by its length too. n, of length 1 in world space, is turned to view space and not
+//! divided again. Lights are added in the order of the scene.
 //!
 //! A light with n . l <= 0 adds nothing; a highlight needs r . v > 0. Without any light the colour
 //! is s. An empty pixel is black.
 //!
-//! # Tubes
+//! # How tubes are shaded
 //!
-//! A tube is shown where a pixel has a tangent: T is that tangent, turned from world to view space
-//! and then divided by its length. The pixel's own normal is not used; each light has its own, the
-//! direction l towards it projected onto the plane orthogonal to the tangent \[MKC08, section
-//! 4.2\]:
+//! A pixel that has a tangent shows a tube: T is that tangent, turned from world to view space and
+//! then divided by its length. The pixel's own normal is not used. Each light has its own normal:
+//! the direction l towards the light, projected onto the plane orthogonal to the tangent \[MKC08,
+//! section 4.2\]:
 //!
 //! ```text
 //!   m     = l - T (l . T)
@@ -33,14 +37,14 @@
 //!   n . l = |m|                  = sqrt(1 - (l . T)^2)
 //! ```
 //!
-//! Where |m| is 0, because l is parallel to T or null, the light adds nothing. Where T is the null
-//! vector, because the tangent is, or because its length is 0 or not finite, the pixel shows a
-//! surface.
+//! Where |m| is 0, because l is parallel to T or null, the light adds nothing. The pixel shows a
+//! surface where T is the null vector: the tangent is null, or its length is 0 or not finite.
 //!
 //! - `Decided:` the highlight takes the same n; the paper leaves it open.
-//! - `Decided:` n . l is the length of m, which it is equal to. Where l is nearly parallel to T, n
-//!   is the direction of a rounding error, and its dot product with l anything up to 1.
-//! - As in the paper, n always turns towards the light: one that is behind the tube lights it too.
+//! - `Decided:` n . l is computed as the length of m, which it is equal to. Where l is nearly
+//!   parallel to T, n is the direction of a rounding error, and its dot product with l is anything
+//!   up to 1.
+//! - As in the paper, n always turns towards the light: a light behind the tube lights it too.
 
 mod lanes;
 #[cfg(test)]
@@ -55,9 +59,9 @@ use glam::Vec3;
 /// A light in view space.
 #[derive(Clone, Copy, Debug)]
 enum PlacedLight<R> {
-    /// The unit direction towards it.
+    /// The unit direction towards the light.
     Towards(Vector3<R>),
-    /// Its position.
+    /// The position of the light.
     At(Vector3<R>),
 }
 
@@ -81,10 +85,10 @@ pub struct Shader<R> {
 }
 
 impl<R: Real> Shader<R> {
-    /// Places the lights before a camera.
+    /// Places the lights in the view of a camera.
     #[must_use]
     pub fn new(view: View<R>, lights: &[Light], material: Phong) -> Self {
-        // -0 becomes 0.
+        // Adding 0 turns -0 into 0.
         let material = Phong { color: material.color + Vec3::ZERO, ..material };
         let radiance = |color: Vec3| (color + Vec3::ZERO).to_array().map(R::from_f32);
         let place = |light: &Light| match *light {
@@ -123,11 +127,13 @@ impl<R: Real> Shader<R> {
             let l = place.from(p);
             let (n, cosine) = towards(l);
             let faces = cosine.gt(R::ZERO);
+            // A light that is certainly behind the surface adds nothing, and its power is
+            // expensive.
             if faces.possibly() {
                 let mirrored = mirrored(n, cosine, l, v);
                 let highlight = answer.highlight(cosine, mirrored);
                 let more = answer.add(color, *light, cosine, surface, highlight);
-                // Not by `map`, which is not inlined where numbers are balls.
+                // Not by `map`, because it is not inlined where numbers are balls.
                 let chosen = |c: usize| R::select(faces, more[c], color[c]);
                 color = [chosen(0), chosen(1), chosen(2)];
             }
@@ -135,8 +141,8 @@ impl<R: Real> Shader<R> {
         color
     }
 
-    /// The colour of a surface at depth t of a pixel, whose normal is in world space; of no empty
-    /// pixel.
+    /// The colour of a surface at depth t of a pixel, whose normal is in world space. The pixel
+    /// must not be empty.
     pub(crate) fn surface(
         &self,
         (x, y): (usize, usize),
@@ -148,7 +154,7 @@ impl<R: Real> Shader<R> {
         self.lit(self.position(x, y, t), |l| (normal, normal.dot(l)), surface)
     }
 
-    /// The same of a tube; its tangent, in world space, is not the null vector.
+    /// The same for a tube; its tangent, in world space, must not be the null vector.
     pub(crate) fn tube(
         &self,
         (x, y): (usize, usize),
@@ -160,15 +166,15 @@ impl<R: Real> Shader<R> {
         self.lit(self.position(x, y, t), |l| around(tangent, l), surface)
     }
 
-    /// The colour of a surfel, shaded once at its centre: p is its position, n its normal, turned
-    /// towards the side that is seen, both in world space.
+    /// The colour of a surfel, shaded once at its centre. p is its position, and n its normal,
+    /// turned towards the side that is seen; both are in world space.
     #[must_use]
     pub fn surfel(&self, p: Vector3<R>, n: Vector3<R>, surface: [R; 3]) -> [R; 3] {
         let normal = self.view.direction(n);
         self.lit(self.view.point(p), |l| (normal, normal.dot(l)), surface)
     }
 
-    /// The same in the numbers of another arithmetic, of the same view.
+    /// Converts the shader to another arithmetic, for the same view.
     pub(crate) fn map<S: Real>(&self, view: View<S>, number: impl Fn(R) -> S) -> Shader<S> {
         let vector = |v: Vector3<R>| Vector3::new(number(v.x), number(v.y), number(v.z));
         let light = |(place, light): &(PlacedLight<R>, [R; 3])| {
@@ -209,8 +215,8 @@ impl<R: Real> Shader<R> {
 impl<R: Exact> Shader<R> {
     /// Shades every pixel; `color` may be reused as the result.
     ///
-    /// `depth` is +inf where a pixel is empty; only an unlit scene can do without normals.
-    /// `tangent` is the null vector where a pixel shows no tube.
+    /// `depth` is +inf where a pixel is empty; only an unlit scene works without normals. `tangent`
+    /// is the null vector where a pixel shows no tube.
     #[must_use]
     pub fn shade(
         &self,
@@ -227,7 +233,7 @@ impl<R: Exact> Shader<R> {
         shaded
     }
 
-    /// The same over `pixels`, which hold the colours of the surfaces if `colored`, else anything.
+    /// Shades in place: `pixels` hold the colours of the surfaces if `colored`, else anything.
     pub fn shade_over(
         &self,
         depth: &Plane<R>,
@@ -265,7 +271,7 @@ impl<R: Exact> Shader<R> {
         self.lit(self.position(x, y, t), |l| form.towards(l), surface)
     }
 
-    /// What has this normal and tangent in world space.
+    /// The form with this normal and tangent in world space.
     #[inline(always)]
     fn form(&self, normal: Vector3<R>, tangent: Vector3<R>) -> Form<R> {
         let tangent = self.view.direction(tangent).normalized();
@@ -273,12 +279,12 @@ impl<R: Exact> Shader<R> {
     }
 }
 
-/// What the light falls on, in view space.
+/// The shape that the light falls on, in view space.
 #[derive(Clone, Copy)]
 struct Form<R> {
-    /// n, of a surface.
+    /// n, for a surface.
     normal: Vector3<R>,
-    /// T, of a tube; the null vector of a surface.
+    /// T, for a tube; the null vector for a surface.
     tangent: Vector3<R>,
 }
 
@@ -298,7 +304,7 @@ fn around<R: Real>(tangent: Vector3<R>, l: Vector3<R>) -> (Vector3<R>, R) {
     (across.normalized(), across.length())
 }
 
-/// r . v: how far the mirrored light goes towards the eye.
+/// r . v: how far the mirrored light points towards the eye.
 #[inline(always)]
 fn mirrored<R: Real>(n: Vector3<R>, cosine: R, l: Vector3<R>, v: Vector3<R>) -> R {
     (n * (cosine + cosine) - l).dot(v)
@@ -323,7 +329,8 @@ impl<R: Real> Answer<R> {
         }
     }
 
-    /// specular (r . v)^shininess, if r . v is above 0 and the light, under this n . l, may add something.
+    /// specular (r . v)^shininess, if r . v is above 0 and the light, with this n . l, may add
+    /// something.
     #[inline(always)]
     fn highlight(&self, cosine: R, mirrored: R) -> R {
         let shines = mirrored.gt(R::ZERO) & self.specular.gt(R::ZERO);
@@ -335,7 +342,7 @@ impl<R: Real> Answer<R> {
         }
     }
 
-    /// A colour and what one light adds to it.
+    /// Adds the light of one lamp to a colour.
     #[inline(always)]
     fn add(
         &self,
@@ -346,7 +353,7 @@ impl<R: Real> Answer<R> {
         highlight: R,
     ) -> [R; 3] {
         let body = self.diffuse * cosine;
-        // No closure, which would stay a function where numbers are balls.
+        // Not a closure, because a closure would not be inlined where numbers are balls.
         [
             color[0] + light[0] * (body * surface[0] + highlight),
             color[1] + light[1] * (body * surface[1] + highlight),

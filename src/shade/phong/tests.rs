@@ -11,13 +11,13 @@ fn camera(width: u32, lens: Lens) -> Camera {
     Camera::new(width, 3, pose, lens).unwrap()
 }
 
-/// A direction, as good as random.
+/// A random direction.
 fn direction(seed: u64, i: u64) -> Vec3 {
     let [x, y, z] = [0, 1, 2].map(|c| unit(seed, 3 * i + c) - 0.5);
     Vec3::new(x, y, z).normalize()
 }
 
-/// A vector of each pixel; some are null, some have no length to divide by.
+/// A vector for each pixel; some are null, some have a length that nothing can be divided by.
 fn vectors<R: Exact>(seed: u64, width: u32) -> Plane<[R; 3]> {
     let vector = |i: u64| match (unit(seed + 1, i) * 16.0) as u32 {
         0..4 => Vec3::ZERO,
@@ -49,7 +49,7 @@ fn lights(seed: u64) -> Vec<Light> {
     all[..seed as usize % 5].to_vec()
 }
 
-/// Shades planes as good as random, and compares every pixel with the definition.
+/// Shades random planes, and compares every pixel with the definition.
 fn lanes_are_the_definition<R: Exact>() {
     let shininess = [1.0, 2.0, 5.0, 10.0, 32.0, 100.0, 64.5, 0.0, 65_536.0, 0.5];
     for seed in 0..400_u64 {
@@ -115,9 +115,9 @@ fn a_tube_is_lit_by_the_sine_of_the_angle_between_light_and_tangent() {
         let cosine = tangent.as_dvec3().normalize().dot(towards.as_dvec3().normalize());
         let sine = (1.0 - cosine * cosine).sqrt();
         let lens = LENSES[i as usize % 2];
-        // The length of the tangent is nothing.
+        // The length of the tangent does not matter.
         let found = tube::<f64>(DIFFUSE, tangent * (1 + i % 5) as f32, towards, lens);
-        // The view matrix is rounded to f32: it turns angles by 2^-23 or so.
+        // The view matrix is rounded to f32, which turns angles by about 2^-23.
         assert!((found - sine).abs() < 1e-6, "{found} {sine}");
         let narrow = tube::<f32>(DIFFUSE, tangent, towards, lens);
         assert!((narrow - sine).abs() < 2e-6, "{narrow} {sine}");
@@ -147,7 +147,7 @@ fn the_highlight_of_a_tube_takes_the_normal_of_the_light() {
 
 #[test]
 fn light_along_a_tube_adds_nothing() {
-    // Exactly nothing where the dot product is exact; else a rounding error, and not its direction.
+    // Exactly 0 where the dot product is exact; otherwise a rounding error, and not its direction.
     for axis in [Vec3::X, Vec3::Y, Vec3::Z] {
         let shader = Shader::<f32>::new(
             View::new(&camera(64, LENSES[1])),

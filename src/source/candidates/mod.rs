@@ -1,71 +1,84 @@
-//! Candidates: what of a mesh is seen from outside, as points \[BJFM19, 3.1\].
+//! Turn the visible surface of a mesh into points, from which the
+//! [samplers](crate::source::sampler) choose \[BJFM19, 3.1\].
 //!
-//! The triangles are drawn into one picture for each of some directions, "orthographic \[...\] directed to the
-//! center of the node", and every covered pixel becomes a candidate: position, normal, colour, opacity and further
-//! properties of what is nearest there. The samplers choose among the candidates. What no direction sees has none.
+//! Call [`candidates()`] for a scene, or [`of_cloud`] for a mesh with a texture. The triangles are
+//! drawn into one picture for each direction, "orthographic \[...\] directed to the center of the
+//! node". Every covered pixel becomes a candidate: the position, normal, colour, opacity and
+//! further properties of the nearest surface there. A surface that no direction sees has no
+//! candidates.
 //!
-//! **Camera** of a direction d, all in f64, in the terms of [`crate::scene::camera`]. With low and high the
-//! corners of the box around the triangles' vertices ([`Scene::bounds`]) and n the side of the picture in pixels:
+//! # How candidates are computed
+//!
+//! The **camera** of a direction d is computed in f64, in the terms of [`crate::scene::camera`].
+//! Let low and high be the corners of the box around the triangles' vertices ([`Scene::bounds`]),
+//! and n the side of the picture in pixels:
 //!
 //! ```text
 //!   center = (low + high) / 2      R = |high - low| / 2, or 1 if that is 0
 //!   camera = Camera::framing(n, n, (center, R), d, Lens::Orthographic(2 R))
 //! ```
 //!
-//! so that the sphere around the box touches the borders, and a pixel has the side 2 R / n in every picture.
+//! The sphere around the box then touches the borders, and a pixel has the side 2 R / n in every
+//! picture.
 //!
-//! **Picture**: [`crate::method::projection`] in `f32`, without culling, corners snapped to 1/256 px. A normal
-//! is that of the side that is seen.
+//! The **picture** is drawn by [`crate::method::projection`] in `f32`, without culling, with
+//! corners snapped to 1/256 px. The normal belongs to the side that is seen.
 //!
-//! **Candidate** of a covered pixel, with the sample's triangle, whose corners have the positions p, and its
-//! normal m. The weights c of the corners at the pixel are those of
-//! [`crate::method::projection::primitives`], and the position is interpolated as every attribute there, in `f32`. V(i,j) is the element of row i and
-//! column j of the view matrix; the normal is computed in f64 and each component rounded to `f32` once:
+//! A **candidate** comes from a covered pixel. Let p be the positions of the corners of the
+//! sample's triangle, and m the sample's normal. The weights c of the corners at the pixel are
+//! defined in [`crate::method::projection::primitives`]; the position is interpolated with them
+//! like every attribute, in `f32`. V(i,j) is the element of row i and column j of the view matrix.
+//! The normal is computed in f64, and each component is rounded to `f32` once:
 //!
 //! ```text
 //!   position  = ((c_0 p_0 + c_1 p_1) + c_2 p_2) + 0
 //!   normal(j) = ((V0j m.x + V1j m.y) + V2j m.z) + 0
 //! ```
 //!
-//! The colour is that of the sample, if the triangles have colours. Of a mesh with a texture ([`of_cloud`]) it is the
-//! [mean](crate::scene::texture) of the texture around
+//! The colour is the sample's colour, if the triangles have colours. For a mesh with a texture
+//! ([`of_cloud`]) it is the [mean](crate::scene::texture) of the texture around
 //!
 //! ```text
 //!   (u, v)    = (t_0 c_0 + t_1 c_1) + t_2 c_2          t the coordinates of the corners; in f64
 //! ```
 //!
-//! within the outline of a disc in the triangle's plane, whose radius is the side of a pixel: with the terms of
-//! [`crate::source::derive`], the matrix (S (1 / A)) times the square of that side.
+//! within the outline of a disc in the triangle's plane, whose radius is the side of a pixel. In
+//! the terms of [`crate::source::derive`], the matrix is (S (1 / A)) times the square of that side.
 //!
-//! **Opacity and further properties** of the [vertices](crate::scene::Vertices) ("further properties can be captured
-//! in additional buffers, like PBR material parameters" \[BJFM19, 3.1\]) are interpolated as every attribute, in
-//! `f32`, from those at the corners a:
+//! **Opacity and further properties** of the [vertices](crate::scene::Vertices) ("further
+//! properties can be captured in additional buffers, like PBR material parameters" \[BJFM19, 3.1\])
+//! are interpolated like every attribute, in `f32`, from the values a at the corners:
 //!
 //! ```text
 //!   property = ((c_0 a_0 + c_1 a_1) + c_2 a_2) + 0          opacity = 1 if the same of it is > 1
 //! ```
 //!
-//! Of objects some of which have opacities the others have 1; a property is one of all of them, or none of one
-//! ([`join`]). A triangle with a corner whose opacity is not in [0, 1], or of which a property is not finite, is no triangle.
+//! If only some objects have opacities, the others have 1. A property must belong to all objects or
+//! to none ([`join`]). A triangle is ignored if the opacity of a corner is not in [0, 1], or if a
+//! property is not finite.
 //!
-//! **Order**: by direction, row, column. A candidate whose normal is null, where opposite normals of corners
-//! cancel, or whose colour or a property of which is not finite is dropped and counted.
+//! **Order**: by direction, row, column. A candidate is dropped and counted if its normal is null,
+//! because opposite normals of corners cancel, or if its colour or a property is not finite.
 //!
 //! # Decided
 //!
-//! - Opacity is a property like others: a picture shows what is nearest, however transparent it is. The paper's
-//!   scenes are opaque ("if they \[...\] only produce opaque surfaces"), and what lies behind a transparent surface is a surface
-//!   of its own, which other directions may see.
-//! - The position is that on the triangle, as the position buffer of \[BJFM19\] has it, and not the point of the
-//!   pixel's centre at the sample's depth: corners are snapped, so that this lies beside a steep triangle.
-//! - [`Directions::Cube`] unless somebody asks for [`Directions::Box`], which is the paper's. From the corners
-//!   of a box, a flat mesh is seen edge-on and has no candidates. Of a bar ten times as long as wide and high
-//!   its ends have ten times as many candidates an area as its sides; with the cube they have as many.
-//! - A texture is filtered: "samples are taken \[...\] from pixels with colors of minor importance" \[BJFM19, section 6, Fig. 4\]
-//!   where a pixel has the colour of one texel. The disc has no part in the direction: a place has one colour,
-//!   from wherever it is seen. The weight within it has the variance of 1/8 of a pixel's square along each axis; that of the square itself is 1/12.
-//! - Both sides of a triangle are seen: meshes of leaves and of sheet metal are not closed.
-//! - Lines have no area and give no candidates; a scene that has nothing else is refused.
+//! - Opacity is a property like others: a picture shows the nearest surface, however transparent it
+//!   is. The paper's scenes are opaque ("if they \[...\] only produce opaque surfaces"). A surface
+//!   behind a transparent one is a surface of its own, which other directions may see.
+//! - The position is the point on the triangle, as in the position buffer of \[BJFM19\]. It is not
+//!   the point of the pixel's centre at the sample's depth, because corners are snapped, so that
+//!   this point lies beside a steep triangle.
+//! - [`Directions::Cube`] is the default; [`Directions::Box`] is the paper's choice. From the
+//!   corners of a box, a flat mesh is seen edge-on and has no candidates. The ends of a bar ten
+//!   times as long as wide and high get ten times as many candidates an area as its sides; with the
+//!   cube they get as many.
+//! - A texture is filtered: "samples are taken \[...\] from pixels with colors of minor importance"
+//!   \[BJFM19, section 6, Fig. 4\] where a pixel has the colour of one texel. The disc does not
+//!   depend on the direction, so that a place has one colour, from wherever it is seen. The weight
+//!   within the disc has the variance of 1/8 of a pixel's square along each axis; the variance of
+//!   the square itself is 1/12.
+//! - Both sides of a triangle are seen, because meshes of leaves and of sheet metal are not closed.
+//! - Lines have no area and give no candidates; a scene of nothing but lines is refused.
 
 mod painted;
 mod properties;
@@ -85,41 +98,46 @@ use painted::Painting;
 use properties::Properties;
 use std::borrow::Cow;
 
-/// The side of a picture in pixels, unless somebody asks for another one: the paper's.
+/// The default side of a picture in pixels, as in the paper.
 pub const SIDE: u32 = 1024;
 
-/// From where a mesh is looked at: vectors from its middle, of any length from about 1e-150 to 1e150.
+/// The directions from which a mesh is seen: vectors from its middle, of any length from about
+/// 1e-150 to 1e150.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Directions {
     /// (-1, -1, -1), (1, -1, -1), (-1, 1, -1), (1, 1, -1), then the same with z = 1.
     Cube,
-    /// The same with the half extents of the box around the mesh in the place of 1: its eight corners.
+    /// The same with the half extents of the box around the mesh in place of 1: its eight corners.
     Box,
-    /// Those given.
+    /// The given directions.
     These(Vec<DVec3>),
 }
 
 /// The candidates of a mesh.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidates {
-    /// Positions and normals; colours, opacities and further properties if the mesh has some.
+    /// Positions and normals; colours, opacities and further properties if the mesh has them.
     pub cloud: Cloud,
-    /// How many each direction gave.
+    /// How many candidates each direction gave.
     pub counts: Vec<u32>,
     /// The side of a pixel in world units.
     pub pixel: f64,
-    /// How many were dropped.
+    /// How many candidates were dropped.
     pub dropped: u64,
 }
 
-/// The candidates of the triangles of a scene, or of its objects in their places. `progress` is told the
-/// name of the step, how many directions are done, and of how many.
+/// The candidates of the triangles of a scene, or of its objects in their places. `progress` gets
+/// the name of the step, the number of directions done, and their total.
 ///
 /// # Errors
-/// [`Error::Invalid`] as [`join`], if the scene has no triangles or none of them covers a pixel's centre, if there is no
-/// direction or one is null or not finite, or so short or long that its square rounds to 0 or exceeds f64, as
-/// [`Camera::new`] (no direction is within about 1e-6 of the y axis without being on it), if there are 2^32 - 1
-/// candidates or more, or if the process may not hold them.
+/// [`Error::Invalid`] in these cases:
+///
+/// - as [`join`];
+/// - the scene has no triangles, or none of them covers a pixel's centre;
+/// - there is no direction, or one is null or not finite, or so short or long that its square
+///   rounds to 0 or exceeds f64;
+/// - as [`Camera::new`] (no direction may be within about 1e-6 of the y axis without being on it);
+/// - there are 2^32 - 1 candidates or more, or the process may not hold them.
 pub fn candidates(
     scene: &Scene,
     directions: &Directions,
@@ -131,7 +149,7 @@ pub fn candidates(
     gather(&Mesh { scene: &scene, painting: None }, directions, side, exec, progress)
 }
 
-/// Triangles alone, and their texture.
+/// A scene of triangles only, and its texture.
 struct Mesh<'a> {
     scene: &'a Scene,
     painting: Option<&'a Painting>,
@@ -176,7 +194,7 @@ fn gather(
     Ok(found)
 }
 
-/// The triangles of a scene alone.
+/// A scene with only the triangles of this scene.
 fn mesh(scene: &Scene) -> Result<Cow<'_, Scene>> {
     let triangles = match &scene.objects {
         Some(objects) => join(objects.primitives()?, objects.fill())?.triangles,
@@ -191,7 +209,7 @@ fn mesh(scene: &Scene) -> Result<Cow<'_, Scene>> {
     some(Cow::Owned(Scene { primitives, ..Scene::unlit(&scene.name, Surfels::none()) }))
 }
 
-/// A mesh that has triangles.
+/// Refuses a mesh without triangles.
 fn some(mesh: Cow<'_, Scene>) -> Result<Cow<'_, Scene>> {
     match mesh.primitives.triangles.is_empty() {
         true => Err(Error::Invalid("there are no triangles to take candidates from".into())),
@@ -200,7 +218,7 @@ fn some(mesh: Cow<'_, Scene>) -> Result<Cow<'_, Scene>> {
 }
 
 impl Directions {
-    /// The vectors, for a box with these half extents.
+    /// The vectors; `half` is the half extents of the box.
     fn around(&self, half: DVec3) -> Result<Vec<DVec3>> {
         let corners = |half: DVec3| {
             let sign = |i: u32, axis: u32| if i >> axis & 1 == 0 { -1.0 } else { 1.0 };
@@ -226,11 +244,11 @@ impl Directions {
 /// Bytes of a pixel of the pictures of one direction, and of a candidate while its array grows.
 const OF_A_PIXEL: u64 = (SHARES + 1) as u64 * size_of::<Foremost<f32>>() as u64;
 const OF_A_CANDIDATE: u64 = 2 * 36 + 60;
-/// Bytes of a vertex that is placed.
+/// Bytes of a vertex in view space.
 const OF_A_VERTEX: u64 = 20;
 
 impl Candidates {
-    /// Adds what a camera sees of a mesh.
+    /// Adds the candidates that a camera sees.
     fn add(&mut self, mesh: &Mesh<'_>, camera: &Camera, exec: &Exec) -> Result<()> {
         let pixels = u64::from(camera.width) * u64::from(camera.height);
         let vertices = mesh.scene.primitives.triangles.vertices().position.len() as u64;
@@ -264,7 +282,7 @@ impl Candidates {
     }
 }
 
-/// What is nearest at a covered pixel.
+/// The nearest surface at a covered pixel.
 struct Seen {
     normal: Vec3,
     position: Vec3,
@@ -274,7 +292,8 @@ struct Seen {
     weights: [f32; 3],
 }
 
-/// What is seen at each covered pixel of this side, in the order of the pixels.
+/// The nearest surface at each covered pixel, in the order of the pixels; `side` is the side of a
+/// pixel.
 fn seen(mesh: &Mesh<'_>, side: f64, camera: &Camera, exec: &Exec) -> Vec<Seen> {
     let columns = camera.width as usize;
     let visible = VisibleTriangles::<f32>::new(mesh.scene, camera, Snap::default());
@@ -288,7 +307,7 @@ fn seen(mesh: &Mesh<'_>, side: f64, camera: &Camera, exec: &Exec) -> Vec<Seen> {
         let corners = triangles.corners()[id as usize];
         let [a, b, c] = corners.map(|corner| triangles.vertices().position[corner as usize]);
         let pixel = ((i % columns) as u32, (i / columns) as u32);
-        // What is nearest in a pixel covers it.
+        // The nearest triangle of a pixel covers it, so the fallback is never used.
         let (sample, w) = visible.sample(id, pixel).unwrap_or((PixelSample::empty(), [0.0; 3]));
         let position = ((a * w[0] + b * w[1]) + c * w[2]) + Vec3::ZERO;
         let color = mesh.painting.map(|painting| painting.color(id, w, side));
@@ -298,7 +317,7 @@ fn seen(mesh: &Mesh<'_>, side: f64, camera: &Camera, exec: &Exec) -> Vec<Seen> {
     all
 }
 
-/// A direction of view space in world space.
+/// Turns a direction from view space to world space.
 fn turned(view: &DMat4, v: Vector3<f32>) -> Vec3 {
     let v = v.map(f64::from);
     let column = |c: DVec4| (((c.x * v.x + c.y * v.y) + c.z * v.z) + 0.0) as f32;

@@ -1,4 +1,4 @@
-//! Meshes with a texture.
+//! Take candidates from meshes with a texture.
 
 use super::{Candidates, Directions, Mesh};
 use crate::error::{Error, Result};
@@ -9,11 +9,12 @@ use crate::scene::{Cloud, Paint, Primitives, Scene, Surfels};
 use crate::source::derive::{self, Derived, stretch};
 use glam::{DVec2, Vec2, Vec3};
 
-/// The candidates of the triangles of a cloud, drawn as [`derive::polygons`], in the colours of its texture if that has been
-/// [read](Cloud::paint), else in those of its points, with the opacities and [further properties](Cloud::properties) of
-/// these; and what was derived and dropped on the way.
+/// The candidates of the triangles of a cloud, drawn as [`derive::polygons`], and a report of
+/// derived and dropped attributes. Colours come from the cloud's texture if that has been
+/// [read](Cloud::paint), else from its points. Opacities and [further
+/// properties](Cloud::properties) come from its points.
 ///
-/// A triangle of which a texture coordinate is not finite is dropped and counted.
+/// A triangle is dropped and counted if a texture coordinate is not finite.
 ///
 /// # Errors
 /// As [`derive::polygons`] and [`super::candidates`]; [`Error::Invalid`] if every triangle is dropped.
@@ -27,18 +28,19 @@ pub fn of_cloud(
     cloud.check()?;
     let before = cloud.triangles.len();
     if cloud.paint.is_some() {
-        // Corners, before and after, and their places in the texture.
+        // The corners before and after, and their places in the texture.
         let bytes = size_of::<Painted>() as u64 + 2 * 12 + 24;
         memory::ask(before as u64 * bytes, || format!("the texture of {before} triangles"))?;
     }
-    // Before corners are noted, whose points have their numbers then.
+    // Drop these first, because the corners noted below need the final numbers of points.
     derive::drop_unsound(&mut cloud)?;
     let lifted = lift(&mut cloud)?;
     let dropped = (before - cloud.triangles.len()) as u64;
     let (triangles, mut derived) = derive::polygons(cloud, exec, progress)?;
     derived.dropped_primitives += dropped;
     let painting = lifted.map(|Lifted { paint, corners, at }| {
-        // Which were dropped since depends on their corners alone, so that equal ones share their fate.
+        // Whether a triangle was dropped depends on its corners alone, so triangles with equal
+        // corners were dropped or kept together.
         let mut kept = triangles.corners().iter().peekable();
         let position = &triangles.vertices().position;
         let painted = corners.iter().zip(at).filter_map(|(corners, at)| {
@@ -54,14 +56,14 @@ pub fn of_cloud(
     Ok((super::gather(&mesh, directions, side, exec, progress)?, derived))
 }
 
-/// A texture, the corners of triangles, and where these corners are in it.
+/// A texture, the corners of triangles, and the places of these corners in the texture.
 struct Lifted {
     paint: Paint,
     corners: Vec<[u32; 3]>,
     at: Vec<[Vec2; 3]>,
 }
 
-/// Takes a texture that has been read from a cloud, of which points and triangles that can have no candidates are dropped.
+/// Takes the texture from a cloud, and drops points and triangles that cannot have candidates.
 fn lift(cloud: &mut Cloud) -> Result<Option<Lifted>> {
     let (Some(paint), Some(_)) = (cloud.paint.take(), &cloud.coordinates) else { return Ok(None) };
     let before = cloud.triangles.len();
@@ -88,14 +90,15 @@ pub(super) struct Painting {
     painted: Vec<Painted>,
 }
 
-/// A triangle in a texture: its corners, and what a disc of radius 1 in its plane becomes.
+/// A triangle in a texture: its corners, and the outline of a disc of radius 1 in its plane.
 struct Painted {
     at: [Vec2; 3],
     disc: Ellipse,
 }
 
 impl Painting {
-    /// The colour in a triangle where its corners have these weights, within a disc of this radius.
+    /// The mean colour within a disc of this radius, at the point of a triangle where its corners
+    /// have these weights.
     pub(super) fn color(&self, triangle: u32, weights: [f32; 3], radius: f64) -> Vec3 {
         let Painted { at, disc } = &self.painted[triangle as usize];
         let [a, b, c]: [DVec2; 3] = [0, 1, 2].map(|i| at[i].as_dvec2() * f64::from(weights[i]));

@@ -1,21 +1,21 @@
-//! Opacity and further properties of the vertices of a mesh.
+//! Interpolate opacity and further properties of the vertices of a mesh.
 
 use crate::scene::{Cloud, Property, Scene};
 
-/// What the vertices of a mesh have beside normals and colours.
+/// The numbers that vertices of a mesh have beside normals and colours.
 pub(super) struct Properties<'a> {
     opacity: Option<&'a [f32]>,
     further: &'a [Property],
 }
 
 impl<'a> Properties<'a> {
-    /// Those of the triangles of a scene.
+    /// The numbers of the triangles of a scene.
     pub(super) fn of(scene: &'a Scene) -> Self {
         let vertices = scene.primitives.triangles.vertices();
         Self { opacity: vertices.opacity.as_deref(), further: &vertices.properties }
     }
 
-    /// How many numbers a candidate has of them.
+    /// How many of these numbers a candidate has.
     pub(super) fn count(&self) -> u64 {
         u64::from(self.opacity.is_some()) + self.further.len() as u64
     }
@@ -30,7 +30,8 @@ impl<'a> Properties<'a> {
         }
     }
 
-    /// The numbers where corners have these weights, in place of what is in `to`: opacity first, if there is one.
+    /// Interpolates the numbers with these weights of the corners, and replaces the contents of
+    /// `to`: opacity first, if there is one.
     pub(super) fn at(&self, corners: [u32; 3], weights: [f32; 3], to: &mut Vec<f32>) {
         let [a, b, c] = corners.map(|corner| corner as usize);
         let mixed =
@@ -44,7 +45,7 @@ impl<'a> Properties<'a> {
     }
 }
 
-/// Appends what [`Properties::at`] found to the arrays of [`Properties::of_none`].
+/// Appends the results of [`Properties::at`] to the arrays of [`Properties::of_none`].
 pub(super) fn push(cloud: &mut Cloud, numbers: &[f32]) {
     let opacity = cloud.opacity.iter_mut();
     let all = opacity.chain(cloud.properties.iter_mut().map(|one| &mut one.values));

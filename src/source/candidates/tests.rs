@@ -9,7 +9,7 @@ use std::f64::consts::PI;
 
 fn quiet(_: &str, _: u64, _: u64) {}
 
-/// Triangles with the normals of their planes, each with corners of its own.
+/// Triangles with the normals of their planes; each has its own corners.
 fn soup(corners: &[[Vec3; 3]]) -> Scene {
     let normal = |[a, b, c]: &[Vec3; 3]| [(*b - *a).cross(*c - *a).normalize(); 3];
     let position: Vec<Vec3> = corners.iter().flatten().copied().collect();
@@ -27,7 +27,7 @@ fn soup(corners: &[[Vec3; 3]]) -> Scene {
     Scene { primitives, ..Scene::unlit("soup", Surfels::none()) }
 }
 
-/// A box around the origin, each face two triangles.
+/// A box around the origin, with two triangles for each face.
 fn boxed(half: Vec3) -> Scene {
     let mut all = Vec::new();
     for axis in 0..3 {
@@ -61,8 +61,8 @@ const CUBE: [[f64; 3]; 8] = [
     [1.0, 1.0, 1.0],
 ];
 
-/// What a ray meets first: how far away, the triangle's normal, and how near to an edge
-/// the place is or how close the second is, whichever is less.
+/// The first hit of a ray: its distance, the triangle's normal, and the lesser of the distances to
+/// an edge and to the second hit.
 fn cast(soup: &[[Vec3; 3]], from: DVec3, along: DVec3) -> Option<(f64, DVec3, f64)> {
     let mut hits = Vec::new();
     let mut clear = f64::INFINITY;
@@ -73,7 +73,7 @@ fn cast(soup: &[[Vec3; 3]], from: DVec3, along: DVec3) -> Option<(f64, DVec3, f6
         let t = normal.dot(a - from) / facing;
         let p = from + along * t;
         let inside = [(a, b), (b, c), (c, a)].map(|(a, b)| {
-            // The distance from the edge as one sees it along the ray.
+            // The distance from the edge as seen along the ray.
             let side = (b - a).cross(along).normalize();
             (p - a).dot(side) * -facing.signum()
         });
@@ -94,7 +94,8 @@ fn cast(soup: &[[Vec3; 3]], from: DVec3, along: DVec3) -> Option<(f64, DVec3, f6
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// The pictures again by a ray through each pixel, from the page: no camera, no rasterizer.
+    /// Draws the pictures again with a ray through each pixel, from the page: no camera, no
+    /// rasterizer.
     #[test]
     fn candidates_are_what_rays_meet(
         corners in prop::collection::vec(prop::array::uniform3(prop::array::uniform3(-1.0_f32..1.0)), 1..9),
@@ -175,7 +176,7 @@ fn a_flat_mesh_has_candidates_from_the_cube_and_none_from_its_box() {
     assert!(error.starts_with("no triangle covers the centre of a pixel"), "{error}");
 }
 
-/// Where `Decided:` says how many candidates the faces of a bar have.
+/// Checks the numbers of candidates that `Decided:` gives for the faces of a bar.
 #[test]
 fn a_bar_is_seen_evenly_from_the_cube_and_at_its_ends_from_its_box() {
     let bar = boxed(Vec3::new(10.0, 1.0, 1.0));
@@ -214,11 +215,12 @@ fn a_sphere_is_covered_to_a_few_pixels() {
     let found = found(&soup(&all), &Directions::Cube, 96).unwrap();
     let of_pixels = |count: &u32| f64::from(*count) * found.pixel * found.pixel;
     for area in found.counts.iter().map(of_pixels) {
-        // The circle pi, less the sagitta of the facets, give or take half a pixel of its outline.
+        // The circle pi, minus the sagitta of the facets, plus or minus half a pixel of its
+        // outline.
         assert!((area - PI).abs() < 0.06, "{area}");
     }
-    // No direction is farther than 54.7 degrees from one of the cube's: a pixel is at most
-    // 1 / cos = sqrt 3 long there.
+    // No direction is farther than 54.7 degrees from one of the cube's directions, so a pixel is at
+    // most 1 / cos = sqrt 3 long there.
     for vertex in all.iter().flatten() {
         let nearest = found.cloud.position.iter().map(|p| (*p - *vertex).length_squared());
         let nearest = f64::from(nearest.fold(f32::INFINITY, Real::at_most)).sqrt();

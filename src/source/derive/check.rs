@@ -1,16 +1,15 @@
-//! Clouds whose arrays fit together.
+//! Check that the arrays of a cloud fit together.
 
 use crate::error::{Error, Result};
 use crate::scene::surfels::check_mipmap;
 use crate::scene::{Cloud, Coordinates};
 
 impl Cloud {
-    /// Checks what [`Cloud`] promises: one length for all arrays, prefiltered colours only beside
-    /// colours, triangles and edges of existing
-    /// points, and fewer than 2^32 - 1 points.
+    /// Checks the promises of [`Cloud`]: one length for all arrays, prefiltered colours only beside
+    /// colours, triangles and edges of existing points, and fewer than 2^32 - 1 points.
     ///
     /// # Errors
-    /// [`Error::Invalid`] that names the array.
+    /// [`Error::Invalid`] with the name of the array.
     pub fn check(&self) -> Result<()> {
         let n = self.position.len();
         if n as u64 >= u64::from(u32::MAX) {

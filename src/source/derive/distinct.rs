@@ -1,8 +1,8 @@
-//! Positions without repetition: points at one place are one place to their neighbours.
+//! Find distinct positions, because neighbours treat points at one place as one.
 
 use glam::Vec3;
 
-/// The places that points stand at, each once.
+/// The distinct places of some points.
 #[derive(Debug)]
 pub(super) struct Distinct {
     /// The places, in the order of the lowest point at each.
@@ -12,7 +12,7 @@ pub(super) struct Distinct {
 }
 
 impl Distinct {
-    /// Of fewer than 2^32 finite positions; -0 and +0 are one.
+    /// The places of fewer than 2^32 finite positions; -0 and +0 are equal.
     pub(super) fn new(points: &[Vec3]) -> Self {
         let key = |i: u32| points[i as usize].to_array().map(|c| c + 0.0); // -0 + 0 is +0
         let equal = |a: u32, b: u32| key(a) == key(b);
@@ -42,7 +42,7 @@ impl Distinct {
         Self { place, of }
     }
 
-    /// What was found for each place, for each point.
+    /// Copies the result for each place to all points at it.
     pub(super) fn spread<T: Copy>(&self, found: &[T]) -> Vec<T> {
         self.of.iter().map(|&place| found[place as usize]).collect()
     }

@@ -1,10 +1,10 @@
-//! What the triangles of a mesh say about its vertices.
+//! Derive normals and radii of vertices from the triangles of a mesh.
 
 use glam::{DVec3, Vec3};
 
 /// Area-weighted vertex normals, of length 1.
 ///
-/// See the arithmetic of [`super`]. Null where there is no triangle, or where the triangles cancel.
+/// See the arithmetic of [`super`]. Null if the vertex has no triangle, or if its triangles cancel.
 pub(super) fn normals(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut sums = vec![DVec3::ZERO; points.len()];
     for triangle in triangles {
@@ -21,8 +21,8 @@ pub(super) fn normals(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     sums.into_iter().map(unit).collect()
 }
 
-/// For each vertex the longest edge of all triangles around it, in f64 and rounded once; 0 where
-/// there is no triangle.
+/// For each vertex, the longest edge of all triangles around it, in f64 and rounded once; 0 for a
+/// vertex without a triangle.
 pub(super) fn radii(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<f32> {
     let mut longest = vec![0.0_f64; points.len()];
     for triangle in triangles {

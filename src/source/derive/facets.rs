@@ -1,4 +1,4 @@
-//! The triangles of a mesh as elliptical surfels, one each.
+//! Turn the triangles of a mesh into elliptical surfels, one for each.
 
 use super::{Derive, Derived, Origin, drop_nowhere, primitives, texture};
 use crate::error::{Error, Result};
@@ -9,11 +9,11 @@ use crate::scene::{Cloud, Surfels};
 use glam::{DVec3, Vec3};
 use std::ops::{Add, Div};
 
-/// The triangles of a cloud as surfels, in their order: each the Steiner circumellipse, the ellipse of
-/// least area that holds the triangle. It has the triangle's plane and its centroid, goes through its
-/// corners, and has 4 pi / sqrt(27), about 2.4, times its area.
+/// The triangles of a cloud as surfels, in their order. Each surfel is the Steiner circumellipse,
+/// the ellipse of least area that holds the triangle. It has the triangle's plane and centroid,
+/// goes through its corners, and has 4 pi / sqrt(27), about 2.4, times its area.
 ///
-/// Of the corners a, b, c, in f64:
+/// For the corners a, b, c, in f64:
 ///
 /// ```text
 ///   place      g = (a + b + c) / 3
@@ -24,17 +24,19 @@ use std::ops::{Add, Div};
 ///              (n_a + n_b) + n_c is < 0; divided by its length, plus 0
 /// ```
 ///
-/// each rounded to `f32` once; products x.y and lengths are sums in the order x, y, z. Colour and
-/// opacity are the means of the corners', ((a + b) + c) / 3 in `f32`; a triangle with a corner whose
-/// colour or opacity cannot be is dropped and counted, as the corner would be. Where a texture has been read the colour is
-/// that of the texture, see the module. `Decided:` the
-/// corners' normals say which side is the front, since files wind their triangles either way. Radii
-/// and tangents of the file are not looked at, and prefiltered colours are left out: they are of radii. A triangle without area becomes a surfel without a
-/// normal, which is dropped and counted.
+/// Each result is rounded to `f32` once; products x.y and lengths are sums in the order x, y, z.
+/// Colour and opacity are the means of the corners', ((a + b) + c) / 3 in `f32`. A triangle is
+/// dropped and counted if the colour or opacity of a corner is invalid, as the corner itself would
+/// be. If a texture has been read, the colour comes from the texture, see the module.
+///
+/// `Decided:` the corners' normals say which side is the front, because files wind their triangles
+/// either way. Radii and tangents of the file are ignored. Prefiltered colours are left out,
+/// because they depend on the radii. A triangle without area becomes a surfel without a normal,
+/// which is dropped and counted.
 ///
 /// # Errors
-/// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if the points have groups,
-/// which say nothing of triangles.
+/// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if the points have
+/// groups, because groups say nothing about triangles.
 pub fn facets(
     mut cloud: Cloud,
     exec: &Exec,
@@ -59,16 +61,16 @@ pub fn facets(
     Ok((surfels, Derived { normals, radii, dropped, dropped_primitives: 0 }))
 }
 
-/// [`facets`] of a mesh whose points have no extent of their own, else [`super::surfels`]: what is
-/// drawn if nobody says. Such a mesh has triangles and neither radii, half axes nor groups of points,
-/// and no radius is asked for.
+/// The default choice: [`facets`] for a mesh whose points have no extent of their own, else
+/// [`super::surfels`]. Such a mesh has triangles, and neither radii, half axes nor groups of
+/// points, and no radius is asked for.
 ///
-/// `Decided:` by measurement. Against the mesh itself the error of facets is less than that of points
-/// with derived radii in six scans and three cylinders, by four methods, each in one view and three
-/// sizes (bench `meshes`): facets end where the surface ends.
+/// `Decided:` by measurement. The error against the mesh itself is smaller with facets than with
+/// points of derived radii, because facets end where the surface ends. This holds in six scans and
+/// three cylinders, by four methods, each in one view and three sizes (bench `meshes`).
 ///
 /// # Errors
-/// As those two.
+/// The errors of these two.
 pub fn facets_or_surfels(
     cloud: Cloud,
     options: &Derive,
@@ -88,10 +90,10 @@ fn is_bare_mesh(cloud: &Cloud, options: &Derive) -> bool {
     !triangles.is_empty() && !own && options.radius.is_none()
 }
 
-/// What a facet takes, and its checks.
+/// Bytes that a facet and its checks take.
 const BYTES_A_FACET: u64 = 128;
 
-/// One complete point a triangle.
+/// One complete point for each triangle.
 fn ellipses(cloud: &Cloud) -> Cloud {
     let Cloud { position, triangles, normal, color, opacity, .. } = cloud;
     let found: Vec<Facet> = triangles
@@ -118,7 +120,8 @@ fn ellipses(cloud: &Cloud) -> Cloud {
     }
 }
 
-/// The mean of the corners of each triangle; `none`, which is dropped, if a corner has what cannot be.
+/// The mean of the corners of each triangle; `none`, which is dropped later, if `can_be` refuses a
+/// corner.
 fn means<T: Copy + Add<Output = T> + Div<f32, Output = T>>(
     triangles: &[[u32; 3]],
     all: &[T],
@@ -142,7 +145,7 @@ struct Facet {
 }
 
 impl Facet {
-    /// Of these corners; towards `side` is the front, if that is known.
+    /// The surfel of these corners; its front is towards `side`, if that is known.
     fn new([a, b, c]: [DVec3; 3], side: Option<DVec3>) -> Self {
         let g = (a + b + c) / 3.0;
         let (p, q) = (c - g, (b - a) / 3.0_f64.sqrt());

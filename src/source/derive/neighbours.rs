@@ -1,13 +1,14 @@
-//! The k nearest neighbours of every point, exactly and in a fixed order.
+//! Find the k nearest neighbours of every point, exactly and in a fixed order.
 //!
-//! By the k-d tree of [`crate::index::point_tree`]: unlike a grid it does not care how unevenly the
-//! points are spread.
+//! The search uses the k-d tree of [`crate::index::point_tree`], because, unlike a grid, its speed
+//! does not depend on how evenly the points are spread.
 
 use crate::frame::Exec;
 use crate::index::point_tree::{Entry, PointTree};
 use glam::Vec3;
 
-/// Ranges up to this length are searched through: so few points cost less than a branch for each.
+/// Ranges up to this length are searched linearly, because that costs less than a branch for each
+/// point.
 const LEAF: usize = 8;
 /// Points between two reports of progress, and points of one parallel job.
 const BATCH: usize = 1 << 16;
@@ -19,26 +20,27 @@ pub(super) struct Neighbours {
     tree: PointTree,
 }
 
-/// A point and how far it is.
+/// A neighbour and its distance.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Neighbour {
     /// `(dx^2 + dy^2) + dz^2` in f64.
     pub(super) distance2: f64,
-    /// Its index.
+    /// The index of the neighbour.
     pub(super) id: u32,
 }
 
 impl Neighbours {
-    /// Of fewer than 2^32 finite points.
+    /// Needs fewer than 2^32 finite points.
     pub(super) fn new(points: &[Vec3], exec: &Exec) -> Self {
         Self { tree: PointTree::new(points, LEAF, exec) }
     }
 
-    /// `f(id, neighbours)` for every point, in the order of the ids.
+    /// Computes `f(id, neighbours)` for every point; results are in the order of the ids.
     ///
     /// The neighbours are the `k` other points, or all if there are fewer, with the smallest
-    /// (squared distance, index), ascending; both are exact properties of the points, so that the
-    /// tree and the threads leave no trace. `progress` gets points done and points in all.
+    /// (squared distance, index), in ascending order. Both are exact properties of the points, so
+    /// that neither the tree nor the threads change the result. `progress` gets the points done and
+    /// the total.
     pub(super) fn map<T: Copy + Default + Send>(
         &self,
         exec: &Exec,
@@ -70,10 +72,11 @@ impl Neighbours {
         results
     }
 
-    /// Offers the points of a range to `nearest`, except the one that asks.
+    /// Offers the points of a range to `nearest`, except the query itself.
     ///
-    /// `offset` is how far the range is from the query along each axis, at least. Rounding is
-    /// monotone, so that the distance made of it never exceeds that of a point in the range.
+    /// `offset` is a lower bound of the distance between the range and the query along each axis.
+    /// Rounding is monotone, so that the distance computed from it never exceeds the distance of a
+    /// point in the range.
     fn search(
         &self,
         range: std::ops::Range<usize>,
@@ -95,7 +98,7 @@ impl Neighbours {
         nearest.offer(query, entry);
         let mut offset = offset;
         offset[axis] = beyond;
-        // At the same distance a lower index may still win.
+        // Search at equal distance too, because a lower index wins.
         if length2(offset) <= nearest.reach() {
             self.search(far, query, offset, nearest);
         }
@@ -106,14 +109,14 @@ fn length2([x, y, z]: [f64; 3]) -> f64 {
     (x * x + y * y) + z * z
 }
 
-/// The best points so far, ascending.
+/// The nearest points so far, in ascending order.
 struct Nearest {
     k: usize,
     found: Vec<Neighbour>,
 }
 
 impl Nearest {
-    /// No point farther than this is of interest.
+    /// Points farther away than this are not needed.
     fn reach(&self) -> f64 {
         match self.found.last() {
             Some(last) if self.found.len() == self.k => last.distance2,

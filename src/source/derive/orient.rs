@@ -1,15 +1,16 @@
-//! One side for all normals [Hoppe et al. 1992, Surface Reconstruction from Unorganized Points].
+//! Turn all normals to one side [Hoppe et al. 1992, Surface Reconstruction from Unorganized
+//! Points].
 
 use glam::{DVec3, Vec3};
 
-/// How many nearest neighbours a place is tied to; `Decided:` half of those of the plane fit, as
-/// the far ones are those across a gap.
+/// How many nearest neighbours a place is tied to. `Decided:` half the number for the plane fit,
+/// because the far ones are those across a gap.
 pub(super) const TIES: usize = 8;
 
 /// Flips normals so that neighbours agree, see the arithmetic of [`super`].
 ///
-/// The ties are the edges of a minimum spanning tree, along which the normals of two ends get a dot
-/// product >= 0.
+/// The ties in use are the edges of a minimum spanning tree; along each, the normals of the two
+/// ends get a dot product >= 0.
 pub(super) fn agree(places: &[Vec3], ties: &[[u32; TIES]], normals: &mut [Vec3]) {
     let mut parts = Forest::new(places.len());
     for (_, a, b) in edges(ties, normals) {
@@ -45,21 +46,21 @@ pub(super) fn agree(places: &[Vec3], ties: &[[u32; TIES]], normals: &mut [Vec3])
     }
 }
 
-/// What a place stands for, up to a factor: the squared distance to the farthest place it is tied
-/// to.
+/// The area that a place represents, up to a factor: the squared distance to the farthest place it
+/// is tied to.
 fn area(places: &[Vec3], of: usize, ties: &[u32; TIES]) -> f64 {
     let distance2 =
         |&tie: &u32| places[tie as usize].as_dvec3().distance_squared(places[of].as_dvec3());
     ties.iter().map(distance2).fold(0.0, |most, d| if d > most { d } else { most })
 }
 
-/// On which side of a part its normals are; sums in ascending index, in f64.
+/// Sums that show on which side of a part its normals are; in ascending index, in f64.
 #[derive(Clone, Copy, Default)]
 struct Side {
     /// The sum of areas, and of places times areas.
     area: f64,
     place: DVec3,
-    /// The sums of `n . (p - mean)` and `|p - mean|`, and of the normals, times areas.
+    /// The sums of `n . (p - mean)`, of `|p - mean|` and of the normals, all times areas.
     volume: f64,
     size: f64,
     facing: DVec3,
@@ -78,8 +79,8 @@ impl Side {
         self.facing += normal.as_dvec3() * area;
     }
 
-    /// Whether the normals have to be flipped. On an open part, with c its mean, the volume tells
-    /// the convex side.
+    /// Whether the normals point inwards and must be flipped. For an open part, the volume finds
+    /// the convex side, because c is the mean.
     fn is_inner(&self) -> bool {
         if 256.0 * self.volume.abs() > self.size {
             return self.volume < 0.0;
@@ -99,12 +100,12 @@ fn dot(a: Vec3, b: Vec3) -> f64 {
     a.as_dvec3().dot(b.as_dvec3())
 }
 
-/// All ties once, as (bits of the weight, lower index, higher index), ascending.
+/// All ties once, as (bits of the weight, lower index, higher index), in ascending order.
 fn edges(ties: &[[u32; TIES]], normals: &[Vec3]) -> Vec<(u32, u32, u32)> {
     let mut edges = Vec::new();
     for (a, near) in (0..).zip(ties) {
         for &b in near {
-            // A place with too few neighbours is tied to itself; a mutual tie is taken once.
+            // A place with too few neighbours is tied to itself; a mutual tie counts once.
             if a < b || (b < a && !ties[b as usize].contains(&a)) {
                 let weight = 1.0 - dot(normals[a as usize], normals[b as usize]).abs();
                 let weight = if weight > 0.0 { weight as f32 } else { 0.0 };
@@ -117,7 +118,7 @@ fn edges(ties: &[[u32; TIES]], normals: &[Vec3]) -> Vec<(u32, u32, u32)> {
     edges
 }
 
-/// Connected parts: a forest where each place knows whether its normal is against its parent's.
+/// Connected parts: a forest in which each place knows whether its normal opposes its parent's.
 struct Forest {
     parent: Vec<u32>,
     against: Vec<bool>,
@@ -128,7 +129,7 @@ impl Forest {
         Self { parent: (0..n as u32).collect(), against: vec![false; n] }
     }
 
-    /// The root of a place, and whether its normal is against the root's; halves the path.
+    /// The root of a place, and whether its normal opposes the root's; halves the path.
     fn find(&mut self, place: u32) -> (u32, bool) {
         let (mut i, mut against) = (place as usize, false);
         loop {
@@ -143,7 +144,7 @@ impl Forest {
         }
     }
 
-    /// Joins the parts of two places, whose own normals are for or against each other.
+    /// Joins the parts of two places; `against` says whether their own normals oppose each other.
     fn join(&mut self, a: u32, b: u32, against: bool) {
         let ((a, a_against), (b, b_against)) = (self.find(a), self.find(b));
         if a != b {

@@ -1,4 +1,4 @@
-//! Normals and radii of points that nothing connects.
+//! Derive normals and radii of points without triangles.
 
 use super::distinct::Distinct;
 use super::neighbours::Neighbours;
@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use glam::Vec3;
 
-/// Where points stand, ordered for the search of neighbours.
+/// The places of points, ordered for the search of neighbours.
 #[derive(Debug)]
 pub(super) struct Places {
     distinct: Distinct,
@@ -15,7 +15,7 @@ pub(super) struct Places {
 }
 
 impl Places {
-    /// Of fewer than 2^32 finite points.
+    /// Needs fewer than 2^32 finite points.
     pub(super) fn new(points: &[Vec3], exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Self {
         progress("ordering points", 0, points.len() as u64);
         let distinct = Distinct::new(points);
@@ -50,8 +50,8 @@ impl Places {
         Ok(self.distinct.spread(&normals))
     }
 
-    /// The distance from each point to its [`RADIUS_NEIGHBOURS`]th neighbour, or to the last there
-    /// is, rounded to `f32` once.
+    /// The distance from each point to its [`RADIUS_NEIGHBOURS`]th neighbour, or to the last one,
+    /// rounded to `f32` once.
     pub(super) fn radii(&self, exec: &Exec, progress: &dyn Fn(&str, u64, u64)) -> Result<Vec<f32>> {
         if self.distinct.place.len() < 2 {
             let what = "radii are missing and cannot be derived: all points stand at one place; \

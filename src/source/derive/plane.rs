@@ -1,13 +1,13 @@
-//! The plane through a neighbourhood.
+//! Fit a plane to a neighbourhood.
 
 use super::neighbours::Neighbour;
 use glam::{DVec3, Vec3};
 
 /// The direction in which a point and its neighbours vary least, of length 1.
 ///
-/// The eigenvector of the smallest eigenvalue of their covariance, see the arithmetic of [`super`].
-/// Of equal eigenvalues the first wins, so that collinear points get some direction across the line.
-/// The sign of the result has no meaning.
+/// This is the eigenvector of the smallest eigenvalue of their covariance, see the arithmetic of
+/// [`super`]. Of equal eigenvalues the first wins, so that collinear points get some direction
+/// across the line. The sign of the result has no meaning.
 pub(super) fn normal(points: &[Vec3], of: u32, neighbours: &[Neighbour]) -> Vec3 {
     let center = points[of as usize].as_dvec3();
     let mut ids: Vec<u32> = neighbours.iter().map(|n| n.id).chain([of]).collect();
@@ -39,8 +39,9 @@ pub(super) fn normal(points: &[Vec3], of: u32, neighbours: &[Neighbour]) -> Vec3
 
 /// Eigenvalues and unit eigenvectors of a symmetric matrix.
 ///
-/// Cyclic Jacobi: eight sweeps of one rotation for each of (0, 1), (0, 2), (1, 2), where four bring
-/// any matrix to rounding. A fixed number, and no operation but `+ - * / sqrt`.
+/// Cyclic Jacobi: eight sweeps of one rotation for each of (0, 1), (0, 2), (1, 2); four sweeps
+/// bring any matrix to rounding. The number of sweeps is fixed, and the only operations are
+/// `+ - * / sqrt`.
 fn eigen(mut m: [[f64; 3]; 3]) -> ([f64; 3], [DVec3; 3]) {
     let mut vectors = [DVec3::X, DVec3::Y, DVec3::Z];
     for _ in 0..8 {

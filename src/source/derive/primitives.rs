@@ -1,4 +1,4 @@
-//! Polygons, ribbons and tubes: what is drawn of the triangles and edges of a cloud.
+//! Turn the triangles and edges of a cloud into polygons, ribbons and tubes.
 
 use super::{
     Derive, Derived, Origin, complete, drop_nowhere, faces, given, missing_normals, texture,
@@ -11,15 +11,16 @@ use crate::source::hybrid::{HalfSpace, split};
 use glam::{DVec3, Vec3};
 use std::cell::OnceCell;
 
-/// The triangles of a cloud as polygons, which reach no farther than themselves: every radius is 0.
+/// The triangles of a cloud as polygons. Every radius is 0, so that polygons are not extended.
 ///
-/// Normals that are missing are derived as those of surfels, see the module, and so are colours of a texture. Vertices keep
-/// opacities and [properties](Cloud::properties). A triangle with a corner whose opacity is not in [0, 1], or of which a property is not finite, is dropped
-/// and counted, and is no part of the mesh: derived normals know nothing of it.
+/// Missing normals are derived as for surfels, see the module, and so are colours of a texture.
+/// Vertices keep opacities and [properties](Cloud::properties). A triangle is dropped and counted
+/// if the opacity of a corner is not in [0, 1], or if a property is not finite. It is no part of
+/// the mesh, so that derived normals ignore it.
 ///
 /// # Errors
 /// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if each has a corner
-/// that is degenerate or of unsound numbers.
+/// that is degenerate or has an invalid opacity or property.
 pub fn polygons(
     mut cloud: Cloud,
     exec: &Exec,
@@ -43,13 +44,13 @@ pub fn polygons(
     finish(before, cloud, (normal, normals), (radius, Origin::Zero), triangles)
 }
 
-/// The triangles in a half space as polygons and the rest of a mesh as surfels, [`split`] after
-/// normals and radii have been derived as in [`super::surfels`] of all of the mesh. One of both
-/// parts may be empty.
+/// The triangles in a half space as polygons, and the rest of a mesh as surfels. Normals and radii
+/// are derived from the whole mesh as in [`super::surfels`], then [`split`] divides it. One of the
+/// two parts may be empty.
 ///
 /// # Errors
-/// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if nothing is left of
-/// either part.
+/// [`Error::Invalid`] as [`super::surfels`], if there are no triangles, or if both parts are empty
+/// in the end.
 pub fn hybrid(
     cloud: Cloud,
     half: &HalfSpace,
@@ -76,8 +77,8 @@ pub fn hybrid(
     Ok((surfels, triangles, derived))
 }
 
-/// The edges of a cloud as ribbons. Normals must be given; radii, half the widths, too, or be asked
-/// for.
+/// The edges of a cloud as ribbons. The file must give normals. Radii, which are half the widths,
+/// come from the file or from the options.
 ///
 /// # Errors
 /// [`Error::Invalid`] if [`Cloud::check`] fails, if there are no edges, normals or radii, or if
@@ -92,15 +93,17 @@ pub fn ribbons(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived
     finish(before, bare(cloud), (normal, Origin::File), radius, edges)
 }
 
-/// The edges of a cloud as tubes. Radii must be given, or be asked for.
+/// The edges of a cloud as tubes. Radii come from the file or from the options.
 ///
-/// `Decided:` where the file has no tangents, that of a vertex is "the averaged direction of the
-/// attached tube segments" \[MKC08, section 4.3\] as follows. Each edge, in ascending order, from
-/// its first to its second end, divided by its length, in f64, is added to the sum at both its
-/// ends, or subtracted where its dot product with that sum is < 0; the sums are divided by their
-/// length and rounded to `f32` once. An edge without length adds nothing. So edges may be stored
-/// in either direction, and nothing cancels; but a sign that agrees along a line is had only if
-/// the edges of the line follow each other.
+/// `Decided:` if the file has no tangents, the tangent of a vertex is "the averaged direction of
+/// the attached tube segments" \[MKC08, section 4.3\], as follows. The edges are taken in ascending
+/// order. The direction of each edge, from its first to its second end and divided by its length,
+/// in f64, is added to the sum at both its ends. It is subtracted instead if its dot product with
+/// that sum is < 0. Each sum is divided by its length and rounded to `f32` once. An edge without
+/// length adds nothing.
+///
+/// So edges may be stored in either direction, and nothing cancels. The signs agree along a line
+/// only if the edges of the line follow each other.
 ///
 /// # Errors
 /// [`Error::Invalid`] if [`Cloud::check`] fails, if there are no edges or radii, or if each edge
@@ -116,7 +119,7 @@ pub fn tubes(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived)>
     finish(before, bare(cloud), tangent, radius, edges)
 }
 
-/// Whether there are triangles.
+/// Refuses a cloud without triangles.
 pub(super) fn some_triangles(cloud: &Cloud) -> Result<()> {
     if cloud.triangles.is_empty() {
         let what = "there are no triangles to draw; give an element face, or draw points";
@@ -125,7 +128,7 @@ pub(super) fn some_triangles(cloud: &Cloud) -> Result<()> {
     Ok(())
 }
 
-/// Checks a cloud for lines and takes its radii, or those asked for.
+/// Checks a cloud for lines, and takes its radii or the chosen one.
 fn radii(cloud: &mut Cloud, options: &Derive, what: &str) -> Result<(Vec<f32>, Origin)> {
     if cloud.edges.is_empty() {
         let rest = "give an element edge, or draw points";
@@ -143,7 +146,7 @@ fn radii(cloud: &mut Cloud, options: &Derive, what: &str) -> Result<(Vec<f32>, O
     }
 }
 
-/// Checked primitives, at least one of `before`.
+/// Checks the primitives; at least one of `before` must be left.
 fn finish<const N: usize>(
     before: usize,
     cloud: Cloud,
@@ -167,12 +170,13 @@ fn vertices(cloud: Cloud, direction: Vec<Vec3>, radius: Vec<f32>) -> Vertices {
     Vertices { position, direction, radius, color, opacity, properties }
 }
 
-/// The same without what only candidates need.
+/// The cloud without the attributes that only candidates need.
 fn bare(cloud: Cloud) -> Cloud {
     Cloud { opacity: None, properties: Vec::new(), ..cloud }
 }
 
-/// Drops points whose opacity is not in [0, 1], or of which a property is not finite, and their triangles.
+/// Drops points whose opacity is not in [0, 1] or with a property that is not finite, and their
+/// triangles.
 ///
 /// # Errors
 /// [`Error::Invalid`] if there were triangles and none is left.

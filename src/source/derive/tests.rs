@@ -1,4 +1,4 @@
-//! Derived normals and radii against shapes whose truth is known.
+//! Check derived normals and radii against shapes whose truth is known.
 
 use super::*;
 use crate::scene::Groups;
@@ -68,7 +68,7 @@ fn a_sphere_of_points_gets_its_normals_outwards_and_no_holes() {
 fn the_inside_of_a_torus_is_oriented_along_its_surface() {
     let (position, truth) = torus(6000);
     let (surfels, _) = derive(points(position)).unwrap();
-    // Half of the inner side points towards the centroid: only propagation gets it right.
+    // Half of the inner side points towards the centroid, so only propagation gets it right.
     for (normal, truth) in surfels.normal().iter().zip(&truth) {
         assert!(normal.dot(*truth) > 0.9, "{normal} instead of {truth}");
     }
@@ -180,7 +180,7 @@ fn given_values_are_kept_and_degenerate_ones_counted() {
 }
 
 proptest! {
-    /// Whatever the points, normals and radii come out usable, and the same with three threads.
+    /// Any points give usable normals and radii, and the same ones with three threads.
     #[test]
     fn nothing_finite_is_lost(seed in prop::collection::vec((0_u8..6, -2.0_f32..2.0), 9..300)) {
         let value = |(kind, x): (u8, f32)| match kind {

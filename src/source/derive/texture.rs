@@ -1,4 +1,4 @@
-//! Colours of a texture, see [`super`].
+//! Derive colours from a texture, see [`super`].
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;
@@ -9,10 +9,10 @@ use glam::{DVec3, Vec2, Vec3};
 
 /// Surfels between two reports of progress.
 const BATCH: usize = 1 << 14;
-/// What the keys of a triangle's corners take.
+/// Bytes of the keys of a triangle's corners.
 const BYTES_A_TRIANGLE: u64 = 3 * size_of::<Key>() as u64 + 16;
 
-/// A colour a surfel, and levels of more.
+/// One colour for each surfel, and further levels.
 type Colors = (Vec<Vec3>, Option<Mipmap>);
 
 /// A corner: point, bits of u and v, triangle.
@@ -38,7 +38,7 @@ pub(super) fn facets(
     colors(paint, cloud.triangles.len(), &find, exec, progress).map(Some)
 }
 
-/// A cloud whose points have these radii and no colours of a texture yet; it has no coordinates any more.
+/// Gives points with these radii the colours of the texture, and removes the coordinates.
 ///
 /// # Errors
 /// As [`facets`].
@@ -79,7 +79,8 @@ fn coordinates(cloud: &Cloud) -> Result<&Coordinates> {
     cloud.coordinates.as_ref().ok_or_else(missing)
 }
 
-/// The colours and levels of surfels: of each surfel and each factor of its matrix.
+/// The colours and levels of all surfels; `find` gets the number of a surfel and a factor for its
+/// matrix.
 fn colors(
     paint: &Paint,
     count: usize,
@@ -107,7 +108,7 @@ fn colors(
     Ok((color, mipmap))
 }
 
-/// The corners of all triangles by their points, and of a point by coordinates.
+/// The corners of all triangles, sorted by point, then by coordinates.
 fn keys(triangles: &[[u32; 3]], coordinates: &Coordinates, exec: &Exec) -> Vec<Key> {
     let bits = |at: Vec2| (at + Vec2::ZERO).to_array().map(f32::to_bits);
     let mut keys = Vec::with_capacity(3 * triangles.len());
@@ -115,12 +116,12 @@ fn keys(triangles: &[[u32; 3]], coordinates: &Coordinates, exec: &Exec) -> Vec<K
         let at = coordinates.of(i, *corners);
         keys.extend(corners.iter().zip(at).map(|(&corner, at)| (corner, bits(at), i as u32)));
     }
-    // Equal ones are corners of one triangle, which has no area.
+    // Equal keys are corners of one triangle, which has no area.
     exec.sort(&mut keys);
     keys
 }
 
-/// The square of a surfel's size.
+/// The square of a surfel's size: r r, or |U x V| with half axes U and V.
 fn size2(cloud: &Cloud, radius: &[f32], i: usize) -> f64 {
     match &cloud.tangents {
         None => f64::from(radius[i]) * f64::from(radius[i]),
@@ -131,7 +132,7 @@ fn size2(cloud: &Cloud, radius: &[f32], i: usize) -> f64 {
     }
 }
 
-/// The colour of the point that has these corners.
+/// The colour of the point with these corners.
 fn of_groups(
     corners: &[Key],
     cloud: &Cloud,
@@ -163,11 +164,11 @@ fn of_groups(
             groups += 1;
         }
     }
-    // None, or one, which is not to be rounded again.
+    // One group's colour must not be rounded again; no group leaves NaN.
     if groups <= 1 { last } else { (sum / weight).as_vec3() }
 }
 
-/// S and A of a triangle, see the module; none without an area.
+/// S and A of a triangle, see the module; `None` without an area.
 fn stretched(places: [Vec3; 3], at: [Vec2; 3]) -> Option<(Ellipse, f64)> {
     let [a, b, c] = places.map(|place| place.as_dvec3());
     let (e, f) = (b - a, c - a);
@@ -184,7 +185,8 @@ fn stretched(places: [Vec3; 3], at: [Vec2; 3]) -> Option<(Ellipse, f64)> {
     Some((Ellipse { xx: entry(0, 0), xy: entry(0, 1), yy: entry(1, 1) }, area))
 }
 
-/// The matrix in (u, v) of a disc of radius 1 in the plane of a triangle; 0 of one without an area.
+/// The matrix in (u, v) of a disc of radius 1 in the plane of a triangle; 0 for a triangle without
+/// an area.
 pub(in crate::source) fn stretch(places: [Vec3; 3], at: [Vec2; 3]) -> Ellipse {
     stretched(places, at).map_or(Ellipse::default(), |(matrix, area)| matrix.times(1.0 / area))
 }

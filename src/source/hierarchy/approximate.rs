@@ -1,44 +1,53 @@
-//! The approximation of a node \[BJFM19, 3.4 and 5.2\]: how many surfels, of which pictures, in which order.
+//! Choose the surfels of a node: how many, from which pictures, in which order \[BJFM19, 3.4 and
+//! 5.2\].
 //!
-//! **Count.** "We bounded the surfel count for an object by the minimum of 200k surfels and half the complexity of the
-//! approximated object (number of triangles). Objects with a complexity of below 1000 triangles were only approximated in
-//! groups in a higher hierarchy level." With T the triangles of a node and of all below it, each as often as objects show
-//! it (for a node of the tree of a geometry each once, however many objects show the geometry), and n the
-//! [most](Settings::most):
+//! **Count.** "We bounded the surfel count for an object by the minimum of 200k surfels and half
+//! the complexity of the approximated object (number of triangles). Objects with a complexity of
+//! below 1000 triangles were only approximated in groups in a higher hierarchy level." Let T be the
+//! number of triangles of a node and of all below it, and n the [most](Settings::most). In a node
+//! over objects, a triangle counts once for each object that shows it. In a node of a geometry's
+//! tree, it counts once, however many objects show the geometry:
 //!
 //! ```text
 //!   count = 0 if T < 1000, else min(n, floor(T / 2))
 //! ```
 //!
-//! **Pictures.** [`mod@crate::source::candidates`] of squares with the side
+//! **Pictures.** [`mod@crate::source::candidates`] come from square pictures with the side
 //!
 //! ```text
 //!   side = ceil(s sqrt(count / 200000)), at least 16, then at most s      s: Settings::side; in f64
 //! ```
 //!
-//! Where there are less than 4 candidates for each of the surfels (4 count), or none at all, and the side is less than s, all is
-//! drawn again with the side min(2 side, s), and so on.
+//! Everything is drawn again with the side min(2 side, s), and so on, while two things hold: the
+//! side is less than s, and there are fewer than 4 candidates for each of the surfels (4 count), or
+//! none at all.
 //!
-//! `Decided:` the paper draws pictures of 1024 pixels of everything, for 10k to 200k surfels. Here a node of the
-//! paper's bound has that side, and smaller ones have as many candidates for each of their surfels: "a much higher resolution
-//! unnecessarily increases the preprocessing time". The candidates of a sphere are about 11 times its surfels. What is
-//! small in its box, as houses far apart, has larger pictures.
+//! `Decided:` the paper draws pictures of 1024 pixels of everything, for 10k to 200k surfels. Here
+//! only a node with the paper's bound of surfels has that side. Smaller nodes have as many
+//! candidates for each of their surfels, because "a much higher resolution unnecessarily increases
+//! the preprocessing time". The candidates of a sphere are about 11 times its surfels. A node that
+//! covers little of its box, such as houses far apart, gets larger pictures.
 //!
-//! **Order.** The first `count` of the candidates in the order of the sampler, or fewer if there are fewer. Greedy and
-//! progressive orders start at [`Start::Seed`] of the [seed](Settings::seed); it is that of progressive and random ones too.
+//! **Order.** The surfels are the first `count` of the candidates in the order of the sampler, or
+//! all if there are fewer. Greedy and progressive orders start at [`Start::Seed`] of the
+//! [seed](Settings::seed); progressive and random orders also use it as their random seed.
 //!
-//! **What is drawn**, of two ways ("in a top-down or bottom-up order"):
+//! **What is drawn** depends on the traversal ("in a top-down or bottom-up order"):
 //!
-//! - [`Traversal::TopDown`]: all triangles of the node and below it, which have to fit into memory together; in the order of
-//!   the other way, as if nothing below had surfels.
-//! - [`Traversal::BottomUp`]: "one can use the already computed surfels of the child nodes instead of the original geometry". The triangles
-//!   that stay in the node, then child after child: its surfels as squares, if it has some, else what is drawn of it by this rule.
+//! - [`Traversal::TopDown`]: all triangles of the node and below it, which must fit into memory
+//!   together. Their order is the same as bottom-up, as if no node below had surfels.
+//! - [`Traversal::BottomUp`]: "one can use the already computed surfels of the child nodes instead
+//!   of the original geometry". First come the triangles that stay in the node, then child after
+//!   child. A child is drawn as its surfels, as squares, if it has some; else by this same rule.
 //!   The objects of a node of the scene count as its children, in their order, before its nodes.
-//!   Surfels are those of the file, decoded; every corner of a square has the opacity and the properties of its surfel. They are placed, and rounded to `f32`, before their squares are made.
+//!   Surfels are the decoded ones of the file; every corner of a square has the opacity and the
+//!   properties of its surfel. Surfels are placed, and rounded to `f32`, before their squares are
+//!   made.
 //!
-//! Of a child's surfels those are drawn that cover at the resolution of the picture, by the estimate of
-//! [`crate::scene::objects::detail::prefix`]. With P = 2 R / side ([`pixel`]), where R is half the diagonal of the node's box, or 1 if that is 0;
-//! k the scale of the child's place, n its surfels, `p_m` and `r_m` its estimate; in f64:
+//! The view draws as many of a child's surfels as cover at the resolution of the picture, by the
+//! estimate of [`crate::scene::objects::detail::prefix`]. Let P = 2 R / side ([`pixel`]), where R
+//! is half the diagonal of the node's box, or 1 if that is 0; k the scale of the child's place; n
+//! its surfels; `p_m` and `r_m` its estimate. In f64:
 //!
 //! ```text
 //!   r    = P / k
@@ -46,11 +55,13 @@
 //!   half = max(r, r_m sqrt(p_m / n)) k              rounded to f32 once
 //! ```
 //!
-//! the first p as [squares](super::parts::Gathered::squares) of the half side `half`. `Decided:` squares, since two triangles
-//! cover the disc of the radius `half` exactly where they should. `Decided:` no more than p: what is drawn is bounded
-//! by the surface at the picture's resolution, however many triangles lie below.
+//! The first p surfels are drawn as [squares](super::parts::Gathered::squares) of the half side
+//! `half`. `Decided:` squares, because two triangles cover the disc of the radius `half` exactly
+//! where they should. `Decided:` no more than p, so that the number of squares is bounded by the
+//! surface at the picture's resolution, however many triangles lie below.
 //!
-//! Where the triangles cover no pixel's centre a node has no surfels, and what is above it draws what is below it.
+//! If the triangles cover no pixel's centre, the node has no surfels, and the nodes above draw what
+//! is below it.
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;
@@ -60,25 +71,25 @@ use crate::source::candidates::{self, Directions, candidates};
 use crate::source::sampler::{Greedy, Order, Progressive, Schedule, Start, shuffled};
 use glam::Vec3;
 
-/// The paper's bound of surfels.
+/// The paper's bound on the number of surfels.
 pub const MOST: u32 = 200_000;
-/// The fewest triangles of a node that has surfels.
+/// A node with fewer triangles has no surfels.
 pub const LEAST: u64 = 1000;
 /// The least side of a picture.
 const LEAST_SIDE: u32 = 16;
 /// The fewest candidates for each surfel.
 const CANDIDATES: u64 = 4;
 
-/// What the surfels of a node are chosen of.
+/// The input from which the surfels of a node are chosen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Traversal {
-    /// Of all triangles.
+    /// All triangles.
     TopDown,
-    /// Of the surfels of what is below, where it has some.
+    /// The surfels of the nodes below, where they have some.
     BottomUp,
 }
 
-/// What puts candidates in order.
+/// The sampler that orders candidates.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Sampler {
     /// [`Greedy`].
@@ -89,22 +100,22 @@ pub enum Sampler {
     Random,
 }
 
-/// What is computed.
+/// Settings of an approximation.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// The most surfels of a node, at least 1.
     pub most: u32,
     /// The side of the pictures of a node of [`MOST`] surfels, in pixels.
     pub side: u32,
-    /// From where nodes are seen.
+    /// The directions from which nodes are seen.
     pub directions: Directions,
-    /// What puts candidates in order.
+    /// The sampler that orders candidates.
     pub sampler: Sampler,
-    /// What chance is.
+    /// Random seed.
     pub seed: u64,
-    /// What is drawn.
+    /// The input of each node.
     pub traversal: Traversal,
-    /// Further properties of the vertices that surfels have, by their names.
+    /// The names of further properties that surfels take from the vertices.
     pub properties: Vec<String>,
 }
 
@@ -123,13 +134,13 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// How many surfels a node of so many triangles has, at most.
+    /// The most surfels of a node with this number of triangles.
     #[must_use]
     pub fn count(&self, triangles: u64) -> u32 {
         if triangles < LEAST { 0 } else { (triangles / 2).min(u64::from(self.most)) as u32 }
     }
 
-    /// The side of the first pictures of a node of so many surfels.
+    /// The side of the first pictures of a node with this number of surfels.
     #[must_use]
     pub fn side_of(&self, count: u32) -> u32 {
         let part = (f64::from(count) / f64::from(MOST)).sqrt();
@@ -138,7 +149,7 @@ impl Settings {
     }
 }
 
-/// The side of a pixel of pictures with this side of what is in a box.
+/// The side of a pixel in world units, for pictures with this side of a box.
 #[must_use]
 pub fn pixel(side: u32, (low, high): (Vec3, Vec3)) -> f64 {
     let half = (high.as_dvec3() - low.as_dvec3()).length() / 2.0;
@@ -146,20 +157,21 @@ pub fn pixel(side: u32, (low, high): (Vec3, Vec3)) -> f64 {
     2.0 * radius / f64::from(side)
 }
 
-/// How many surfels of a child are drawn, and the half side of their squares, in a picture with pixels of this side in the
-/// coordinates of the child.
+/// How many surfels of a child are drawn, and the half side of their squares; `pixel` is the side
+/// of a pixel in the coordinates of the child.
 #[must_use]
 pub fn drawn(estimate: Estimate, count: u32, pixel: f64) -> (u32, f64) {
     let (p_m, r_m) = (f64::from(estimate.count), f64::from(estimate.distance));
     let q = r_m / pixel;
     let covering = (p_m * (q * q)).ceil();
     let all = r_m * (p_m / f64::from(count)).sqrt();
-    // Numbers out of range become the nearest u32.
+    // The cast takes numbers out of range to the nearest u32.
     ((covering as u32).min(count).max(1), if all > pixel { all } else { pixel })
 }
 
-/// The surfels of a node: positions, normals, colours, and opacities and properties if vertices have some, in their order; none if no triangle covers a pixel's centre.
-/// `drawn` gives the triangles that pictures of a side show.
+/// The surfels of a node, in their order: positions, normals, colours, and opacities and properties
+/// if vertices have them. None if no triangle covers a pixel's centre. `drawn` gives the triangles
+/// for pictures of a side.
 ///
 /// # Errors
 /// As `drawn`; [`Error::Invalid`] as [`candidates()`].
@@ -186,7 +198,7 @@ pub fn approximate(
     Ok(cloud.some(&order.index))
 }
 
-/// The candidates of triangles, if there are some.
+/// The candidates of these triangles; empty if no pixel sees any.
 fn seen(
     triangles: Triangles,
     side: u32,
@@ -206,7 +218,7 @@ fn seen(
     }
 }
 
-/// How the error of [`candidates()`] begins where there are none.
+/// The beginning of the error of [`candidates()`] if there are none.
 const UNSEEN: &str = "no triangle covers the centre of a pixel";
 
 impl Settings {

@@ -1,33 +1,33 @@
-//! What is wrong with a mesh: counted and told, not repaired.
+//! Count the flaws of a mesh. They are reported, not repaired.
 //!
-//! Corners are compared by their places: of two vertices at one place (-0 = +0) neither is another. Of triangles of
-//! checked vertices, without those that were dropped before:
+//! Corners are compared by place: two vertices at one place (-0 = +0) count as one. The counts are
+//! over triangles of checked vertices, without the triangles that were dropped before:
 //!
 //! - *degenerate*: two corners at one place, or all three on a line: each component of (b - a) x (c - a) is 0 in f64.
-//! - *duplicate*: the three places, in any order, are those of a triangle before it.
-//! - *edges of many*: edges, as pairs of different places, of more than two triangles that are not degenerate. A
-//!   mesh with such edges is no manifold.
+//! - *duplicate*: the three places, in any order, are the places of an earlier triangle.
+//! - *edges of many*: edges that belong to more than two triangles that are not degenerate. An edge
+//!   is a pair of different places. A mesh with such edges is no manifold.
 //!
 //! A triangle may be both degenerate and a duplicate.
 
 use crate::scene::Triangles;
 use glam::Vec3;
 
-/// How many of each kind.
+/// How many flaws of each kind there are.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Flaws {
-    /// Triangles that are left out, because a corner or its normal or its colour is none.
+    /// Triangles that are left out, because a corner, its normal or its colour is invalid.
     pub dropped: u64,
     /// Triangles without an area.
     pub degenerate: u64,
-    /// Triangles that are there already.
+    /// Triangles that repeat an earlier one.
     pub duplicate: u64,
     /// Edges of more than two triangles.
     pub edges_of_many: u64,
 }
 
 impl Flaws {
-    /// Those of some triangles, of which so many were dropped.
+    /// Counts the flaws of these triangles; `dropped` were dropped before.
     #[must_use]
     pub fn of(triangles: &Triangles, dropped: u64) -> Self {
         let position = &triangles.vertices().position;
@@ -53,7 +53,7 @@ impl Flaws {
         flaws
     }
 
-    /// Both.
+    /// The sum of both counts.
     #[must_use]
     pub fn and(self, other: Self) -> Self {
         Self {
@@ -65,7 +65,7 @@ impl Flaws {
     }
 }
 
-/// For each vertex the first one at its place, by the order of places.
+/// For each vertex, the first vertex at its place.
 fn places(position: &[Vec3]) -> Vec<u32> {
     let key = |i: u32| (position[i as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
     let mut order: Vec<u32> = (0..position.len() as u32).collect();

@@ -1,9 +1,11 @@
-//! Hierarchies of surfel approximations \[BJFM19, 3.4\]: a whole scene, coarser from level to level.
+//! Approximate a whole scene by surfels, coarser from level to level \[BJFM19, 3.4\].
 //!
-//! - [`mod@approximate`]: the surfels of a node.
-//! - [`mod@octree`]: the tree, where "no such structure is available".
-//! - [`flaws`]: what is wrong with a mesh.
-//! - [`parts`]: the triangles of the nodes.
+//! [`crate::io::hierarchy`] stores such a hierarchy in a folder.
+//!
+//! - [`mod@approximate`]: choose the surfels of a node.
+//! - [`mod@octree`]: build the tree, because "no such structure is available".
+//! - [`parts`]: divide triangles among the nodes.
+//! - [`flaws`]: count flaws of a mesh.
 
 pub mod approximate;
 pub mod flaws;
@@ -15,6 +17,6 @@ pub use flaws::Flaws;
 pub use octree::{Octree, octree};
 pub use parts::{Numbers, Part};
 
-/// Triangles of a node that is divided no further. The paper's example is "each subtree that consists of more than 10k
-/// triangles".
+/// A node with at most so many triangles is not divided. The paper's example is "each subtree that
+/// consists of more than 10k triangles".
 pub const BOUND: u64 = 10_000;

@@ -1,7 +1,9 @@
-//! The loose octree of \[Ulrich 2000\] over boxes: triangles of a geometry, or objects of a scene.
+//! Build a tree over boxes, such as triangles of a geometry or objects of a scene: the loose octree
+//! of \[Ulrich 2000\].
 //!
-//! Cells are cubes, and the *loose* box of a cell is the cube of twice its side around the same middle. All in f64, of
-//! items with the box from a to b, whose components are finite `f32`:
+//! Cells are cubes. The *loose* box of a cell is the cube of twice its side around the same middle.
+//! All is computed in f64, from items whose box goes from a to b, with components that are finite
+//! `f32`:
 //!
 //! ```text
 //!   low, high  the corners of the box around all items
@@ -12,25 +14,30 @@
 //!   cell       of an item at a depth d: floor(grid / 2^(20 - d))
 //! ```
 //!
-//! The one cell of depth 0 has the side S and begins at low. An item whose half extent e is no greater than half the
-//! side of a cell that holds its middle lies in the loose box of that cell: so *depth* is that of the deepest
-//! cell whose loose box is sure to hold it. (Middles are rounded: by 2^-52 of a coordinate an item may stick out.)
+//! The one cell of depth 0 has the side S and begins at low. An item whose half extent e is no
+//! greater than half the side of a cell that holds its middle lies in the loose box of that cell.
+//! Therefore *depth* is the depth of the deepest cell whose loose box is sure to hold the item.
+//! (Middles are rounded: an item may stick out by 2^-52 of a coordinate.)
 //!
-//! **Nodes.** The root is the cell of depth 0 with all items. Of a node with the depth d and more than one item,
-//! whose weights are more than `bound` together, each item whose own depth is greater than d goes to the child of its
-//! cell of depth d + 1; the others stay. Children without items are left out; the others are in the order of
-//! x + 2 y + 4 z, the lowest bits of their cells. A node that keeps no item and has one child is that child.
+//! **Nodes.** The root is the cell of depth 0 with all items. A node of depth d is divided if it
+//! has more than one item and their weights are more than `bound` together. Each item whose own
+//! depth is greater than d goes to the child of its cell of depth d + 1; the others stay. Children
+//! without items are left out. The others are in the order of x + 2 y + 4 z, the lowest bits of
+//! their cells. A node that keeps no item and has one child is replaced by that child.
 //!
-//! So an item is in one node; what stays in a node that has children is too large for them; and a node without children
-//! has no more than `bound`, or one item, or items that all have depths up to its own.
+//! So an item is in one node. The items that stay in a node with children are too large for the
+//! children. A node without children has no more than `bound`, or one item, or items that all have
+//! depths up to its own.
 //!
-//! **Numbers.** The root is node 0, and nodes are numbered by levels: the children of node 0, the children of its first child,
-//! of its second, ... Children of a node are neighbours, and have greater numbers than the node.
-//! The items of a node are in ascending order. A node without children has an empty range of them, which begins where
-//! they would: at 1 plus the number of children of all nodes before it. Boxes of nodes have 0 in the place of -0.
+//! **Numbers.** The root is node 0, and nodes are numbered by levels: the children of node 0, the
+//! children of its first child, of its second, ... Children of a node are neighbours, and have
+//! greater numbers than the node. The items of a node are in ascending order. A node without
+//! children has an empty range of them, which begins where they would: at 1 plus the number of
+//! children of all nodes before it. Boxes of nodes have 0 in place of -0.
 //!
-//! `Decided:` 20 levels. Cells of the last are a millionth of the scene wide; what falls together there stays together.
-//! `Decided:` a chain of nodes with one child each is one node: they stand for the same items.
+//! `Decided:` 20 levels. Cells of the last level are a millionth of the scene wide; items that fall
+//! into one such cell stay together. `Decided:` a chain of nodes with one child each is one node,
+//! because they stand for the same items.
 
 use glam::{DVec3, Vec3};
 use std::collections::VecDeque;
@@ -41,14 +48,14 @@ const DEPTH: u32 = 20;
 /// The parent of the root.
 pub const NO_NODE: u32 = u32::MAX;
 
-/// What a node is made for.
+/// An object to put into the tree, such as a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Item {
     /// The corner of its box with the least coordinates, finite.
     pub low: Vec3,
-    /// The other corner, finite, nowhere below `low`.
+    /// The other corner, finite, nowhere less than `low`.
     pub high: Vec3,
-    /// Its triangles.
+    /// How many triangles it counts for.
     pub weight: u64,
 }
 
@@ -63,7 +70,7 @@ pub struct Branch {
     pub own: Range<u32>,
     /// The depth of its cell.
     pub depth: u32,
-    /// The corners of the box around all items here and below.
+    /// The corner with the least coordinates of the box around all items here and below.
     pub low: Vec3,
     /// The other corner.
     pub high: Vec3,
@@ -76,19 +83,19 @@ pub struct Branch {
 /// Items in nodes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Octree {
-    /// By their numbers; none if there are no items.
+    /// The nodes by their numbers; empty if there are no items.
     pub nodes: Vec<Branch>,
     /// The items of node 0, of node 1, ...
     pub order: Vec<u32>,
 }
 
-/// Where an item may go.
+/// The cell of an item, and the greatest depth at which it may lie.
 struct Place {
     grid: [u32; 3],
     depth: u32,
 }
 
-/// A node that waits for its division.
+/// A node that is not divided yet.
 struct Waiting {
     items: Vec<u32>,
     depth: u32,
@@ -98,7 +105,7 @@ struct Waiting {
 /// The tree over items, see the [module](self).
 ///
 /// # Panics
-/// If there are 2^32 or more.
+/// If there are 2^32 items or more.
 #[must_use]
 pub fn octree(items: &[Item], bound: u64) -> Octree {
     assert!(u32::try_from(items.len()).is_ok(), "{} items", items.len());
@@ -113,6 +120,7 @@ pub fn octree(items: &[Item], bound: u64) -> Octree {
         let number = tree.nodes.len() as u32;
         let (own, parts) = loop {
             let (own, mut parts) = divide(here, depth, items, &places, bound);
+            // A chain of nodes with one child each becomes one node.
             match parts.as_mut_slice() {
                 [one] if own.is_empty() => {
                     here = std::mem::take(one);
@@ -136,7 +144,7 @@ pub fn octree(items: &[Item], bound: u64) -> Octree {
 }
 
 impl Octree {
-    /// Boxes, weights and counts, from the leaves up.
+    /// Computes boxes, weights and counts, from the leaves up.
     fn sum(&mut self, items: &[Item]) {
         for number in (0..self.nodes.len()).rev() {
             let node = &mut self.nodes[number];
@@ -167,7 +175,7 @@ impl Branch {
     }
 }
 
-/// The box around two boxes, with 0 in the place of -0.
+/// The box around two boxes, with 0 in place of -0.
 #[must_use]
 pub fn around(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> (Vec3, Vec3) {
     let least = |i: usize| if b.0[i] < a.0[i] { b.0[i] } else { a.0[i] } + 0.0;
@@ -175,7 +183,7 @@ pub fn around(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> (Vec3, Vec3) {
     (Vec3::new(least(0), least(1), least(2)), Vec3::new(most(0), most(1), most(2)))
 }
 
-/// What stays in a node, and what its children get.
+/// Divides items into the items that stay in a node, and the items of each child.
 fn divide(
     here: Vec<u32>,
     depth: u32,
@@ -184,6 +192,7 @@ fn divide(
     bound: u64,
 ) -> (Vec<u32>, Vec<Vec<u32>>) {
     let weight: u64 = here.iter().map(|&item| items[item as usize].weight).sum();
+    // A single item cannot be divided, whatever its weight.
     if weight <= bound || here.len() == 1 {
         return (here, Vec::new());
     }
@@ -212,7 +221,7 @@ fn places(items: &[Item]) -> Vec<Place> {
         let from: DVec3 = (a + b) / 2.0 - low;
         let cell = |axis: usize| {
             let at = from[axis] / (side / f64::from(cells));
-            // Numbers below 0 become 0.
+            // The cast turns numbers below 0 into 0.
             (at.floor() as u32).min(cells - 1)
         };
         let half = ((b - a) / 2.0).max_element();
@@ -226,7 +235,7 @@ fn places(items: &[Item]) -> Vec<Place> {
     items.iter().map(place).collect()
 }
 
-/// The least power of two that is no less than this; 1 for 0.
+/// The least power of two that is no less than `extent`; 1 for 0.
 fn power_of_two(extent: f64) -> f64 {
     let mut side = 1.0;
     while side < extent {

@@ -1,4 +1,4 @@
-//! The triangles of a geometry, divided among the nodes of its tree, and put together again.
+//! Divide the triangles of a geometry among the nodes of its tree, and put them together again.
 
 use super::octree::{Item, Octree, octree};
 use crate::error::Result;
@@ -6,17 +6,18 @@ use crate::memory;
 use crate::scene::{Cloud, Property, Similarity, Triangles, Vertices};
 use glam::Vec3;
 
-/// What vertices and surfels have beside normals and colours.
+/// The numbers that vertices and surfels have beside normals and colours.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Numbers {
-    /// Whether some have opacities; then all surfels have, and vertices without have 1.
+    /// Whether any vertex has an opacity. Then all surfels have one, and vertices without one
+    /// have 1.
     pub opacity: bool,
-    /// The names of further properties, which all have.
+    /// The names of further properties, which all vertices have.
     pub properties: Vec<String>,
 }
 
 impl Numbers {
-    /// Arrays for the properties.
+    /// Empty arrays for the properties.
     #[must_use]
     pub fn of_none(&self) -> Vec<Property> {
         let empty = |name: &String| Property { name: name.clone(), values: Vec::new() };
@@ -33,7 +34,7 @@ pub struct Part {
     pub normal: Vec<Vec3>,
     /// Linear RGB, if the geometry has colours.
     pub color: Option<Vec<Vec3>>,
-    /// Opacities, if the geometry has some.
+    /// Opacities, if the geometry has them.
     pub opacity: Option<Vec<f32>>,
     /// Further properties.
     pub properties: Vec<Property>,
@@ -41,11 +42,12 @@ pub struct Part {
     pub triangles: Vec<[u32; 3]>,
 }
 
-/// Bytes of a triangle while a tree is made: its box and its place, its number in two levels, and what becomes of its
-/// corners.
+/// Bytes of a triangle while a tree is made: its box and its place, its number in two levels, and
+/// its sorted corners.
 const OF_A_TRIANGLE: u64 = 160;
 
-/// The tree over the triangles of a geometry: items are triangles of weight 1, by their boxes.
+/// The tree over the triangles of a geometry; each triangle is an item of weight 1, with its own
+/// box.
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] if the process may not hold it.
@@ -62,10 +64,10 @@ pub fn tree(triangles: &Triangles, bound: u64) -> Result<Octree> {
 }
 
 impl Part {
-    /// The vertices of some triangles, ascending.
+    /// The vertices of these triangles, in ascending order.
     ///
     /// # Panics
-    /// If there is no triangle of a number.
+    /// If a triangle does not exist.
     #[must_use]
     pub fn vertices_of(triangles: &Triangles, some: &[u32]) -> Vec<u32> {
         let corners = some.iter().map(|&i| triangles.corners()[i as usize]);
@@ -75,10 +77,10 @@ impl Part {
         used
     }
 
-    /// Those of some triangles in ascending order; vertices are in the order that they had.
+    /// The part with these triangles, in ascending order; vertices keep their order.
     ///
     /// # Panics
-    /// If there is no triangle of a number.
+    /// If a triangle does not exist.
     #[must_use]
     pub fn of(triangles: &Triangles, some: &[u32]) -> Self {
         let corners = some.iter().map(|&i| triangles.corners()[i as usize]);
@@ -102,7 +104,7 @@ fn at<T: Copy>(values: &[T], indices: &[u32]) -> Vec<T> {
     indices.iter().map(|&i| values[i as usize]).collect()
 }
 
-/// Triangles from several places, all with colours and with the same numbers.
+/// Triangles gathered from several places; all have colours and the same numbers.
 #[derive(Debug)]
 pub struct Gathered {
     vertices: Vertices,
@@ -115,7 +117,7 @@ const OF_A_NUMBER: u64 = 2 * 4;
 const OF_CORNERS: u64 = 2 * 12;
 
 impl Gathered {
-    /// None yet, for vertices with these numbers.
+    /// No triangles yet; vertices will have these numbers.
     #[must_use]
     pub fn new(numbers: &Numbers) -> Self {
         let vertices = Vertices {
@@ -127,7 +129,8 @@ impl Gathered {
         Self { vertices, corners: Vec::new() }
     }
 
-    /// Adds those of a part in a place, in one colour if one is given; `fill` is that of parts without, and 1 the opacity.
+    /// Adds the triangles of a part in a place. `color` replaces all colours if it is given, `fill`
+    /// is the colour of parts without colours, and 1 the opacity of parts without opacities.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] if the process may not hold them.
@@ -155,9 +158,10 @@ impl Gathered {
         self.add(vertices, &part.triangles)
     }
 
-    /// Adds surfels as squares with the numbers of the first points of a cloud: of the half axes u and v ([`crate::scene::cloud::half_axes`]) of a disc of the radius
-    /// `half`, the corners are ((p - u) - v), ((p + u) - v), ((p + u) + v), ((p - u) + v) in `f32`, and the triangles
-    /// 0 1 2 and 0 2 3 of them.
+    /// Adds surfels as squares; `numbers` has the opacity and properties of each surfel. For the
+    /// half axes u and v ([`crate::scene::cloud::half_axes`]) of a disc of the radius `half`, the
+    /// corners are ((p - u) - v), ((p + u) - v), ((p + u) + v), ((p - u) + v) in `f32`. The
+    /// triangles are 0 1 2 and 0 2 3 of these corners.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] if the process may not hold them.
@@ -194,7 +198,7 @@ impl Gathered {
         memory::ask(n * (OF_A_VERTEX + numbers * OF_A_NUMBER) + more * OF_CORNERS, || {
             format!("{} triangles of a subtree", more + self.corners.len() as u64)
         })?;
-        // What does not fit is refused in the end, by the count of the vertices.
+        // An overflow is refused in the end, where the vertices are counted.
         let first = self.vertices.position.len() as u32;
         let moved = corners.iter().map(|corners| corners.map(|i| first.wrapping_add(i)));
         self.corners.extend(moved);
@@ -211,7 +215,7 @@ impl Gathered {
         Ok(())
     }
 
-    /// All of them. What a place took out of the range of `f32` is left out.
+    /// All gathered triangles, except those that a place moved out of the range of `f32`.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] as [`Triangles::new`].

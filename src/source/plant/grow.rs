@@ -1,4 +1,4 @@
-//! How the tree grows.
+//! Grow the tree.
 
 use super::Plant;
 use super::mesh::{Blade, Joint, Mesh};
@@ -9,46 +9,46 @@ use std::f64::consts::TAU;
 
 /// Radius of the trunk above its foot.
 const TRUNK: f64 = 0.095;
-/// How much wider than that the foot is, and up to which part of the trunk.
+/// How much wider the foot is than the trunk, and the fraction of the trunk where it ends.
 const FOOT: (f64, f64) = (0.7, 0.3);
 /// Sides of the trunk, and segments along it: 2 * 12 * 10 = 240 triangles.
 const TRUNK_RINGS: (u32, usize) = (12, 10);
 /// Sides of every other branch \[MKC08: "usually three"\].
 const SIDES: u32 = 3;
-/// The radius of a branch grows with its leaves to this power: a little less than the square root,
-/// with which cross-sections would add up, as bark adds to thin twigs.
+/// The radius of a branch grows with its leaves to this power. It is a little less than the square
+/// root, with which cross-sections would add up, because bark makes thin twigs thicker.
 const PIPE: f64 = 0.45;
-/// The radius at the tip of a twig, of that at its base.
+/// The radius at the tip of a twig, as a fraction of the radius at its base.
 const TWIG_TIP: f64 = 0.4;
 /// A branch with at most this many leaves is a twig, and bears them itself.
 const TWIG: usize = 16;
-/// How many leaves a twig has on the average, where the order does not limit the number of
-/// branches.
+/// The average number of leaves on a twig, where the order does not limit the number of branches.
 const LEAVES_OF_A_TWIG: usize = 9;
-/// From where the crown spreads.
+/// The point from which the crown spreads.
 const HEART: DVec3 = DVec3::new(0.0, 1.5, 0.0);
-/// The length of a leaf is this over the square root of the number of leaves, so that their area
-/// stays, but at most [`LONGEST_LEAF`].
+/// The length of a leaf is this divided by the square root of the number of leaves, so that their
+/// total area is constant. It is at most [`LONGEST_LEAF`].
 const LEAF: f64 = 13.0;
 const LONGEST_LEAF: f64 = 0.3;
-/// The golden section of a turn, by which one leaf or branch follows another.
+/// The golden section of a turn, the angle between a leaf or branch and the next.
 const GOLDEN_TURN: f64 = 0.381_966_011_250_105_1;
 
-/// What branches of one order have in common.
+/// Properties that all branches of one order share.
 struct Order {
-    /// How many branches it has at most, and from which part of its length on.
+    /// The most branches that it has, and the fraction of its length where they begin.
     children: usize,
     bare: f64,
-    /// The angle from its direction to that of its first branch and of its last, which leads on, in
+    /// The angles from its direction to its first branch and to its last, which continues it, in
     /// radians.
     angle: [f64; 2],
-    /// The length of its first branch and of its last, of its own.
+    /// The lengths of its first branch and of its last, as fractions of its own.
     reach: [f64; 2],
-    /// What is added to the direction from root to tip: random, upwards, and away from the heart.
+    /// What bends the direction from root to tip: a random part, an upward part, and a part away
+    /// from the heart.
     wander: f64,
     rise: f64,
     spread: f64,
-    /// Segments of the axis.
+    /// The number of segments of the axis.
     segments: usize,
 }
 
@@ -96,25 +96,25 @@ const ORDERS: [Order; 4] = [
     },
 ];
 
-/// Random numbers of one branch, one after the other.
+/// Random numbers of one branch, one after another.
 struct Dice {
     seed: u64,
     next: u64,
 }
 
 impl Dice {
-    /// In [low, high).
+    /// A random number in [low, high).
     fn between(&mut self, low: f64, high: f64) -> f64 {
         self.next += 1;
         low + (high - low) * f64::from(random::unit(self.seed, self.next))
     }
 
-    /// In the cube [-1, 1)^3.
+    /// A random vector in the cube [-1, 1)^3.
     fn vector(&mut self) -> DVec3 {
         DVec3::from_array([(); 3].map(|()| self.between(-1.0, 1.0)))
     }
 
-    /// The dice of another branch.
+    /// The random numbers of another branch.
     fn branch(&mut self) -> Self {
         self.next += 1;
         Self { seed: random::bits(self.seed, self.next), next: 0 }
@@ -138,7 +138,7 @@ struct Tree {
     all_leaves: usize,
 }
 
-/// A tree with so many leaves, at least one.
+/// Grows a tree with `leaves` leaves, at least one.
 pub(super) fn grow(leaves: usize, seed: u64) -> Result<Plant> {
     let mut tree = Tree {
         leaves: Mesh::default(),
@@ -162,7 +162,7 @@ pub(super) fn grow(leaves: usize, seed: u64) -> Result<Plant> {
 }
 
 impl Tree {
-    /// A branch with all that it bears.
+    /// Grows a branch with everything on it.
     fn branch(&mut self, mut bud: Bud) {
         let is_trunk = bud.order == 0;
         let order = &ORDERS[bud.order.min(ORDERS.len() - 1)];
@@ -171,7 +171,8 @@ impl Tree {
             let leaves = bud.leaves;
             let joints = axis(&mut bud, order, leaves, |s| base * (1.0 + (TWIG_TIP - 1.0) * s));
             self.bark.branch(&joints, SIDES, bark(base, &mut bud.dice));
-            // One leaf a joint but the first, where the twig starts inside another branch.
+            // One leaf on each joint except the first, because there the twig is inside another
+            // branch.
             for (i, joint) in joints[1..].iter().enumerate() {
                 self.leaf(joint, i, &mut bud.dice);
             }
@@ -199,12 +200,13 @@ impl Tree {
         }
     }
 
-    /// The radius of a branch that bears so many leaves.
+    /// The radius of a branch with this number of leaves.
     fn radius(&self, leaves: usize) -> f64 {
         TRUNK * elementary::pow(leaves as f64 / self.all_leaves as f64, PIPE)
     }
 
-    /// Leaf `i` of a twig: away from it and a little down, its upper side to the light.
+    /// Adds leaf `i` of a twig: it points away from the twig and a little down, with its upper side
+    /// to the light.
     fn leaf(&mut self, joint: &Joint, i: usize, dice: &mut Dice) {
         let turn = i as f64 * GOLDEN_TURN + dice.between(-0.1, 0.1);
         let radial = joint.radial(turn * TAU);
@@ -227,7 +229,8 @@ impl Tree {
     }
 }
 
-/// How many leaves each branch of a bud gets: by the squares of their lengths, the sums rounded.
+/// How many leaves each branch of a bud gets, by the squares of their lengths; the running sums are
+/// rounded.
 fn shares(bud: &Bud, order: &Order) -> Vec<usize> {
     let wanted = bud.leaves.div_ceil(LEAVES_OF_A_TWIG);
     let count = if wanted > order.children { order.children } else { wanted };
@@ -248,12 +251,12 @@ fn shares(bud: &Bud, order: &Order) -> Vec<usize> {
     .collect()
 }
 
-/// From the first value to the last, for branch `i` of `count`.
+/// Interpolates from the first value to the last, for branch `i` of `count`.
 fn along([first, last]: [f64; 2], i: usize, count: usize) -> f64 {
     first + (last - first) * ((i + 1) as f64 / count as f64)
 }
 
-/// The axis of a branch in equal steps; its radius is a function of the part of its length.
+/// The axis of a branch in equal steps; `radius` gets the fraction of the length.
 fn axis(bud: &mut Bud, order: &Order, segments: usize, radius: impl Fn(f64) -> f64) -> Vec<Joint> {
     let step = 1.0 / segments as f64;
     let mut joint = Joint {
@@ -276,7 +279,7 @@ fn axis(bud: &mut Bud, order: &Order, segments: usize, radius: impl Fn(f64) -> f
     joints
 }
 
-/// Branch `i` of `count`, with its start on the axis of the bud that bears it.
+/// The bud of branch `i` of `count`, which starts on the axis of its parent.
 fn child(
     bud: &mut Bud,
     order: &Order,
@@ -300,12 +303,12 @@ fn child(
     }
 }
 
-/// Away from the heart of the crown; null there.
+/// The direction away from the heart of the crown; null at the heart.
 fn outwards(at: DVec3) -> DVec3 {
     (at - HEART).normalize_or_zero()
 }
 
-/// The colour of a branch: thin ones are lighter.
+/// The colour of a branch: thin branches are lighter.
 fn bark(radius: f64, dice: &mut Dice) -> DVec3 {
     let age = (radius / TRUNK).sqrt();
     let color = DVec3::new(0.16, 0.11, 0.06).lerp(DVec3::new(0.09, 0.06, 0.04), age);

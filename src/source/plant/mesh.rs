@@ -1,4 +1,4 @@
-//! Triangles in the making: rings around an axis, and the blades of leaves.
+//! Build triangles: rings around an axis, and the blades of leaves.
 
 use crate::error::Result;
 use crate::number::elementary;
@@ -16,19 +16,19 @@ pub(super) struct Mesh {
 /// A point of the axis of a branch.
 #[derive(Clone, Copy)]
 pub(super) struct Joint {
-    /// Where it is.
+    /// Its position.
     pub(super) at: DVec3,
     /// The direction of the axis, of length 1.
     pub(super) along: DVec3,
-    /// A unit vector across, carried along the branch without turning about it.
+    /// A unit vector across the axis, carried along the branch without rotation around it.
     pub(super) across: DVec3,
     /// The radius of the branch.
     pub(super) radius: f64,
 }
 
 impl Joint {
-    /// The unit vector across the axis at this azimuth in radians, counter-clockwise for one who
-    /// looks from the tip to the root.
+    /// The unit vector across the axis at this azimuth in radians, counter-clockwise as seen from
+    /// the tip towards the root.
     pub(super) fn radial(&self, azimuth: f64) -> DVec3 {
         let third = self.along.cross(self.across);
         self.across * elementary::cos(azimuth) + third * elementary::sin(azimuth)
@@ -37,13 +37,13 @@ impl Joint {
 
 /// The blade of a leaf.
 pub(super) struct Blade {
-    /// Where it is attached.
+    /// The point where it is attached.
     pub(super) base: DVec3,
     /// From the base to the tip, of length 1.
     pub(super) along: DVec3,
     /// The normal at the base, of length 1 and perpendicular to `along`.
     pub(super) normal: DVec3,
-    /// From the base to the tip before the blade is bent.
+    /// The distance from the base to the tip before the blade is bent.
     pub(super) length: f64,
     /// How far the tip hangs from the plane of the base, in lengths.
     pub(super) bend: f64,
@@ -51,8 +51,8 @@ pub(super) struct Blade {
 
 /// Half the greatest width of a leaf, in its lengths.
 const HALF_WIDTH: f64 = 0.28;
-/// The two pairs of a blade: how far from the base, in lengths, and how wide, of the greatest
-/// width.
+/// The two pairs of a blade: their distance from the base, in lengths, and their width, as a
+/// fraction of the greatest width.
 const PAIRS: [(f64, f64); 2] = [(0.3, 1.0), (0.7, 0.75)];
 
 impl Mesh {
@@ -65,8 +65,8 @@ impl Mesh {
         index
     }
 
-    /// A ring of `sides` vertices around each joint, and between rings two triangles a side; both
-    /// ends are open.
+    /// Adds a ring of `sides` vertices around each joint, and two triangles a side between rings.
+    /// Both ends are open.
     pub(super) fn branch(&mut self, joints: &[Joint], sides: u32, color: DVec3) {
         let first = self.vertices.position.len() as u32;
         for joint in joints {
@@ -86,7 +86,7 @@ impl Mesh {
         }
     }
 
-    /// Six vertices and four triangles: the base, two pairs, and the tip.
+    /// Adds six vertices and four triangles: the base, two pairs, and the tip.
     ///
     /// The middle line is base + length (t along - bend t^2 normal) for t in [0, 1]; the normal at
     /// t is perpendicular to it.

@@ -1,10 +1,10 @@
-//! A tree: leaves and bark as triangles, and as the ribbons and tubes that stand for them.
+//! Grow a tree of triangles, and convert leaves to ribbons and branches to tubes.
 //!
 //! \[MKC08, section 4.3\] converts a published model of an apple tree, 200,496 triangles of leaves
-//! and 351,184 of bark, to ribbons and tubes. [`apple_tree`] grows one of the same structure and,
-//! by default, the same size; [`ribbons`] and [`tubes`] convert any mesh of that structure.
+//! and 351,184 of bark, to ribbons and tubes. [`apple_tree`] grows a tree of the same structure
+//! and, by default, the same size. [`ribbons`] and [`tubes`] convert any mesh of that structure.
 //!
-//! | | \[MKC08\] | here |
+//! | count | \[MKC08\] | here |
 //! |---|---|---|
 //! | leaves, of 4 triangles | 50,124 | 50,124 |
 //! | triangles of the bark | 351,184 | 353,088 |
@@ -35,9 +35,9 @@ use glam::{DVec3, Vec3};
 pub use ribbons::ribbons;
 pub use tubes::tubes;
 
-/// How many leaves the tree of \[MKC08\] has.
+/// The number of leaves of the tree in \[MKC08\], and the default.
 pub const LEAVES: usize = 50_124;
-/// The largest number of leaves that a tree can be asked for: 2^20.
+/// The largest number of leaves that you can ask for: 2^20.
 pub const MAX_LEAVES: usize = 1 << 20;
 
 /// Triangles that are not converted to lines, as corners in the vertices of their mesh.
@@ -50,18 +50,18 @@ pub struct Plant {
     pub leaves: Triangles,
     /// Branches: rows of rings of three vertices, with radial normals.
     pub bark: Triangles,
-    /// The trunk, too thick for a tube.
+    /// The trunk, which is too thick for a tube.
     pub trunk: Triangles,
 }
 
 /// An apple tree about 3 world units high, +y up, its foot around the origin in the plane y = 0.
 ///
-/// It has exactly `leaves` leaves. Each branch divides them among its own branches by the squares
-/// of their lengths, until at most sixteen are left for a twig, which bears them, one a segment.
-/// The radius of a branch grows with the number of its leaves to the power 0.45, and tapers to that
-/// of its last branch, which leads on. Every branch starts on the axis of the one that bears it,
-/// with a ring of its own. A tree with fewer leaves has fewer orders of branches, and larger
-/// leaves.
+/// It has exactly `leaves` leaves. Each branch divides its leaves among its own branches, by the
+/// squares of their lengths. A branch with at most sixteen leaves is a twig, and bears them itself,
+/// one on each segment. The radius of a branch grows with the number of its leaves to the power
+/// 0.45, and tapers to the radius of its last branch, which continues it. Every branch starts on
+/// the axis of its parent, with a ring of its own. A tree with fewer leaves has fewer orders of
+/// branches, and larger leaves.
 ///
 /// The seed decides everything else; a tree is a function of the two arguments, bit for bit.
 ///
@@ -77,11 +77,12 @@ pub fn apple_tree(leaves: usize, seed: u64) -> Result<Plant> {
 }
 
 impl Plant {
-    /// The leaves as ribbons and the bark as tubes; the trunk, and what is neither leaf nor branch,
-    /// stays triangles, in the order trunk, leaves, bark.
+    /// The leaves as ribbons and the bark as tubes. The trunk stays triangles, and so do triangles
+    /// that are neither leaf nor branch, in the order trunk, leaves, bark.
     ///
     /// # Errors
-    /// Those of [`ribbons`] and [`tubes`]; [`Error::Invalid`] if ids of 32 bits do not suffice.
+    /// The errors of [`ribbons`] and [`tubes`]; [`Error::Invalid`] if ids of 32 bits do not
+    /// suffice.
     pub fn lines(&self) -> Result<Primitives> {
         let (ribbons, leaves) = ribbons(&self.leaves)?;
         let (tubes, bark) = tubes(&self.bark)?;
@@ -104,8 +105,8 @@ impl Plant {
     }
 }
 
-/// One mesh of some triangles of several, with the vertices that they use in their order; white
-/// where only others have colours.
+/// Joins some triangles of several meshes into one mesh, with the vertices that they use in their
+/// order. If only some meshes have colours, the others are white.
 fn joined(meshes: [(&Triangles, &[[u32; 3]]); 3]) -> Result<Triangles> {
     let used = || meshes.iter().filter(|(_, corners)| !corners.is_empty());
     let mut color = used().any(|(mesh, _)| mesh.vertices().color.is_some()).then(Vec::new);
@@ -127,7 +128,7 @@ fn joined(meshes: [(&Triangles, &[[u32; 3]]); 3]) -> Result<Triangles> {
                 color.push(from.color.as_ref().map_or(Vec3::ONE, |from| from[i]));
             }
         }
-        // Ids that do not fit are too many vertices, which are refused below.
+        // An id that does not fit means too many vertices, which are refused below.
         let new = |corner: u32| number[corner as usize].unwrap_or_default() as u32;
         all.extend(corners.iter().map(|corners| corners.map(new)));
     }
@@ -146,7 +147,7 @@ fn unit(v: DVec3) -> Option<DVec3> {
     (length >= 1.0 / 1_208_925_819_614_629_174_706_176.0).then(|| v / length)
 }
 
-/// Lines whose vertices are all sound, unless a radius was too large.
+/// Checks lines whose vertices are all valid, unless a radius is too large.
 fn lines(vertices: Vertices, segments: Vec<[u32; 2]>) -> Result<Polylines> {
     match Polylines::new(vertices, segments)? {
         (lines, 0) => Ok(lines),

@@ -1,12 +1,12 @@
-//! Connected parts of a mesh.
+//! Find the connected parts of a mesh.
 
-/// Which vertices are connected; the root of a part is its lowest vertex.
+/// The connected parts of vertices; the root of a part is its lowest vertex.
 pub(super) struct Parts {
     parent: Vec<u32>,
 }
 
 impl Parts {
-    /// Every vertex alone.
+    /// Every vertex is a part of its own.
     pub(super) fn new(n: usize) -> Self {
         Self { parent: (0..n as u32).collect() }
     }
@@ -21,7 +21,7 @@ impl Parts {
         i as u32
     }
 
-    /// Makes one part of two.
+    /// Joins the parts of two vertices.
     pub(super) fn join(&mut self, a: u32, b: u32) {
         let (a, b) = (self.find(a), self.find(b));
         let (low, high) = if a < b { (a, b) } else { (b, a) };

@@ -1,4 +1,4 @@
-//! Leaves as ribbons.
+//! Convert leaves to ribbons.
 
 use super::parts::Parts;
 use super::{Rest, lines, mean, unit};
@@ -14,10 +14,11 @@ struct Leaf {
 }
 
 /// Converts leaves of four triangles and six vertices to ribbons of four vertices and three
-/// segments \[MKC08, section 4.3, figure 12a\], and returns the triangles that are of no such leaf.
+/// segments \[MKC08, section 4.3, figure 12a\]. Also returns the triangles that belong to no such
+/// leaf.
 ///
-/// **What a leaf is.** A connected part of the mesh, triangles that share a vertex being connected,
-/// that is a strip from end to end through two pairs:
+/// **What counts as a leaf.** A leaf is a connected part of the mesh that is a strip from end to
+/// end through two pairs. Triangles that share a vertex are connected.
 ///
 /// ```text
 ///             p0 ────── q0
@@ -27,20 +28,20 @@ struct Leaf {
 ///             p1 ────── q1          one that holds both p, and one that holds both q
 /// ```
 ///
-/// Which diagonal the middle has, the sides that triangles face, and the order of vertices and
-/// triangles do not matter. `Decided:` vertices are one if their index is, not if their position
-/// is: leaves that grow from one point stay apart, and seams have to be closed before.
+/// The diagonal of the middle, the sides that triangles face, and the order of vertices and
+/// triangles do not matter. `Decided:` vertices are the same if their index is the same, whatever
+/// their position. So leaves that grow from one point stay apart, and seams must be closed before.
 ///
 /// **The ribbon.** In order end, pair, pair, end, starting with the end of the lower index:
 ///
-/// - An end is a copy of its vertex, but for its radius, which is 0. `Decided:` "a value close to
-///   zero"; with 0 the ribbon ends in a point, as the leaf does.
+/// - An end is a copy of its vertex with the radius 0. `Decided:` "a value close to zero"; with 0
+///   the ribbon ends in a point, as the leaf does.
 /// - A pair a, b becomes one vertex: the position (a + b) / 2, the normal the sum of the two
 ///   divided by its length, the radius |a - b| / 2, the colour the mean of the two, each in f64 and
-///   rounded once. `Decided:` where normals cancel, the sum being shorter than 2^-80, the normal is
-///   +y.
+///   rounded once. `Decided:` if normals cancel, so that the sum is shorter than 2^-80, the normal
+///   is +y.
 ///
-/// Ribbons are in ascending order of the lowest vertex of the leaf.
+/// Ribbons are in ascending order of the lowest vertex of their leaf.
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] if a half width does not fit into `f32`.
@@ -88,7 +89,7 @@ fn push(to: &mut Vertices, from: &Vertices, of: &[u32]) {
 }
 
 impl Leaf {
-    /// The leaf that these connected triangles are.
+    /// Recognizes a leaf in these connected triangles.
     fn new(triangles: &[[u32; 3]]) -> Option<Self> {
         if triangles.len() != 4 || triangles.iter().any(|&[a, b, c]| a == b || b == c || c == a) {
             return None;

@@ -14,7 +14,7 @@ fn mesh(position: Vec<Vec3>, corners: Vec<[u32; 3]>) -> Triangles {
     Triangles::new(vertices, corners).unwrap().0
 }
 
-/// The numbers below `n` in an order that the seed decides.
+/// The numbers below `n`, in an order that depends on the seed.
 fn order(n: usize, seed: u64) -> Vec<usize> {
     let mut order: Vec<usize> = (0..n).collect();
     order.sort_by_key(|&i| random::bits(seed, i as u64));
@@ -48,8 +48,8 @@ fn shuffled(mesh: &Triangles, seed: u64) -> Triangles {
     Triangles::new(vertices, corners.collect()).unwrap().0
 }
 
-/// Each segment as the bits of its vertices, in ascending order; without sides, the end with the
-/// lower bits is the first.
+/// Each segment as the bits of its vertices, in ascending order. Without sides, the end with the
+/// lower bits comes first.
 fn bits(lines: &Polylines, sides: bool) -> Vec<Vec<u32>> {
     let vertices = lines.vertices();
     let bits = |&i: &u32| {
@@ -71,8 +71,8 @@ fn bits(lines: &Polylines, sides: bool) -> Vec<Vec<u32>> {
     all
 }
 
-/// A tube around +z of rings at these heights: no two neighbouring rings are turned alike, so that
-/// diagonals lie everywhere.
+/// A tube around +z with rings at these heights. No two neighbouring rings are turned alike, so
+/// that diagonals have all directions.
 fn tube(sides: u32, radius: f64, heights: &[f64]) -> Triangles {
     let mut position = Vec::new();
     for (k, &z) in heights.iter().enumerate() {
@@ -105,7 +105,7 @@ fn the_tree_has_the_size_of_the_published_one() {
     let lines = tree.lines().unwrap();
     assert_eq!(lines.ribbons.len(), 150_372);
     assert_eq!(lines.ribbons.vertices().position.len(), 200_496);
-    // Six triangles a segment, and one vertex more than segments in every branch.
+    // Six triangles for each segment, and one vertex more than segments in every branch.
     assert_eq!(lines.tubes.len(), 353_088 / 6);
     assert_eq!(lines.tubes.vertices().position.len(), 65_051);
     assert_eq!(lines.triangles.len(), 240, "all the rest is converted");
@@ -154,7 +154,7 @@ fn normals_are_on_the_side_that_triangles_face() {
             least = if cosine < least { cosine } else { least };
         }
     }
-    // A ring of three has normals 60 degrees from its faces, and one that a bend turns some more.
+    // The normals of a ring of three are 60 degrees from its faces; a bend adds some more.
     assert!(least > 0.2, "{least}");
 }
 
@@ -199,7 +199,7 @@ fn a_known_leaf_becomes_its_ribbon() {
     (vertices.direction[1], vertices.direction[2]) = (Vec3::X, Vec3::Y);
     (vertices.direction[3], vertices.direction[4]) = (Vec3::X, -Vec3::X);
     vertices.color = Some((0..6).map(|i| Vec3::splat(i as f32)).collect());
-    // Both diagonals of the middle, and a triangle that is turned over.
+    // Both diagonals of the middle, and a reversed triangle.
     let strips = [
         [[0, 1, 2], [1, 3, 2], [3, 4, 2], [3, 5, 4]],
         [[0, 1, 2], [4, 1, 2], [3, 1, 4], [3, 5, 4]],
@@ -265,7 +265,7 @@ fn a_known_tube_becomes_its_axis() {
             let near = 1.0 / 1_048_576.0;
             assert!(position.iter().all(|p| p.truncate().length() < near));
             assert!(radius.iter().all(|r| (r - 2.0).abs() < near), "{radius:?}");
-            // Which end is the root is open, but all agree.
+            // Either end may be the root, but all directions agree.
             assert!(direction.iter().all(|d| d.distance(Vec3::Z * d.z.signum()) < near));
             assert!(direction.iter().all(|d| d.dot(direction[0]) > 0.0));
             for [a, b] in axis.corners().iter().map(|ends| ends.map(|i| position[i as usize])) {
@@ -273,7 +273,7 @@ fn a_known_tube_becomes_its_axis() {
             }
         }
     }
-    // Four sides without a turn: exactly.
+    // Four sides without a turn give exact results.
     let square = |z: f32| [Vec3::X, Vec3::Y, Vec3::NEG_X, Vec3::NEG_Y].map(|p| p + Vec3::Z * z);
     let corners = tube(4, 1.0, &[0.0, 1.0]).corners().to_vec();
     let (axis, _) = tubes(&mesh([square(0.5), square(3.0)].concat(), corners)).unwrap();

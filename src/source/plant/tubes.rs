@@ -1,4 +1,4 @@
-//! Branches as tubes.
+//! Convert branches to tubes.
 
 use super::parts::Parts;
 use super::{Rest, lines, mean, unit};
@@ -6,46 +6,47 @@ use crate::error::Result;
 use crate::scene::{Polylines, Triangles, Vertices};
 use glam::DVec3;
 
-/// No layer: nothing leads here from an open end.
+/// The layer of vertices that no path reaches from an open end.
 const NOWHERE: u32 = u32::MAX;
 
-/// Converts branches, rows of rings joined by triangles, to tubes with a vertex for each ring
-/// \[MKC08, section 4.3, figure 12b\], and returns the triangles that are not converted.
+/// Converts branches, which are rows of rings joined by triangles, to tubes with one vertex for
+/// each ring \[MKC08, section 4.3, figure 12b\]. Also returns the triangles that are not converted.
 ///
-/// **Which vertices form a ring.** `Decided:` ("we heuristically determined clusters") by
-/// connectivity alone, so that neither the number of vertices in a ring, nor how long triangles are
-/// for their width, nor any order matters. An edge joins two corners of a triangle; two vertices
-/// are one if their index is.
+/// **Which vertices form a ring.** `Decided:` ("we heuristically determined clusters") connectivity
+/// alone decides. Neither the number of vertices in a ring, nor the shape of triangles, nor any
+/// order matters. An edge joins two corners of a triangle. Two vertices are the same if their index
+/// is the same.
 ///
 /// 1. The open ends of a connected part are its boundaries: the connected parts of its edges that
-///    have one triangle. The **root** is the boundary with the longest edge; ties go to the
-///    boundary that holds the lowest edge (by its lower vertex, then the other) of the longest
-///    ones.
+///    have only one triangle. The **root** is the boundary with the longest edge. A tie goes to the
+///    boundary that holds the lowest of the longest edges (by its lower vertex, then the other).
 /// 2. The **layer** of a vertex is the least number of edges to it from a vertex of the root. A
 ///    vertex of a ring has an edge to the ring before, and none to an earlier one, so that rings
 ///    are layers, one after the other.
 /// 3. Connected vertices of one layer are a **cluster**: after a fork there are several in a layer.
 /// 4. A cluster is a ring if it has at least three vertices, each with exactly two neighbours in
-///    it; a vertex that is alone in its cluster, which closes a branch in a point, is one too. A
-///    ring that no edge joins to another is none.
+///    it. A vertex that is alone in its cluster, which closes a branch in a point, is a ring too. A
+///    ring that no edge joins to another does not count.
 ///
-/// A part without a boundary has no root and no rings: it is not converted, nor are closed ends of
-/// more than three sides without a vertex in their middle, nor the few triangles in the crotch of a
-/// fork that is one mesh.
+/// These triangles are not converted:
 ///
-/// **The tubes.** Two rings with an edge between them are joined by a segment, from the layer
-/// nearer to the root. Segments thus run from root to tip, and those of one branch agree. A ring
-/// becomes a vertex, all in f64, and each number rounded once:
+/// - a part without a boundary, because it has no root and no rings;
+/// - closed ends of more than three sides without a vertex in their middle;
+/// - the few triangles in the crotch of a fork that is one mesh.
+///
+/// **The tubes.** Two rings with an edge between them are joined by a segment, which begins at the
+/// layer nearer to the root. So segments run from root to tip, and all segments of a branch agree.
+/// A ring becomes a vertex, all in f64, and each number rounded once:
 ///
 /// - position: the sum of its vertices in ascending index, divided by their number; colour
 ///   likewise;
 /// - radius: the largest distance from a vertex of the ring to that position, after rounding;
 /// - tangent: the sum, divided by its length, of the unit vectors along all segments at this ring
 ///   in ascending order, between positions after rounding. Segments shorter than 2^-80 add nothing.
-///   `Decided:` where they cancel, the sum being shorter than 2^-80, the tangent is +y.
+///   `Decided:` if they cancel, so that the sum is shorter than 2^-80, the tangent is +y.
 ///
-/// Rings are in ascending order of their lowest vertex, segments of their rings, the one
-/// nearer to the root first.
+/// Rings are in ascending order of their lowest vertex. Segments are in ascending order of their
+/// rings, with the ring nearer to the root first.
 ///
 /// A triangle is converted if its corners belong to rings.
 ///
@@ -86,8 +87,8 @@ pub fn tubes(bark: &Triangles) -> Result<(Polylines, Rest)> {
     Ok((lines(to, segments)?, rest))
 }
 
-/// Every edge once, the lower vertex first, in ascending order, and whether it has one triangle
-/// only.
+/// Every edge once, the lower vertex first, in ascending order, and whether it belongs to only one
+/// triangle.
 fn edges(mesh: &Triangles) -> Vec<([u32; 2], bool)> {
     let sides = mesh.corners().iter().flat_map(|&[a, b, c]| [[a, b], [b, c], [c, a]]);
     let mut sides: Vec<_> =
@@ -107,7 +108,7 @@ fn layers(mesh: &Triangles, edges: &[([u32; 2], bool)]) -> Vec<u32> {
             boundaries.join(a, b);
         }
     }
-    // The length of the longest edge of a boundary, squared, and its boundary, for each part.
+    // For each part, the longest edge of a boundary, by its squared length, and that boundary.
     let mut longest: Vec<Option<(f64, u32)>> = vec![None; n];
     for &([a, b], _) in edges.iter().filter(|edge| edge.1) {
         let [p, q] = [a, b].map(|i| position[i as usize].as_dvec3());
@@ -116,7 +117,7 @@ fn layers(mesh: &Triangles, edges: &[([u32; 2], bool)]) -> Vec<u32> {
             *longest = Some((length, boundaries.find(a)));
         }
     }
-    // Neighbours of vertex i are those in the range from first[i] to first[i + 1].
+    // The neighbours of vertex i are in the range from first[i] to first[i + 1].
     let mut both: Vec<[u32; 2]> = edges.iter().flat_map(|&([a, b], _)| [[a, b], [b, a]]).collect();
     both.sort_unstable();
     let first: Vec<usize> =

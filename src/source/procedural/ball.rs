@@ -1,4 +1,4 @@
-//! Spheres: one, and the cluster.
+//! Spheres: a single one, and the cluster.
 
 use super::sampling::Sampler;
 use super::{Hit, PALETTE, pattern};
@@ -10,16 +10,17 @@ use std::f64::consts::PI;
 pub(super) struct Ball {
     pub(super) center: DVec3,
     pub(super) radius: f64,
-    /// Its one colour; none: that of [`pattern`].
+    /// Its single colour; `None` uses [`pattern`].
     pub(super) color: Option<DVec3>,
 }
 
 /// The unit sphere.
 pub(super) const SPHERE: Ball = Ball { center: DVec3::ZERO, radius: 1.0, color: None };
 
-/// The spheres of the cluster: random numbers 4k to 4k + 3 of seed 6 place sphere k and size it.
+/// The spheres of the cluster. The random numbers 4k to 4k + 3 of seed 6 give the place and the
+/// size of sphere k.
 ///
-/// With that seed none swallows another, and those that overlap differ in colour.
+/// With this seed no sphere lies inside another, and spheres that overlap differ in colour.
 pub(super) fn cluster() -> Vec<Ball> {
     let ball = |k: usize| {
         let unit = |j: u64| f64::from(random::unit(6, 4 * k as u64 + j));
@@ -30,10 +31,11 @@ pub(super) fn cluster() -> Vec<Ball> {
     (0..32).map(ball).collect()
 }
 
-/// `count` surfels, to each ball by its area, but at least one; on each a golden spiral about +y.
+/// Adds `count` surfels. Each ball gets a share by its area, but at least one; on each ball they
+/// form a golden spiral around +y.
 ///
-/// Of n on a ball, surfel i lies at the height 1 - (2i + 1)/n above the centre, in radii: equal
-/// steps in height cut equal areas from a sphere.
+/// Surfel i of n on a ball lies at the height 1 - (2i + 1)/n above the centre, in radii, because
+/// equal steps in height cut equal areas from a sphere.
 pub(super) fn sample(balls: &[Ball], count: usize, sampler: &mut Sampler) {
     let squares: f64 = balls.iter().map(|ball| ball.radius * ball.radius).sum();
     let (mut before, mut first) = (0.0, 0);
@@ -58,8 +60,9 @@ pub(super) fn sample(balls: &[Ball], count: usize, sampler: &mut Sampler) {
 impl Ball {
     /// The nearest hit at a parameter > `beyond`.
     ///
-    /// From the point of the ray closest to the centre, half the chord back and forth: the
-    /// discriminant then has no large terms that cancel, however far away the ray starts.
+    /// The hits are half the chord before and behind the point of the ray that is closest to the
+    /// centre. This way the discriminant has no large terms that cancel, however far away the ray
+    /// starts.
     pub(super) fn trace(&self, origin: DVec3, direction: DVec3, beyond: f64) -> Option<Hit> {
         let from_center = origin - self.center;
         let squared = direction.dot(direction);
@@ -67,7 +70,7 @@ impl Ball {
         let closest = from_center + direction * middle;
         let discriminant = self.radius * self.radius - closest.dot(closest);
         let half = (discriminant / squared).sqrt();
-        // The ray passes by, or has no direction.
+        // NaN if the ray misses the ball, or has no direction.
         if half.is_nan() {
             return None;
         }

@@ -1,11 +1,12 @@
-//! Procedural scenes whose true picture is known.
+//! Make test scenes whose true picture is known, and measure the error of a renderer against the
+//! truth.
 //!
-//! A [`Shape`] gives surfels that cover it ([`Shape::surfels`]) and, from the same definition, the
-//! picture that a perfect renderer would make of it ([`Shape::true_picture`]), by one ray through
-//! each pixel centre, in f64. What a splatting method shows beyond the difference that the discs
-//! make is its own error.
+//! A [`Shape`] gives surfels that cover it ([`Shape::surfels`]). From the same definition it gives
+//! the picture that a perfect renderer would make ([`Shape::true_picture`]), by one ray through
+//! each pixel centre, in f64. Any difference that does not come from the discs themselves is an
+//! error of the splatting method.
 //!
-//! | name | what | what goes wrong on it |
+//! | name | geometry | difficulty |
 //! |---|---|---|
 //! | `sphere` | radius 1 at the origin, smooth colours | silhouettes, grazing discs, curvature |
 //! | `torus` | radii 1 and 3/8 around +y, smooth colours | a silhouette in front of its own surface |
@@ -16,11 +17,13 @@
 //!
 //! The sphere and the spheres of the cluster carry golden spirals. The other shapes are cut into
 //! cells, nearly square, with one surfel in each, displaced at random by up to 1/8 of the cell's
-//! sides. The radius is everywhere **the spacing**: the square root of the area that a surfel
-//! stands for (of a cell that is not square, the root mean square of its sides). It covers with
-//! some margin: a displaced surfel is at most sqrt(1/2) * 5/4 = 0.88 spacings from the corners of
-//! its cell, and no point of a sphere is, as measured, farther than 0.77 spacings from its spiral.
-//! On the average a point lies in pi discs.
+//! sides.
+//!
+//! The radius is everywhere **the spacing**: the square root of the area that a surfel stands for.
+//! (For a cell that is not square, it is the root mean square of its sides.) It covers with some
+//! margin. A displaced surfel is at most sqrt(1/2) * 5/4 = 0.88 spacings from the corners of its
+//! cell. On a sphere, measurements found no point farther than 0.77 spacings from its spiral. On
+//! average a point lies in pi discs.
 //!
 //! ```
 //! use splatref::scene::Camera;
@@ -62,32 +65,34 @@ pub const MAX_PARAMETER: f32 = 1024.0;
 /// Surfaces have two sides: a ray hits them from either, and the normal is the surface's own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {
-    /// The sphere of radius 1 around the origin, its colour a smooth function of the position.
+    /// The sphere of radius 1 around the origin; its colour is a smooth function of the position.
     Sphere,
-    /// The torus around the y axis with radii 1 and 3/8, its colour as that of the sphere.
+    /// The torus around the y axis with radii 1 and 3/8; its colour is the same function as the
+    /// sphere's.
     Torus,
-    /// The plane y = 0, normal +y: light where floor(x / square) + floor(z / square) is even, dark
-    /// elsewhere.
+    /// The plane y = 0, normal +y. It is light where floor(x / square) + floor(z / square) is even,
+    /// and dark elsewhere.
     ///
-    /// The plane and its true picture are infinite. Surfels fill |x|, |z| <= 4096: a square grid in
-    /// |x|, |z| <= 4, then ten square rings, each twice as large as the one before and with cells
-    /// twice as wide, so that spacing grows with the distance from the origin as perspective
-    /// shrinks it.
+    /// The plane and its true picture are infinite. Surfels fill |x|, |z| <= 4096: a square grid
+    /// in |x|, |z| <= 4, then ten square rings. Each ring is twice as large as the one before and
+    /// has cells twice as wide, so that spacing grows with the distance from the origin as
+    /// perspective shrinks it.
     Checkerboard {
         /// Side of a square.
         square: f32,
     },
-    /// Two squares that face +z: |x|, |y| <= 1 in the plane z = 0, orange, and behind it
-    /// |x|, |y| <= 3/2 in the plane z = -gap, blue.
+    /// Two squares that face +z: an orange one, |x|, |y| <= 1 in the plane z = 0, and behind it a
+    /// blue one, |x|, |y| <= 3/2 in the plane z = -gap.
     Sheets {
         /// Distance between the sheets.
         gap: f32,
     },
     /// Eight plates that rise and recede: plate k spans |x| <= 1 and k/4 - 9/8 <= y <= k/4 - 5/8.
-    /// Its front, normal +z, lies in z = -k step, its back, normal -z, in z = -k step - thickness;
-    /// its rim is open. The lower half of each plate but the first is hidden behind the one before.
+    /// Its front, normal +z, lies in z = -k step. Its back, normal -z, lies in z = -k
+    /// step - thickness. Its rim is open. The lower half of each plate but the first is hidden
+    /// behind the plate before.
     ///
-    /// Each front has its own colour; the back has 1 minus that.
+    /// Each front has its own colour; the colour of the back is 1 minus it.
     Staircase {
         /// Distance from the front of a plate to the front of the next.
         step: f32,
@@ -97,8 +102,8 @@ pub enum Shape {
     /// 32 spheres with centres in [-1, 1]^3 and radii in [1/8, 3/8], in eight colours; some
     /// overlap.
     ///
-    /// `Decided:` each sphere is whole. What lies inside another has surfels too, which a renderer
-    /// must find hidden.
+    /// `Decided:` each sphere is whole. A part inside another sphere has surfels too, and a
+    /// renderer must find them hidden.
     Cluster,
 }
 
@@ -114,7 +119,7 @@ pub struct Hit {
 }
 
 impl Shape {
-    /// Every shape, with parameters that make a good picture.
+    /// Every shape, with parameters that give a good picture.
     pub const ALL: [Self; 6] = [
         Self::Sphere,
         Self::Torus,
@@ -146,11 +151,11 @@ impl Shape {
     /// About `count` surfels that cover the shape, with exact normals and colours, rounded once;
     /// [`mod@sampling`] has every step.
     ///
-    /// Sphere and torus give exactly `count`, the cluster `count` but at least one for each sphere.
-    /// The others give what their grids can hold: within 5 % of `count` from 10,000 on. The seed
-    /// turns the spirals and displaces surfels in their cells; it never changes the shape.
-    /// The discs cover the shape, see the [module](self), once they are small against its
-    /// curvature: from about a hundred surfels a sphere on.
+    /// Sphere and torus give exactly `count`; the cluster gives `count`, but at least one for each
+    /// sphere. The others give what their grids can hold: within 5 % of `count` from 10,000 on. The
+    /// seed turns the spirals and displaces surfels in their cells; it never changes the shape. The
+    /// discs cover the shape, see the [module](self), once they are small against its curvature:
+    /// from about a hundred surfels a sphere on.
     ///
     /// # Errors
     /// [`Error::Invalid`] if `count` is 0 or more than [`MAX_COUNT`], or if a parameter is not in
@@ -178,18 +183,17 @@ impl Shape {
         sampler.finish()
     }
 
-    /// The first point, at a parameter > 0, where a ray meets the shape; of several pieces at one
-    /// parameter the first in order.
+    /// The first point, at a parameter > 0, where a ray meets the shape. If several pieces have one
+    /// parameter, the first in order wins.
     ///
-    /// The parameter counts lengths of `direction`, so that for a ray whose view-space direction is
-    /// (x, y, -1) it is the depth. None for a direction of length 0 and where anything is not
-    /// finite.
+    /// The parameter counts lengths of `direction`. For a ray with the view-space direction (x, y,
+    /// -1) it is the depth. `None` for a direction of length 0, and if any number is not finite.
     #[must_use]
     pub fn trace(&self, origin: DVec3, direction: DVec3) -> Option<Hit> {
         self.surface().trace(origin, direction, 0.0)
     }
 
-    /// The shape for many rays; errors are those of [`Shape::true_picture`].
+    /// The shape, prepared for many rays; errors as [`Shape::true_picture`].
     #[cfg(feature = "cli")] // for the study
     pub(crate) fn tracer(&self) -> Result<Tracer> {
         self.check()?;
@@ -202,9 +206,9 @@ impl Shape {
     /// (depth, +inf where nothing is seen) and `normal` (world space, the null vector where nothing
     /// is seen).
     ///
-    /// World rays are view rays taken through the inverse of `view_from_world`, computed in f64.
-    /// `Decided:` the near plane cuts the shape open: what is not farther than it is passed
-    /// through, and the ray goes on to the next hit.
+    /// View rays become world rays through the inverse of `view_from_world`, computed in f64.
+    /// `Decided:` the near plane cuts the shape open: a hit that is not farther than the near plane
+    /// is skipped, and the ray goes on to the next hit.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`Camera::check`], or if a parameter of the shape is not in its range.
@@ -214,7 +218,7 @@ impl Shape {
         Ok(picture::true_picture(&self.surface(), camera))
     }
 
-    /// A place from which the shape looks good, +y up:
+    /// A pose from which the shape looks good, +y up:
     ///
     /// | shape | eye | target |
     /// |---|---|---|
@@ -237,8 +241,8 @@ impl Shape {
         Pose { eye: eye.into(), target: target.into(), up: DVec3::Y }
     }
 
-    /// The lens to look through from [`Shape::default_pose`]: a vertical field of view of 34 degrees,
-    /// of the checkerboard 60.
+    /// The lens that fits [`Shape::default_pose`]: a vertical field of view of 34 degrees, for the
+    /// checkerboard 60.
     #[must_use]
     pub fn default_lens(&self) -> Lens {
         Lens::FieldOfView(match self {
@@ -247,7 +251,7 @@ impl Shape {
         })
     }
 
-    /// Parameters in (0, `MAX_PARAMETER`].
+    /// Refuses parameters outside (0, `MAX_PARAMETER`].
     fn check(&self) -> Result<()> {
         let parameters: &[(&str, f32)] = match *self {
             Self::Sphere | Self::Torus | Self::Cluster => &[],
@@ -266,7 +270,7 @@ impl Shape {
         Ok(())
     }
 
-    /// What rays are traced against.
+    /// The geometry that rays are traced against.
     fn surface(&self) -> Surface {
         match *self {
             Self::Sphere => Surface::Balls(vec![ball::SPHERE]),
@@ -281,7 +285,7 @@ impl Shape {
     }
 }
 
-/// A shape that many rays are sent to.
+/// A shape, prepared for many rays.
 #[cfg(feature = "cli")]
 pub(crate) struct Tracer(Surface);
 
@@ -293,7 +297,7 @@ impl Tracer {
     }
 }
 
-/// A shape taken apart once, for many rays.
+/// The pieces of a shape, prepared for many rays.
 enum Surface {
     Balls(Vec<ball::Ball>),
     Torus,
@@ -318,7 +322,7 @@ fn nearest<T>(pieces: &[T], trace: impl Fn(&T) -> Option<Hit>) -> Option<Hit> {
     pieces.iter().filter_map(trace).reduce(|best, hit| if hit.t < best.t { hit } else { best })
 }
 
-/// Eight colours that are told apart easily, linear RGB, exact in `f32`.
+/// Eight colours that are easy to tell apart, linear RGB, exact in `f32`.
 const PALETTE: [[f64; 3]; 8] = [
     [0.875, 0.25, 0.0625],
     [0.0625, 0.25, 0.75],

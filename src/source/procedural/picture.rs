@@ -1,4 +1,4 @@
-//! The true picture: one ray a pixel.
+//! Draw the true picture: one ray for each pixel.
 
 use super::{Hit, Surface};
 use crate::frame::{Frame, NamedPlane, Plane, Samples};
@@ -32,7 +32,8 @@ pub(super) fn true_picture(surface: &Surface, camera: &Camera) -> Frame<f64> {
     Frame { width, height, planes: planes.into() }
 }
 
-/// Origin and direction in view space of the ray through a pixel's centre; its parameter is depth.
+/// Origin and direction in view space of the ray through a pixel's centre. Its parameter is the
+/// depth.
 fn view_ray(camera: &Camera, x: u32, y: u32) -> (DVec3, DVec3) {
     let [fx, fy, cx, cy] = [camera.fx, camera.fy, camera.cx, camera.cy].map(f64::from);
     let right = (f64::from(x) + 0.5 - cx) / fx;

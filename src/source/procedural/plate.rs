@@ -1,10 +1,10 @@
-//! Rectangles across z: the sheets and the staircase.
+//! Rectangles of constant z: the sheets and the staircase.
 
 use super::sampling::{Sampler, cell_radius};
 use super::{Hit, PALETTE};
 use glam::DVec3;
 
-/// low <= (x, y) <= high in a plane of constant z.
+/// A rectangle: low <= (x, y) <= high in a plane of constant z.
 pub(super) struct Plate {
     low: [f64; 2],
     high: [f64; 2],
@@ -42,8 +42,8 @@ pub(super) fn staircase(step: f32, thickness: f32) -> Vec<Plate> {
     (0..PALETTE.len()).flat_map(|k| [plate(k, false), plate(k, true)]).collect()
 }
 
-/// About `count` surfels, in grids whose cells are as nearly squares of one size as whole numbers
-/// of rows and columns allow.
+/// Adds about `count` surfels, in grids. Their cells are as close to squares of one size as whole
+/// numbers of rows and columns allow.
 pub(super) fn sample(plates: &[Plate], count: usize, sampler: &mut Sampler) {
     let area: f64 = plates.iter().map(|p| (p.high[0] - p.low[0]) * (p.high[1] - p.low[1])).sum();
     let spacing = (area / count as f64).sqrt();

@@ -1,11 +1,11 @@
-//! The surfels of each shape, step by step: enough to rebuild their bits.
+//! Rebuild the surfels of each shape bit by bit: this page has every step.
 //!
-//! All numbers are f64, and each operation is rounded, in the order written; a product or quotient
-//! without brackets is taken from the left. PI and TAU are the f64 nearest to pi and 2 pi; sin and
-//! cos are those of [`crate::number::elementary`] in f64. N is the count that was asked for, u(i) is
-//! [`random::unit`] of the seed and i, as f64. Surfels are numbered s = 0, 1, ... over the whole
-//! shape, in the order in which they are made. Each component of position, normal and colour, and
-//! the radius, is rounded to `f32` once at the end. Nothing is dropped: see
+//! All numbers are f64. Each operation is rounded, in the order written; a product or quotient
+//! without brackets is computed from the left. PI and TAU are the f64 nearest to pi and 2 pi. Sin
+//! and cos are the functions of [`crate::number::elementary`] in f64. N is the requested count, and
+//! u(i) is [`random::unit`] of the seed and i, as f64. Surfels are numbered s = 0, 1, ... over the
+//! whole shape, in the order in which they are made. Each component of position, normal and colour,
+//! and the radius, is rounded to `f32` once at the end. Nothing is dropped: see
 //! [`Surfels::new`](crate::scene::Surfels::new).
 //!
 //! ```text
@@ -28,15 +28,16 @@
 //!
 //! # Sphere and cluster
 //!
-//! The sphere is one ball of centre c = 0 and radius r = 1. The cluster is 32 balls; with v(i) =
-//! [`random::unit`] of seed 6 and i, whatever the seed of the surfels, ball k has
+//! The sphere is one ball of centre c = 0 and radius r = 1. The cluster is 32 balls. Let v(i) be
+//! [`random::unit`] of seed 6 and i, whatever the seed of the surfels. Then ball k has
 //!
 //! ```text
 //!   c = (v(4 k) 2 - 1, v(4 k + 1) 2 - 1, v(4 k + 2) 2 - 1)      r = 1/8 + 1/4 v(4 k + 3)
 //! ```
 //!
-//! The surfels of the balls, ball by ball. S is the sum of r r over all balls, B that up to this
-//! one, this one included, both added in the order of the balls; the first ball has first = 0.
+//! The surfels are made ball by ball. S is the sum of r r over all balls, and B is the sum over the
+//! balls up to and including this one. Both are added in the order of the balls. The first ball has
+//! first = 0.
 //!
 //! ```text
 //!   end    = round(N (B / S))       n = end - first if end > first, else 1       first += n
@@ -80,9 +81,9 @@
 //!       normal   = (0, 1, 0)
 //! ```
 //!
-//! The colour is that of the position p after rounding to `f32`: with m = floor(p.x / square) +
-//! floor(p.z / square), light, (0.875, 0.84375, 0.75), if m is even, else dark, (0.0625, 0.09375,
-//! 0.1875).
+//! The colour depends on the position p after rounding to `f32`. With
+//! m = floor(p.x / square) + floor(p.z / square), it is light, (0.875, 0.84375, 0.75), if m is
+//! even, else dark, (0.0625, 0.09375, 0.1875).
 //!
 //! # Sheets and staircase
 //!
@@ -115,7 +116,7 @@ use crate::number::random;
 use crate::scene::{Cloud, Surfels};
 use glam::DVec3;
 
-/// Surfels in the making, each number rounded to `f32` as it is pushed.
+/// Surfels in the making; each number is rounded to `f32` as it is pushed.
 pub(super) struct Sampler {
     seed: u64,
     cloud: Cloud,
@@ -125,7 +126,7 @@ pub(super) struct Sampler {
 }
 
 impl Sampler {
-    /// None yet, room for `count`.
+    /// No surfels yet, with room for `count`.
     pub(super) fn new(count: usize, seed: u64) -> Self {
         Self {
             seed,
@@ -136,7 +137,7 @@ impl Sampler {
         }
     }
 
-    /// One more surfel.
+    /// Adds one surfel.
     pub(super) fn push(&mut self, position: DVec3, normal: DVec3, radius: f64, color: DVec3) {
         self.cloud.position.push(position.as_vec3());
         self.normal.push(normal.as_vec3());
@@ -144,18 +145,18 @@ impl Sampler {
         self.color.push(color.as_vec3());
     }
 
-    /// Where in its cell, a unit square, the next surfel lies: at most 1/8 from the middle in
-    /// either direction, by random numbers 2i and 2i + 1 of the seed for surfel i.
+    /// The place of the next surfel in its cell, a unit square: at most 1/8 from the middle in each
+    /// direction, by the random numbers 2i and 2i + 1 of the seed for surfel i.
     pub(super) fn displaced(&self) -> [f64; 2] {
         let index = 2 * self.radius.len() as u64;
         [index, index + 1].map(|i| 0.5 + (f64::from(random::unit(self.seed, i)) - 0.5) / 4.0)
     }
 
-    /// Azimuth in radians of point `i` of a golden spiral: 2 pi times the fractional part of
+    /// The azimuth in radians of point `i` of a golden spiral: 2 pi times the fractional part of
     /// i / golden ratio, turned by the bits of the seed.
     ///
-    /// Fractions are kept in 64-bit integers, which wrap as angles do, so that no digit is lost
-    /// however large `i` is.
+    /// Fractions are 64-bit integers, which wrap as angles do, so that no digit is lost however
+    /// large `i` is.
     pub(super) fn golden_angle(&self, i: usize) -> f64 {
         let start = random::bits(self.seed, 0);
         let turn = start.wrapping_add((i as u64).wrapping_mul(random::GOLDEN));
@@ -174,8 +175,8 @@ impl Sampler {
     }
 }
 
-/// The radius of a disc that covers a cell of these sides from anywhere near its middle: the root
-/// mean square of the sides, which is sqrt(2) times half the diagonal.
+/// The radius of a disc that covers a cell of these sides from anywhere near its middle. It is the
+/// root mean square of the sides, which is sqrt(2) times half the diagonal.
 pub(super) fn cell_radius(a: f64, b: f64) -> f64 {
     ((a * a + b * b) / 2.0).sqrt()
 }

@@ -1,4 +1,4 @@
-//! What holds for every shape.
+//! Check the properties of every shape.
 
 use super::*;
 use crate::frame::Samples;
@@ -6,9 +6,9 @@ use crate::number::random;
 use glam::Vec3;
 use sha2::{Digest, Sha256};
 
-/// Distance from `p` to the shape, written down from its documentation.
+/// The distance from `p` to the shape, by its documentation.
 fn distance(shape: Shape, p: DVec3) -> f64 {
-    /// How far `v` lies outside of [low, high].
+    /// How far `v` is outside of [low, high].
     fn outside(v: f64, low: f64, high: f64) -> f64 {
         if v < low {
             low - v
@@ -45,7 +45,7 @@ fn distance(shape: Shape, p: DVec3) -> f64 {
     }
 }
 
-/// A ray that is likely to meet the shape.
+/// A ray that probably meets the shape.
 fn random_ray(shape: Shape, i: u64) -> (DVec3, DVec3) {
     let unit = |j| f64::from(random::unit(99, 6 * i + j)) * 2.0 - 1.0;
     let [x, y, z] = [0, 1, 2].map(unit);
@@ -59,10 +59,10 @@ fn random_ray(shape: Shape, i: u64) -> (DVec3, DVec3) {
 
 #[test]
 fn surfels_lie_on_the_surface_and_rays_find_them() {
-    // Half a unit in the last place of a coordinate below 4 is 2^-23; three of them add up to
-    // less than 2^-22. On a sphere of radius 1/8 or more that turns the normal by 8 times as much.
+    // Half a unit in the last place of a coordinate below 4 is 2^-23; three of them add up to less
+    // than 2^-22. On a sphere of radius 1/8 or more this turns the normal by 8 times as much.
     let on_surface = 1.0 / 4_194_304.0;
-    // So small that no other sphere of the cluster cuts in between.
+    // Small enough that no other sphere of the cluster lies in between.
     let lift = 1.0 / 65_536.0;
     for shape in Shape::ALL {
         let surfels = shape.surfels(3000, 1).unwrap();
@@ -72,7 +72,7 @@ fn surfels_lie_on_the_surface_and_rays_find_them() {
             let what = format!("{} {i} at {p}", shape.name());
             assert!(distance(shape, p) < on_surface, "{what} is {} off", distance(shape, p));
             assert!((n.length() - 1.0).abs() < on_surface, "{what}");
-            // At half the speed down from above the surfel.
+            // A direction of half length, downwards onto the surfel.
             let hit = shape.trace(p + n * lift, n * -0.5).expect(&what);
             assert!((hit.t - 2.0 * lift).abs() < 2.0 * on_surface, "{what}: {hit:?}");
             assert!((hit.normal - n).length() < 8.0 * on_surface, "{what}: {hit:?}");
@@ -236,7 +236,7 @@ fn the_near_plane_cuts_the_shape_open() {
     assert_eq!(depth(&camera), 5.0, "a depth equal to the near plane is not seen");
     camera.near = 5.0;
     assert_eq!(depth(&camera), f64::INFINITY);
-    // An orthographic camera sees what is behind its own plane, if its near plane lies there.
+    // An orthographic camera sees objects behind its own plane, if its near plane lies there.
     let pose = Pose { eye: DVec3::ZERO, target: -DVec3::Z, up: DVec3::Y };
     let mut camera = Camera::new(1, 1, pose, Lens::Orthographic(1.0)).unwrap();
     assert_eq!(depth(&camera), 1.0);

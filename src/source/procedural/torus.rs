@@ -1,4 +1,4 @@
-//! The torus.
+//! The torus: its surfels, and its intersections with rays.
 
 use super::sampling::{Sampler, cell_radius};
 use super::{Hit, pattern};
@@ -11,12 +11,12 @@ const RING: f64 = 1.0;
 /// Radius of the tube.
 const TUBE: f64 = 0.375;
 
-/// `count` surfels in rows round +y, one in each cell of a row.
+/// Adds `count` surfels in rows around +y, one in each cell of a row.
 ///
-/// The tube is cut into rows of one width, about the spacing; row j spans the angles
-/// TAU j/rows to TAU (j + 1)/rows about the tube, 0 outside. The area up to angle v is
-/// v + (TUBE/RING) sin v of TAU, and `count` times that, rounded, is how many surfels lie before v:
-/// so the cells are nearly square, and their number is exact.
+/// The tube is cut into rows of one width, about the spacing. Row j spans the angles TAU j/rows to
+/// TAU (j + 1)/rows around the tube, where 0 is the outside. The area up to angle v is
+/// v + (TUBE/RING) sin v of TAU. The number of surfels before v is `count` times that, rounded.
+/// Thus the cells are nearly square, and their total is exact.
 pub(super) fn sample(count: usize, sampler: &mut Sampler) {
     let spacing = (TAU * RING * TAU * TUBE / count as f64).sqrt();
     let rows = (TAU * TUBE / spacing + 0.5).floor() as usize;
@@ -45,17 +45,18 @@ pub(super) fn sample(count: usize, sampler: &mut Sampler) {
 
 /// The nearest hit at a parameter > `beyond`.
 ///
-/// The torus is (|p|^2 + R^2 - r^2)^2 = 4 R^2 (x^2 + z^2). Along the ray, s its length from the
-/// point c closest to the centre, |p|^2 is s^2 + |c|^2, so that the quartic has no cubic term.
+/// The torus is (|p|^2 + R^2 - r^2)^2 = 4 R^2 (x^2 + z^2). Let s be the length along the ray from
+/// the point c closest to the centre. Then |p|^2 is s^2 + |c|^2, so that the quartic has no cubic
+/// term.
 pub(super) fn trace(origin: DVec3, direction: DVec3, beyond: f64) -> Option<Hit> {
     let length = direction.length();
     let d = direction / length;
     let middle = -origin.dot(d);
     let c = origin + d * middle;
     let square = c.dot(c);
-    // Half the chord through the ball around the torus.
+    // Half the chord through the ball that encloses the torus.
     let reach = ((RING + TUBE) * (RING + TUBE) - square).sqrt();
-    // The ray passes by, or has no direction.
+    // NaN if the ray misses the ball, or has no direction.
     if reach.is_nan() {
         return None;
     }
@@ -92,19 +93,19 @@ impl Quartic {
 
     /// The roots in [-reach, reach] where the sign changes, in ascending order.
     ///
-    /// Between neighbouring zeros of its derivative a function crosses zero at most once. So the
+    /// A function crosses zero at most once between neighbouring zeros of its derivative. So the
     /// zeros of the second derivative, +-sqrt(-square / 6), isolate those of the first, and these
-    /// the roots. A ray that only touches the torus, to rounding, may be taken to miss it.
+    /// isolate the roots. Rounding may make a ray that only touches the torus miss it.
     fn roots(&self, reach: f64) -> impl Iterator<Item = f64> {
         let bend = if self.square < 0.0 { (-self.square / 6.0).sqrt() } else { 0.0 };
         let bend = if bend < reach { bend } else { reach };
         let bends = [-reach, -bend, bend, reach];
         let mut low = -reach;
-        // One at a time: most rays need the first only.
+        // Compute one root at a time, because most rays need only the first.
         (0..4).filter_map(move |i| {
             let slope = |s| self.slope(s);
             let high = match i {
-                // Where there is no zero, an end of the interval does: it parts nothing.
+                // Without a zero, an end of the interval serves: it separates nothing.
                 0..3 => crossing(slope, bends[i], bends[i + 1]).unwrap_or(bends[i]),
                 _ => reach,
             };
@@ -115,8 +116,9 @@ impl Quartic {
     }
 }
 
-/// Where a function changes its sign between `low` and `high`, by bisection to the last digit of
-/// the interval; the low end counts as crossed when the function is 0 there, the high end does not.
+/// Finds where a function changes its sign between `low` and `high`, by bisection to the last digit
+/// of the interval. If the function is 0 at the low end, that counts as crossed; at the high end it
+/// does not.
 fn crossing(f: impl Fn(f64) -> f64, mut low: f64, mut high: f64) -> Option<f64> {
     let rising = f(low) < 0.0;
     if (f(high) < 0.0) == rising {

@@ -1,31 +1,35 @@
-//! Colours averaged over the cells of prefixes \[BJFM19, 6\].
+//! Average the colours of an order over the cells of its prefixes \[BJFM19, 6\].
 //!
 //! "It can happen that samples are taken \[...\] from pixels with colors of minor importance \[...\]. This could
 //! be circumvented, e.g., by averaging the color values of early prefixes in an additional post-processing
 //! step."
 //!
-//! Given are n finite points with colours, an order of them, and a count m of its first picks. The *cell* of a
-//! pick in a prefix is all points that are nearer to it than to any other pick of that prefix, of equal squared
-//! distances those of the earlier pick; squared distances are those of [`super::greedy`]. The new colour of the
-//! pick of rank i < m, ranks being counted from 0:
+//! Given are n finite points with colours, an order of them, and a count m of its first picks. The
+//! *cell* of a pick in a prefix is the set of points that are nearer to it than to any other pick
+//! of that prefix; of equal squared distances, the earlier pick wins. Squared distances are those
+//! of [`super::greedy`]. Ranks are counted from 0. The new colour of the pick of rank i < m is:
 //!
 //! ```text
 //!   P     = the least power of 2 above i, or m if that is less
 //!   color = (sum of the colours of its cell in the prefix of P picks) / (their number)
 //! ```
 //!
-//! per channel in f64, the sum from 0 in ascending index, rounded to `f32` once. Where the cell is empty, since an
-//! earlier pick is at the same place, the colour is the pick's own.
+//! The formula applies to each channel in f64, with the sum from 0 in ascending index, rounded to
+//! `f32` once. If the cell is empty, because an earlier pick is at the same place, the colour is
+//! the pick's own.
 //!
 //! # Decided
 //!
-//! - A buffer has one colour a pick, but the pick has a cell in every prefix that it is in. It is drawn from the
-//!   prefix i + 1 on, and half of the picks of a prefix, the newest, have the size of cell that fits to it to a
-//!   factor of 2. Older ones have larger cells: a prefix of P picks has means over the cells of P, P/2, P/4 ...
-//!   picks, of P/2, P/4, P/8 ... of them. No pick changes its colour as the prefix grows.
-//! - The mean is that of linear light, of what is seen of the mesh: candidates, not of area.
-//! - Only colours are averaged. Opacities, normals and further properties are those of the pick: a mean of opacities or of
-//!   roughness is not what a mean of the light would be, and that is defined by whoever shades with them.
+//! - A buffer has one colour for each pick, but the pick has a cell in every prefix that contains
+//!   it. It is drawn from the prefix i + 1 on. In any prefix, the newest half of the picks have
+//!   cells of the right size, within a factor of 2. Older picks have larger cells: in a prefix of P
+//!   picks, P/2, P/4, P/8 ... of them have means over the cells of P, P/2, P/4 ... picks. No pick
+//!   changes its colour as the prefix grows.
+//! - The mean is over linear light, and over candidates, which are what is seen of the mesh, not
+//!   over area.
+//! - Only colours are averaged. Opacities, normals and further properties stay the pick's own. A
+//!   mean of opacities or of roughness does not give the mean of the light; that depends on how a
+//!   renderer shades with them.
 //! - Distances are straight: a cell reaches through a wall that is thinner than the cell.
 
 use super::greedy::Order;
@@ -38,15 +42,15 @@ use glam::{DVec3, Vec3};
 
 /// Points of one job.
 const JOB: usize = 4096;
-/// What a point takes, and what a pick takes.
+/// Bytes of a point, and of a pick.
 const BYTES: [u64; 2] = [16, 72];
 
-/// The new colours of the first `count` picks of an order, see the [module](self). `progress` is told the name
-/// of the step, how many prefixes are done, and of how many.
+/// The new colours of the first `count` picks of an order, see the [module](self). `progress` gets
+/// the name of the step, the number of prefixes done, and their total.
 ///
 /// # Errors
-/// [`Error::Invalid`] if there are not as many colours as points, if a point or a colour is not finite, if a pick
-/// is no point, or if the order has fewer than `count` picks.
+/// [`Error::Invalid`] if there are not as many colours as points, if a point or a colour is not
+/// finite, if a pick is no point, or if the order has fewer than `count` picks.
 pub fn averaged(
     (points, colors): (&[Vec3], &[Vec3]),
     order: &Order,
@@ -59,7 +63,7 @@ pub fn averaged(
     memory::ask(bytes, || format!("the cells of {} points", points.len()))?;
     let picks = &order.index[..count];
     let mut new = Vec::with_capacity(count);
-    // Of the first pick, until another is nearer.
+    // All points belong to the first pick until another is nearer.
     let mut nearest: Vec<Found> = vec![(f32::INFINITY, 0); points.len()];
     let prefixes = u64::from(count.next_power_of_two().ilog2()) + u64::from(count > 0);
     for done in 0..prefixes {
@@ -107,14 +111,15 @@ fn check(points: &[Vec3], colors: &[Vec3], order: &Order, count: usize) -> Resul
     Ok(())
 }
 
-/// Lets the nearest pick of each point be one of some more, which have the ranks from `first` on.
+/// Updates the nearest pick of each point with further picks, whose ranks begin at `first`.
 fn closer(points: &[Vec3], nearest: &mut [Found], more: &[Vec3], first: u32, exec: &Exec) {
     let tree = PointTree::new(more, LEAF, exec);
     let jobs = points.chunks(JOB).zip(nearest.chunks_mut(JOB)).collect();
     exec.ordered(jobs, |(points, nearest): (&[Vec3], &mut [Found])| {
         for (&point, found) in points.iter().zip(nearest) {
             let search = Search { tree: &tree, point, own: u32::MAX };
-            // As near as an earlier one is not nearer: the search has the indices of the tree, none below 0.
+            // A tie must not replace an earlier pick: index 0 is the lowest of the tree, so the
+            // search keeps it.
             let (distance, index) = search.nearest((found.0, 0));
             if distance < found.0 {
                 *found = (distance, first + index);
@@ -175,7 +180,8 @@ mod tests {
         let points = [0.0, 1.0, 2.0, 8.0, 9.0].map(|x| Vec3::new(x, 0.0, 0.0));
         let colors = [1.0, 2.0, 4.0, 8.0, 16.0].map(Vec3::splat);
         let exec = Exec::new(2, 32).unwrap();
-        // All; then the right ones; of three picks those in the middle, 1 being as near to 0 as to 2.
+        // The cell of all points; then the right points; with three picks the middle ones, as 1 is
+        // as near to 0 as to 2.
         let found = of(&points, &colors, &[0, 4, 2], &exec).unwrap();
         assert_eq!(found, [31.0 / 5.0, 12.0, 4.0].map(|v: f32| Vec3::splat(v)));
         let twice = [points[0], points[0], points[4]];
@@ -184,8 +190,8 @@ mod tests {
         assert!(of(&points, &colors, &[], &exec).unwrap().is_empty());
     }
 
-    /// Of colours by chance, of variance v: a pick's own is 2 v off in the mean square from what it stands for,
-    /// and the mean of a large cell v, which is the least that one colour can be.
+    /// For random colours of variance v, the square error of a pick's own colour is 2 v on average,
+    /// and of the mean of a large cell v, the least possible for one colour.
     #[test]
     fn a_mean_halves_the_square_error_of_colours_by_chance() {
         let points = crate::source::Shape::Torus.surfels(20_000, 3).unwrap().position().to_vec();

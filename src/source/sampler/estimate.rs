@@ -1,15 +1,16 @@
-//! How densely an order covers \[BJFM19, 4.1\].
+//! Estimate how densely an order covers \[BJFM19, 4.1\].
 
 use super::geodesic::alike;
 use super::greedy::squared_distance;
 use crate::scene::objects::detail::prefix::Estimate;
 use glam::Vec3;
 
-/// `p_m`, where there are so many points: the paper's example.
+/// `p_m` for orders with at least this many points: the paper's example.
 pub const COUNT: usize = 1000;
 
-/// The estimate of points in an order, with a normal each. `p_m` is the lesser of [`COUNT`] and their number. With
-/// the squared distances of [`super::greedy`] in `f32`, and of the first `p_m`
+/// The estimate for ordered points, each with a normal. `p_m` is the lesser of [`COUNT`] and the
+/// number of points. The squared distances are those of [`super::greedy`] in `f32`, among the first
+/// `p_m` points:
 ///
 /// ```text
 ///   nearest_i = the least squared distance to another of them that faces alike, as in super::geodesic
@@ -17,10 +18,11 @@ pub const COUNT: usize = 1000;
 ///               of k, in f64, rounded to f32 once; 0 if there are none
 /// ```
 ///
-/// A squared distance that exceeds `f32` is not there: `r_m` is finite.
+/// A squared distance that exceeds `f32` is ignored, so that `r_m` is finite.
 ///
-/// `Decided:` what faces the other way does not count, of which the paper says nothing: the two sides of a wall that is thinner than
-/// the distance of surfels are near to each other, but no side covers the other.
+/// `Decided:` points that face the other way do not count; the paper does not mention them. The two
+/// sides of a wall that is thinner than the distance of surfels are near to each other, but neither
+/// side covers the other.
 ///
 /// # Panics
 /// If there are fewer normals than points.

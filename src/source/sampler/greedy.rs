@@ -1,61 +1,67 @@
-//! The greedy permutation: each point is the one that is farthest from all before it \[BJFM19, 3.2\].
+//! Order points so that each is the farthest from all before it: the greedy permutation, also
+//! called farthest-point sampling \[BJFM19, 3.2\].
 //!
-//! It is known as farthest-point sampling, too. \[BJFM19\] takes it as the ideal that its random
-//! method comes near to, and calls it too slow to compute; here it is computed.
+//! \[BJFM19\] takes this order as the ideal that its random method approximates, and calls it too
+//! slow to compute. Here it is computed: call [`Greedy::order`].
 //!
 //! # Definition
 //!
-//! Given are n finite points `p_0` to `p_(n-1)`, a start s below n, and a count k. All arithmetic is
-//! `f32`, each operation rounded. The squared distance of two points is
+//! Given are n finite points `p_0` to `p_(n-1)`, a start s below n, and a count k. All arithmetic
+//! is `f32`, and each operation is rounded. The squared distance of two points is
 //!
 //! ```text
 //!   d(a, b) = (dx dx + dy dy) + dz dz        (dx, dy, dz) = b - a
 //! ```
 //!
-//! Every point has a squared distance `m_i` to the nearest point that was picked, at first +inf.
+//! Every point has a squared distance `m_i` to the nearest pick; it begins at +inf.
 //!
 //! 1. The first pick is s, at the squared distance +inf.
 //! 2. After a pick q, each `m_i` becomes `d(p_q, p_i)` if that is less.
-//! 3. The next pick is the point of the largest `m_i`, of equal ones that of the lowest index, at
-//!    the squared distance `m_i`; unless all `m_i` are 0.
-//! 4. If all are 0, what has not been picked follows in ascending index, at the squared distance 0.
-//! 5. The order ends after k picks, or after n if there are fewer points: no index comes twice.
+//! 3. The next pick is the point of the largest `m_i`, at the squared distance `m_i`; of equal
+//!    ones, the lowest index. If all `m_i` are 0, step 4 follows instead.
+//! 4. If all are 0, the points not yet picked follow in ascending index, at the squared distance 0.
+//! 5. The order ends after k picks, or after n if there are fewer points: no index occurs twice.
 //!
-//! `Decided:` the paper leaves the start to chance and says nothing of ties and of equal points. A
-//! start that is not given is `floor(b n / 2^64)`, b the [`random::bits`] of the seed and 0.
+//! `Decided:` the paper chooses a random start, and does not mention ties and equal points. If no
+//! start is given, it is `floor(b n / 2^64)`, where b is [`random::bits`] of the seed and 0.
 //!
-//! Distances are those of `f32`: points whose squared distance rounds to 0 are equal (below about
-//! 2.6e-23), and where it exceeds the range all are +inf, a tie. So points should be neither that
-//! close nor beyond about 1e19.
+//! Distances are in `f32`. Points whose squared distance rounds to 0 (below about 2.6e-23) are
+//! equal. Squared distances beyond the range are all +inf, and tie. So points should be neither
+//! that close nor beyond about 1e19.
 //!
-//! # Laws
+//! # Laws that every order obeys
 //!
 //! With `r_j` the squared distance of pick j, and d as it is rounded:
 //!
 //! - `r_j` never increases.
 //! - Packing: two of the first j picks are at least `r_(j-1)` apart.
-//! - Covering: every point is at most `r_j` away from one of the first j picks. So every prefix is a
-//!   net of its own radius, and no other j points cover all with less than half of that radius.
+//! - Covering: every point is at most `r_j` away from one of the first j picks. So every prefix is
+//!   a net of its own radius, and no other j points cover all points with less than half of that
+//!   radius.
 //! - The first j of k picks are the j picks.
 //! - Another order of the given points changes the result only where distances tie.
+//! - Another order of the given points changes the result only where distances tie.
 //!
-//! # How
+//! # Why it is fast
 //!
-//! [`Greedy::define`] is the definition, n distances a pick. [`Greedy::order`] has the same bits and
-//! is faster by orders of magnitude. It looks at few distances and takes picks out of their turn:
+//! [`Greedy::define`] is the definition, with n distances for each pick. [`Greedy::order`] has the
+//! same bits and is faster by orders of magnitude. It computes few distances, and takes picks out
+//! of their turn:
 //!
-//! - Points lie in buckets with boxes, and buckets in groups. A box that a new pick cannot reach is
-//!   left alone: it is at least as far as its largest m. That is exact without a margin. As
-//!   rounding is monotone, the rounded distance to a box is not above that to a point in it.
-//! - The *key* of a point is (m, lower index first). Keys only fall, and the next pick has the largest.
-//!   So the order is that of the falling keys which points had when they were picked.
-//! - A point c may be picked before its turn if no point q of a larger key has d(q, c) below its own
-//!   m: then neither changes the other, nor the key at which the other is picked. Where no box
-//!   within reach of c holds a larger key, that is so.
-//! - A round picks all whose m is not below a floor. First each region of the points is treated by
-//!   a thread of its own, without those that another region could reach; then what is left by one
-//!   thread. The keys above a floor are a function of the points, so that threads, regions and
-//!   floors change nothing.
+//! - Points lie in buckets with boxes, and buckets in groups. A box is skipped if the new pick is
+//!   at least as far from it as its largest m. This is exact without a margin: rounding is
+//!   monotone, so that the rounded distance to a box is never above the rounded distance to a point
+//!   in it.
+//! - The *key* of a point is (m, lower index first). Keys only fall, and the next pick has the
+//!   largest. So the order is the points by falling keys, as the keys were when the points were
+//!   picked.
+//! - A point c may be picked before its turn if no point q with a larger key has d(q, c) below its
+//!   own m. Then neither changes the other, nor the key at which the other is picked. This holds if
+//!   no box within reach of c holds a larger key.
+//! - A round picks all points whose m is not below a floor. First a thread for each region of the
+//!   points picks all but the points that another region could reach; then one thread picks the
+//!   rest. The keys above a floor are a function of the points, so that threads, regions and floors
+//!   do not change the result.
 //!
 //! [`random::bits`]: crate::number::random::bits
 
@@ -71,7 +77,7 @@ use crate::memory;
 use crate::number::random;
 use glam::Vec3;
 
-/// What the tree and the picks take for a point, at most.
+/// The most bytes that the tree and the picks take for a point.
 const BYTES_A_POINT: u64 = 80;
 
 /// The sampler, see the [module](self).
@@ -81,19 +87,19 @@ pub struct Greedy {
     pub start: Start,
 }
 
-/// Which point is the first.
+/// The choice of the first point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Start {
     /// The point of this index.
     Index(u32),
-    /// A point by chance, a function of this seed and of how many points there are.
+    /// A random point, a function of this seed and of the number of points.
     Seed(u64),
 }
 
-/// Points in their order.
+/// Ordered points.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Order {
-    /// The index of each pick; none comes twice.
+    /// The index of each pick; none occurs twice.
     pub index: Vec<u32>,
     /// For each pick, the squared distance to the nearest pick before it; +inf for the first.
     pub distance: Vec<f32>,
@@ -102,7 +108,7 @@ pub struct Order {
 impl Greedy {
     /// The first `count` picks, or all points if there are fewer; see the [module](self).
     ///
-    /// `progress` is told the name of a step, how many picks there are, and how many there will be.
+    /// `progress` gets the name of a step, the number of picks, and their total.
     ///
     /// # Errors
     /// [`Error::Invalid`] if a point is not finite (the first such index is named), if the start is
@@ -121,7 +127,8 @@ impl Greedy {
         Ok(rounds::order(points, start, count, &rounds::How::of(exec), exec, progress))
     }
 
-    /// The definition: [`Greedy::order`] as the module says it, by n distances a pick.
+    /// The definition: [`Greedy::order`] as the module describes it, with n distances for each
+    /// pick.
     ///
     /// # Errors
     /// As [`Greedy::order`].
@@ -153,7 +160,7 @@ impl Greedy {
 }
 
 impl Start {
-    /// The index of the first pick, if there can be an order.
+    /// The index of the first pick; an error if the points cannot be ordered.
     pub(super) fn of(&self, points: &[Vec3]) -> Result<u32> {
         if let Some(at) = points.iter().position(|point| !point.is_finite()) {
             let what = format!("point {at} is not finite and has no distance to others");
@@ -162,7 +169,7 @@ impl Start {
         self.among(points.len())
     }
 
-    /// The index of the first pick of so many points, if there are some and it is one.
+    /// The index of the first pick among `n` points; an error if it does not exist.
     pub(super) fn among(&self, n: usize) -> Result<u32> {
         let invalid = |what| Err(Error::Invalid(what));
         let Ok(count) = u32::try_from(n) else {
@@ -183,7 +190,7 @@ impl Start {
 }
 
 impl Order {
-    /// Once all distances are 0: the other points in ascending index.
+    /// Appends the other points in ascending index, once all distances are 0.
     pub(super) fn finish(&mut self, points: usize, count: usize) {
         let mut picked = vec![false; points];
         self.index.iter().for_each(|&i| picked[i as usize] = true);

@@ -1,12 +1,18 @@
-//! Samplers: points in an order of which every prefix is spread over all of them \[BJFM19, 3.2\].
+//! Order points so that every prefix covers the surface \[BJFM19, 3.2\].
 //!
-//! - [`mod@estimate`]: how densely an order covers.
-//! - [`cells`]: colours averaged over what a point stands for.
-//! - [`geodesic`]: the greedy order along a surface, around thin walls.
-//! - [`greedy`]: the exact farthest-point order.
-//! - [`progressive`]: the paper's, of some points by chance the farthest; and points by chance alone.
-//! - [`mod@quality`]: how evenly a prefix is spread.
-//! - [`mod@spectrum`]: at which frequencies it is even.
+//! Order points:
+//!
+//! - [`greedy`]: compute the exact farthest-point order.
+//! - [`geodesic`]: compute the greedy order along a surface, around thin walls.
+//! - [`progressive`]: compute the paper's order, the farthest of some random points; or a random
+//!   order.
+//!
+//! Improve and measure an order:
+//!
+//! - [`cells`]: average colours over the cell of each point.
+//! - [`mod@estimate`]: estimate how densely an order covers.
+//! - [`mod@quality`]: measure how evenly a prefix is spread.
+//! - [`mod@spectrum`]: measure at which frequencies a prefix is even.
 
 pub mod cells;
 pub mod estimate;

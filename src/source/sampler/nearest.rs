@@ -1,20 +1,21 @@
-//! The distance to the nearest of points that become more: a grid of lists.
+//! Find the distance to the nearest of a growing set of points, with a grid of lists.
 //!
-//! The distances are those of the samplers, in `f32`; the grid is in f64 and says only where not to look.
+//! The distances are the samplers' distances, in `f32`. The grid is in f64, and only decides which
+//! cells to skip.
 
 use super::greedy::squared_distance;
 use glam::{DVec3, Vec3};
 
-/// Cells along the longest side of the box, at first.
+/// Initial number of cells along the longest side of the box.
 const FIRST: usize = 4;
-/// There are at most so many cells for each point that will come: a surface leaves most of them empty. Or
+/// The most cells for each point that will come, because a surface leaves most cells empty; or
 const CELLS: usize = 16;
-/// if that is less, so many.
+/// this many in all, if that is more.
 const FEW: usize = 1 << 21;
 /// The end of a list.
 const NONE: u32 = u32::MAX;
 
-/// Points in cells.
+/// Points in the cells of a grid.
 pub(super) struct Nearest {
     low: DVec3,
     extent: DVec3,
@@ -25,13 +26,13 @@ pub(super) struct Nearest {
     most: usize,
     side: f64,
     cells: [usize; 3],
-    /// The last point of each cell, and for each point the one before it in its cell.
+    /// The last point of each cell; and for each point, the one before it in its cell.
     last: Vec<u32>,
     before: Vec<u32>,
 }
 
 impl Nearest {
-    /// None yet, of points that will be among some.
+    /// No points yet; all later ones must be among `all`.
     pub(super) fn within(all: &[Vec3]) -> Self {
         let (mut low, mut high) = (DVec3::INFINITY, DVec3::NEG_INFINITY);
         for point in all {
@@ -52,10 +53,10 @@ impl Nearest {
         none
     }
 
-    /// Adds a point of the box.
+    /// Adds a point, which must lie in the box.
     pub(super) fn add(&mut self, point: Vec3) {
         self.points.push(point);
-        // On a surface about one point a cell.
+        // Keep about one point in each occupied cell of a surface.
         let finer = 2 * self.fine;
         if 2 * self.points.len() > finer * finer && finer.pow(3) <= self.most {
             self.fine = finer;
@@ -65,17 +66,17 @@ impl Nearest {
         }
     }
 
-    /// The least squared distance to a point; +inf if there is none.
+    /// The least squared distance to a point; +inf without points.
     pub(super) fn distance(&self, to: Vec3) -> f32 {
         let (cell, inside) = self.place(to);
-        // How far the border of the own cell is, at least.
+        // A lower bound of the distance to the border of the own cell.
         let edge = inside.min(DVec3::splat(self.side) - inside).min_element();
         let edge = if edge > 0.0 { edge } else { 0.0 };
         let mut least = f32::INFINITY;
         for ring in 0..self.fine + 1 {
             if ring > 0 {
                 let reach = edge + (ring - 1) as f64 * self.side;
-                // Squares in f32 are as far off as 2^-21 of themselves, and 3e-45.
+                // Squares in f32 are off by up to 2^-21 of themselves, and 3e-45.
                 if reach * reach * (1.0 - 1e-5) > f64::from(least) + 1e-44 {
                     break;
                 }
@@ -90,7 +91,8 @@ impl Nearest {
         least
     }
 
-    /// All points of the cells that are so many away in one axis, and no farther in any.
+    /// Visits all points of the cells that are `ring` cells away along one axis, and no farther
+    /// along any.
     fn ring(&self, [x, y, z]: [usize; 3], ring: usize, mut visit: impl FnMut(Vec3)) {
         let range = |at: usize, count: usize| at.saturating_sub(ring)..(at + ring + 1).min(count);
         let [columns, rows, layers] = self.cells;
@@ -100,7 +102,7 @@ impl Nearest {
                 let step = if shell || ring == 0 { 1 } else { 2 * ring };
                 let first = if shell { x.saturating_sub(ring) } else { x.wrapping_sub(ring) };
                 let mut i = first;
-                // Of a row inside of the shell its two ends alone.
+                // A row inside the shell contributes only its two ends.
                 for _ in 0..=2 * ring / step {
                     if i < columns && i.abs_diff(x) <= ring {
                         let mut at = self.last[(k * rows + j) * columns + i];
@@ -115,20 +117,20 @@ impl Nearest {
         }
     }
 
-    /// The cell of a point, and where the point is in it.
+    /// The cell of a point, and the position of the point in it.
     fn place(&self, point: Vec3) -> ([usize; 3], DVec3) {
         let from = point.as_dvec3() - self.low;
         let mut inside = from;
         let mut cell = [0; 3];
         for axis in 0..3 {
-            // Negative numbers become 0.
+            // The cast turns negative numbers into 0.
             cell[axis] = ((from[axis] / self.side) as usize).min(self.cells[axis] - 1);
             inside[axis] -= cell[axis] as f64 * self.side;
         }
         (cell, inside)
     }
 
-    /// Makes the cells anew.
+    /// Builds the grid again with the current cell size.
     fn divide(&mut self) {
         let longest = self.extent.max_element();
         self.side = if longest > 0.0 { longest / self.fine as f64 } else { 1.0 };

@@ -1,44 +1,50 @@
-//! The paper's sampler: of some points by chance the farthest \[BJFM19, 3.2\].
+//! Order points by the paper's sampler: repeatedly take the farthest of some random points
+//! \[BJFM19, 3.2\].
 //!
 //! Given are n finite points, a start, a seed and a count k. Squared distances are those of
-//! [`super::greedy`]. The *rest* is a list, at first all indices but the start, ascending. Numbers by chance are
-//! [`random::bits`] of the seed and 1, 2, 3 ..., one after the other. Rounds are counted from 0.
+//! [`super::greedy`]. The *rest* is a list that begins with all indices but the start, in ascending
+//! order. Random numbers are [`random::bits`] of the seed and 1, 2, 3 ..., one after the other.
+//! Rounds are counted from 0.
 //!
-//! # Samples of a round
+//! # How a round draws its samples
 //!
-//! As many as the round takes, or all of the rest if it has no more. For j = 0, 1, ...: with L the length of
-//! the rest less j, and b the next number, the item `floor(b L / 2^64)` of the rest changes places with the item
-//! L - 1. The samples are what then stands at the end of the rest, from L = the length backwards; they are taken
-//! out of it. Samples that are accepted are used up, at the distance 0 too. Samples that are not used up return
-//! to the end of the rest, in the order in which they were drawn.
+//! A round draws its number of samples, or all of the rest if there are fewer. For j = 0, 1, ...:
+//! let L be the length of the rest less j, and b the next number. The item `floor(b L / 2^64)` of
+//! the rest is swapped with the item L - 1. The samples are then at the end of the rest, from
+//! L = the length backwards, and are removed from it. An accepted sample is used up, even at the
+//! distance 0. Samples that are not used up return to the end of the rest, in the order in which
+//! they were drawn.
 //!
 //! # [`Schedule::Paper`]
 //!
 //! 1. A round takes 200 samples, and accepts 1 + floor(round / 500) of them.
-//! 2. To accept: of the samples the one whose squared distance to the nearest pick is largest, of equal ones
-//!    that of the lowest index. It is a pick from then on, for the other samples of the round too.
-//! 3. Near samples are used up: those whose squared distance to the nearest pick then is 0, or less than
-//!    1/16 of that at which the last one of the round was accepted.
+//! 2. Accept the sample whose squared distance to the nearest pick is largest; of equal ones, the
+//!    lowest index. From then on it is a pick, for the other samples of the round too.
+//! 3. Near samples are used up. A sample is near if its squared distance to the nearest pick is
+//!    then 0, or less than 1/16 of the squared distance at which the last sample of the round was
+//!    accepted.
 //!
 //! # [`Schedule::AsShipped`]
 //!
-//! 1. Round 0 takes 200 samples and accepts 0. After the rounds 0, 500, 1000 ... the samples are halved, rounded
-//!    down, but not below 20, and one more is accepted, at most 3/10 of the samples, rounded down; the samples of a
-//!    full round, also where the rest has fewer.
-//! 2. The samples are put in falling order of their squared distances to the nearest pick of the rounds before, of
-//!    equal ones the lowest index first. The first ones are accepted.
+//! 1. Round 0 takes 200 samples and accepts 0. After the rounds 0, 500, 1000 ... the number of
+//!    samples is halved, rounded down, but not below 20. One more sample is then accepted in each
+//!    round, up to 3/10 of the samples of a full round, rounded down, even where the rest has
+//!    fewer.
+//! 2. The samples are sorted by falling squared distance to the nearest pick of the rounds before;
+//!    of equal ones, the lowest index comes first. The first ones are accepted.
 //! 3. The next one is used up.
 //!
-//! # Both
+//! # Rules of both schedules
 //!
-//! The order ends after k picks, in the middle of a round if need be, or when the rest is empty: there may be
-//! fewer than k.
-//! The distance of a pick is that to all picks before it, as for every [`Order`].
+//! The order ends after k picks, even in the middle of a round, or when the rest is empty: there
+//! may be fewer than k. The distance of a pick is its distance to all picks before it, as for every
+//! [`Order`].
 //!
-//! `Decided:` in the paper "samples that are at close vicinity to the chosen samples can also be removed": here
-//! within a quarter of the distance that is then asked for. What is removed would be picked when four times as
-//! near. `Decided:` of several accepted in a round each is a pick for the next, as "all surfels chosen before" says.
-//! `AsShipped` is the schedule of the authors' program as it was described to us; the program was not at hand.
+//! `Decided:` in the paper "samples that are at close vicinity to the chosen samples can also be
+//! removed": here, samples within a quarter of the distance that is then asked for. A removed
+//! sample would only be picked at a quarter of that distance. `Decided:` if a round accepts
+//! several, each is a pick for the next, as "all surfels chosen before" says. `AsShipped` is the
+//! schedule of the authors' program as it was described to us; the program was not at hand.
 
 use super::greedy::{Order, Start, squared_distance};
 use super::nearest::Nearest;
@@ -47,27 +53,27 @@ use crate::memory;
 use crate::number::random;
 use glam::Vec3;
 
-/// Samples of a round, at first.
+/// Initial number of samples of a round.
 const SAMPLES: usize = 200;
-/// The fewest samples of [`Schedule::AsShipped`].
+/// The least number of samples of [`Schedule::AsShipped`].
 const FEWEST: usize = 20;
-/// Rounds after which the schedule changes.
+/// The schedule changes after this many rounds.
 const EVERY: u64 = 500;
-/// A near sample: this part of the squared distance of the last one accepted.
+/// A sample is near below this fraction of the squared distance at which the last one was accepted.
 const NEAR: f32 = 1.0 / 16.0;
-/// What a point takes that is picked too, its arrays growing, and the cells for it.
+/// Bytes of a point that is also picked, while its arrays grow, and of its cells.
 const BYTES: u64 = 144;
 
-/// How many samples a round takes, and what becomes of them.
+/// How many samples a round takes, and how they are used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Schedule {
-    /// The paper's text.
+    /// The schedule of the paper's text.
     Paper,
-    /// The authors' program.
+    /// The schedule of the authors' program.
     AsShipped,
 }
 
-/// Picks of [`shuffled`] that are told at once.
+/// Picks of [`shuffled`] between two reports of progress.
 const EACH: usize = 1 << 12;
 
 /// The sampler, see the [module](self).
@@ -75,9 +81,9 @@ const EACH: usize = 1 << 12;
 pub struct Progressive {
     /// The first pick.
     pub start: Start,
-    /// What the samples are drawn by.
+    /// The random seed of the samples.
     pub seed: u64,
-    /// How they are used.
+    /// How the samples are used.
     pub schedule: Schedule,
 }
 
@@ -85,8 +91,8 @@ pub struct Progressive {
 type Sample = (f32, u32);
 
 impl Progressive {
-    /// The first `count` picks, or fewer; see the [module](self). `progress` is told the name of a step, how many
-    /// picks there are, and how many there may be.
+    /// The first `count` picks, or fewer; see the [module](self). `progress` gets the name of a
+    /// step, the number of picks, and the most that there may be.
     ///
     /// # Errors
     /// As [`super::Greedy::order`].
@@ -120,6 +126,7 @@ impl Progressive {
             }
             progress("picks", picks.order.index.len() as u64, count as u64);
             let drawn = rest.draw(samples);
+            // The last round accepts only as many as are still wanted.
             let room = accepted.min(count - picks.order.index.len());
             match self.schedule {
                 Schedule::Paper => {
@@ -140,7 +147,8 @@ impl Progressive {
     }
 }
 
-/// Accepts so many of the samples, each a pick for the next; gives back those that are not used up.
+/// Accepts this many samples, each of which is a pick for the next; returns the samples that are
+/// not used up.
 fn paper(picks: &mut Picks<'_>, drawn: Vec<u32>, accepted: usize) -> Vec<u32> {
     let mut samples: Vec<Sample> = drawn.iter().map(|&i| (picks.distance(i), i)).collect();
     let mut last = 0.0;
@@ -164,7 +172,8 @@ fn paper(picks: &mut Picks<'_>, drawn: Vec<u32>, accepted: usize) -> Vec<u32> {
     samples.into_iter().filter(far).map(|(_, index)| index).collect()
 }
 
-/// Accepts the farthest from the picks of the rounds before; gives back all others but the next.
+/// Accepts the samples farthest from the picks of earlier rounds; returns all others except the
+/// next one.
 fn as_shipped(picks: &mut Picks<'_>, drawn: &[u32], accepted: usize) -> Vec<u32> {
     let mut samples: Vec<Sample> = drawn.iter().map(|&i| (picks.distance(i), i)).collect();
     samples.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
@@ -178,7 +187,7 @@ fn before(a: Sample, b: Sample) -> bool {
     a.0 > b.0 || (a.0 == b.0 && a.1 < b.1)
 }
 
-/// What has been picked.
+/// The picks so far.
 struct Picks<'a> {
     points: &'a [Vec3],
     near: Nearest,
@@ -197,16 +206,16 @@ impl Picks<'_> {
     }
 }
 
-/// What has not been picked or used up.
+/// The points that are neither picked nor used up.
 struct Rest {
     indices: Vec<u32>,
     seed: u64,
-    /// How many numbers have been drawn.
+    /// How many random numbers have been drawn.
     drawn: u64,
 }
 
 impl Rest {
-    /// Takes samples out, in the order in which they are drawn.
+    /// Draws samples and removes them, in the order of the draws.
     fn draw(&mut self, samples: usize) -> Vec<u32> {
         let mut drawn = Vec::with_capacity(samples);
         for _ in 0..samples.min(self.indices.len()) {
@@ -218,8 +227,8 @@ impl Rest {
     }
 }
 
-/// All points in an order by chance: by ascending [`random::bits`] of the seed and their indices, of equal ones
-/// the lowest index first. `progress` is told as by [`Progressive::order`].
+/// All points in random order: by ascending [`random::bits`] of the seed and their indices; of
+/// equal ones, the lowest index first. `progress` as in [`Progressive::order`].
 ///
 /// # Errors
 /// As [`super::Greedy::order`].

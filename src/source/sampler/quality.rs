@@ -1,6 +1,6 @@
-//! How evenly a prefix of an order is spread \[BJFM19, 3.3\].
+//! Measure how evenly a prefix of an order is spread \[BJFM19, 3.3\].
 //!
-//! Squared distances are those of [`super::greedy`], in `f32`; of the prefix Q of points P
+//! Squared distances are those of [`super::greedy`], in `f32`. For the prefix Q of points P:
 //!
 //! ```text
 //!   nearest_q = the least d(q, q') of another member q' of Q, +inf if there is none
@@ -8,8 +8,8 @@
 //!   covering  = the largest, over all p of P, of the least d(p, q) of a member q of Q
 //! ```
 //!
-//! `Decided:` another member is one at another place of the prefix, so that equal points are 0 apart.
-//! The paper draws the square roots of `nearest`, divided by one common length, as violins.
+//! `Decided:` "another member" means another position in the prefix, so that equal points are 0
+//! apart. The paper draws the square roots of `nearest`, divided by one common length, as violins.
 
 use super::search::{LEAF, Search};
 use crate::error::{Error, Result};
@@ -18,27 +18,27 @@ use crate::index::point_tree::PointTree;
 use crate::memory;
 use glam::Vec3;
 
-/// How a prefix is spread: all are squared distances.
+/// How a prefix is spread; all numbers are squared distances.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Quality {
-    /// For each of the prefix, that to the nearest other.
+    /// For each point of the prefix, the distance to the nearest other one.
     pub nearest: Vec<f32>,
     /// The least of `nearest`.
     pub packing: f32,
-    /// The largest from any point to the nearest of the prefix.
+    /// The largest distance from any point to the nearest point of the prefix.
     pub covering: f32,
 }
 
 /// Points of one job.
 const JOB: usize = 4096;
-/// What the tree and the distances take for a point of the prefix, at most.
+/// The most bytes that the tree and the distances take for a point of the prefix.
 const BYTES_A_POINT: u64 = 48;
 
-/// The quality of the points of some indices, such as those of a [prefix](super::Order).
+/// The quality of the points with these indices, such as a [prefix](super::Order).
 ///
 /// # Errors
-/// [`Error::Invalid`] if there is no index, if one is of no point, if a point is not finite, or if
-/// there are 2^32 indices or more.
+/// [`Error::Invalid`] if there is no index, if one belongs to no point, if a point is not finite,
+/// or if there are 2^32 indices or more.
 pub fn quality(points: &[Vec3], prefix: &[u32], exec: &Exec) -> Result<Quality> {
     let invalid = |what| Err(Error::Invalid(what));
     if prefix.is_empty() || u32::try_from(prefix.len()).is_err() {

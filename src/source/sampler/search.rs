@@ -1,32 +1,33 @@
-//! The search of the point that is nearest, by squared distances of [`super::greedy`].
+//! Search for the nearest point, by the squared distances of [`super::greedy`].
 
 use super::greedy::squared_distance;
 use crate::index::point_tree::PointTree;
 use glam::Vec3;
 use std::ops::Range;
 
-/// Ranges of the tree of at most so many points are searched one by one.
+/// Ranges of the tree with at most this many points are searched linearly.
 pub(super) const LEAF: usize = 8;
 
-/// A squared distance, and the index of the point that is so far: the lower index of equal distances.
+/// A squared distance, and the index of the point at this distance. Of equal distances the lower
+/// index wins.
 pub(super) type Found = (f32, u32);
 
-/// The search of the point of a tree that is nearest to a place.
+/// The search for the point of a tree that is nearest to a place.
 pub(super) struct Search<'a> {
     pub(super) tree: &'a PointTree,
     pub(super) point: Vec3,
-    /// The point that does not count.
+    /// The index of a point to ignore.
     pub(super) own: u32,
 }
 
 impl Search<'_> {
-    /// The nearest point, or what is found already if that is nearer, or as near and of a lower index.
+    /// The nearest point, or `found` if that is nearer, or as near with a lower index.
     pub(super) fn nearest(&self, mut found: Found) -> Found {
         self.within(0..self.tree.entries().len(), &mut found);
         found
     }
 
-    /// Replaces what is found by the nearest of a range of the tree.
+    /// Replaces `found` if the range has a nearer point.
     fn within(&self, range: Range<usize>, found: &mut Found) {
         if range.len() <= LEAF {
             range.for_each(|rank| self.offer(rank, found));
@@ -38,7 +39,8 @@ impl Search<'_> {
         let (low, high) = (range.start..middle, middle + 1..range.end);
         let (near, far) = if out < 0.0 { (low, high) } else { (high, low) };
         self.within(near, found);
-        // Rounded, too, no point behind the plane is nearer than the plane: rounding is monotone.
+        // This holds after rounding too: rounding is monotone, so no point behind the plane is
+        // nearer than the plane.
         if out * out <= found.0 {
             self.within(far, found);
         }

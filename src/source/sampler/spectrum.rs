@@ -1,11 +1,13 @@
-//! The radial power spectrum of points on a surface: at which frequencies they are even.
+//! Measure at which frequencies points on a surface are even: their radial power spectrum.
 //!
-//! It is that of differences of points \[WW11\]: of points in the plane the mean of their periodogram over all
-//! directions is a sum over pairs of Bessel functions of their distance. On a surface only near pairs lie in a
-//! plane, so that pairs count less the farther apart they are, and none beyond the reach R. What an even
-//! density alone would give is subtracted: the peak at the frequency 0.
+//! This is the spectrum of differences of points \[WW11\]. For points in the plane, the mean of
+//! their periodogram over all directions is a sum over pairs of Bessel functions of their distance.
+//! On a surface only near pairs lie in a plane. Therefore pairs count less the farther apart they
+//! are, and not at all beyond the reach R. The contribution of a merely even density, the peak at
+//! the frequency 0, is subtracted.
 //!
-//! Given are n >= 256 finite points. Squared distances are those of [`super::greedy`], in `f32`; all else is f64.
+//! Given are n >= 256 finite points. Squared distances are those of [`super::greedy`], in `f32`;
+//! everything else is f64.
 //!
 //! ```text
 //!   m     = min(n, 256) samples: the points floor(i n / m), i = 0, 1 ... m - 1
@@ -24,22 +26,25 @@
 //!
 //! Sums are in ascending b.
 //!
-//! u is how far apart neighbours are where points of this density are packed as densely as can be in a plane,
-//! in a lattice of triangles. Frequencies are in cycles a u; that lattice has its first peak at 2 / sqrt(3) =
-//! 1.15.
+//! u is the distance of neighbours if points of this density are packed as densely as possible in a
+//! plane, in a lattice of triangles. Frequencies are in cycles a u; that lattice has its first peak
+//! at 2 / sqrt(3) = 1.15.
 //!
-//! # What it says
+//! # How to read a spectrum
 //!
-//! - Points by chance have 1 at every frequency. Blue noise has next to nothing below a frequency of about 0.8,
-//!   a peak near 1, and about 1 far above. A lattice has peaks, the higher the further R reaches, and so have
-//!   points that were chosen among those of a lattice or a raster, at its frequencies.
-//! - Two frequencies are told apart if they differ by about 1 / R: 0.17 cycles a u, where 128 points are within R.
-//!   Near that S is off by what curvature and edges within R do to rho, and can be below 0.
-//! - It holds where a surface is nearly flat within R, and has no edge there. On a sphere flatness is not needed:
-//!   a ball around one of its points cuts out an area of pi times its squared radius.
+//! - Random points have 1 at every frequency. Blue noise has almost nothing below a frequency of
+//!   about 0.8, a peak near 1, and about 1 far above. A lattice has peaks, which are higher the
+//!   further R reaches. Points chosen from a lattice or a raster have peaks at its frequencies too.
+//! - Two frequencies can be told apart if they differ by about 1 / R: 0.17 cycles a u, with 128
+//!   points within R. At frequencies near that, S is off because curvature and edges within R
+//!   change rho, and can be below 0.
+//! - The spectrum is valid where a surface is nearly flat within R, and has no edge there. A sphere
+//!   need not be flat: a ball around one of its points cuts out an area of pi times the ball's
+//!   squared radius.
 //!
-//! `Decided:` \[BJFM19, 1\] speaks of blue noise and measures no spectrum. \[WW11\] leave open how pairs are
-//! weighted. Distances are straight, so that points on both sides of a wall thinner than R are one surface here.
+//! `Decided:` \[BJFM19, 1\] speaks of blue noise and measures no spectrum. \[WW11\] leave open how
+//! pairs are weighted. Distances are straight, so that points on both sides of a wall thinner than
+//! R belong to one surface here.
 //!
 //! \[WW11\] Wei, Wang: *Differential Domain Analysis for Non-uniform Sampling*, SIGGRAPH 2011.
 
@@ -54,18 +59,18 @@ use glam::Vec3;
 use std::f64::consts::{PI, TAU};
 use std::ops::Range;
 
-/// The fewest points, and the most samples by which the reach is chosen.
+/// The least number of points, and the most samples that determine the reach.
 pub const FEWEST: usize = 256;
-/// Points within the reach, in the median.
+/// The median number of points within the reach.
 const WITHIN: usize = 128;
 const BINS: usize = 1024;
-/// Frequencies in a cycle a unit, and the first and the last of all.
+/// Frequencies in one cycle a unit, and the first and the last of all.
 const STEPS: usize = 32;
 const FIRST: usize = 8;
 const LAST: usize = 128;
 /// Points of one job.
 const JOB: usize = 1024;
-/// What the tree takes for a point, at most.
+/// The most bytes that the tree takes for a point.
 const BYTES_A_POINT: u64 = 40;
 
 /// The spectrum, see the [module](self).
@@ -82,19 +87,20 @@ pub struct Spectrum {
 }
 
 impl Spectrum {
-    /// Those of [`power`](Self::power), in cycles a unit: from 1/4 to 4.
+    /// The frequencies of [`power`](Self::power), in cycles a unit: from 1/4 to 4.
     pub fn frequencies() -> impl Iterator<Item = f64> {
         (FIRST..=LAST).map(|k| k as f64 / STEPS as f64)
     }
 
-    /// The mean power from 1/4 to 3/4 of a cycle a unit: of blue noise next to nothing.
+    /// The mean power from 1/4 to 3/4 of a cycle a unit; for blue noise almost nothing.
     #[must_use]
     pub fn below(&self) -> f64 {
         let band = &self.power[..=3 * STEPS / 4 - FIRST];
         band.iter().sum::<f64>() / band.len() as f64
     }
 
-    /// The frequency of the greatest power up to 2 cycles a unit, of equal ones the lowest, and this power.
+    /// The frequency of the greatest power up to 2 cycles a unit, and this power; of equal powers
+    /// the lowest frequency.
     #[must_use]
     pub fn peak(&self) -> [f64; 2] {
         let all = Self::frequencies().zip(&self.power).take_while(|(f, _)| *f <= 2.0);
@@ -105,8 +111,9 @@ impl Spectrum {
 /// The spectrum of points, see the [module](self).
 ///
 /// # Errors
-/// [`Error::Invalid`] if there are fewer than [`FEWEST`] points, or 2^32 or more, if a point is not finite, or if
-/// points are so close that R is 0, or so far apart that R is infinite, or that no pair has a weight.
+/// [`Error::Invalid`] if there are fewer than [`FEWEST`] points, or 2^32 or more, or if a point is
+/// not finite. Also if points are so close that R is 0, so far apart that R is infinite, or such
+/// that no pair has a weight.
 pub fn spectrum(points: &[Vec3], exec: &Exec) -> Result<Spectrum> {
     let (n, invalid) = (points.len(), |what| Err(Error::Invalid(what)));
     if n < FEWEST || u32::try_from(n).is_err() {
@@ -126,6 +133,7 @@ pub fn spectrum(points: &[Vec3], exec: &Exec) -> Result<Spectrum> {
     let side = reach / BINS as f64;
     let area = |b: usize| PI * (side * side) * (2 * b + 1) as f64;
     let middle = |b: usize| (b as f64 + 0.5) / BINS as f64;
+    // Leave out near pairs, which samplers keep apart, and far pairs, where a surface curves.
     let outer = |b| {
         let s2 = middle(b) * middle(b);
         (s2 * (1.0 - s2)) * (s2 * (1.0 - s2))
@@ -150,7 +158,7 @@ pub fn spectrum(points: &[Vec3], exec: &Exec) -> Result<Spectrum> {
     Ok(Spectrum { reach, density, unit, power: (FIRST..=LAST).map(power).collect() })
 }
 
-/// R squared, as the least distances of samples to all points say.
+/// R squared, from the least distances of samples to all points.
 fn reach2(points: &[Vec3], exec: &Exec) -> f32 {
     let n = points.len();
     let samples = (0..FEWEST).map(|i| i * n / FEWEST).collect();
@@ -162,7 +170,7 @@ fn reach2(points: &[Vec3], exec: &Exec) -> f32 {
     *found.select_nth_unstable_by((FEWEST - 1) / 2, f32::total_cmp).1
 }
 
-/// How many ordered pairs are in each bin.
+/// The number of ordered pairs in each bin.
 fn pairs(points: &[Vec3], reach2: f32, exec: &Exec) -> Vec<u64> {
     let tree = PointTree::new(points, LEAF, exec);
     let scale = BINS as f64 / f64::from(reach2).sqrt();
@@ -171,7 +179,7 @@ fn pairs(points: &[Vec3], reach2: f32, exec: &Exec) -> Vec<u64> {
         for from in entries {
             let mut offer = |id: u32, d2: f32| {
                 if id != from.id && d2 < reach2 {
-                    // Rounding may lead to the first bin beyond.
+                    // Rounding may lead to one bin beyond the last.
                     bins[((f64::from(d2).sqrt() * scale) as usize).min(BINS - 1)] += 1;
                 }
             };
@@ -185,7 +193,8 @@ fn pairs(points: &[Vec3], reach2: f32, exec: &Exec) -> Vec<u64> {
     bins
 }
 
-/// Tells `offer` of all points of a range whose squared distance may be below `reach2`, and of others.
+/// Passes to `offer` all points of a range whose squared distance may be below `reach2`, and
+/// possibly others.
 fn within(
     tree: &PointTree,
     range: Range<usize>,
@@ -204,7 +213,8 @@ fn within(
     let (low, high) = (range.start..middle, middle + 1..range.end);
     let (near, far) = if out < 0.0 { (low, high) } else { (high, low) };
     within(tree, near, (from, reach2), offer);
-    // Rounded, too, no point behind the plane is nearer than the plane: rounding is monotone.
+    // This holds after rounding too: rounding is monotone, so no point behind the plane is nearer
+    // than the plane.
     if out * out < reach2 {
         within(tree, far, (from, reach2), offer);
     }

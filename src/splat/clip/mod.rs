@@ -1,7 +1,8 @@
-//! Clipping of triangles and segments in view space, so that they can be projected and snapped.
+//! Clip triangles and segments in view space, so that they can be projected and snapped.
 //!
-//! What is kept is in front of the near plane and within the guard band of the screen, |X| and |Y|
-//! at most G = [`GUARD_BAND`] = 2^17 px. These conditions are linear in view space: with t = -z,
+//! Clipping keeps what is in front of the near plane and within the guard band of the screen: |X|
+//! and
+//! |Y| at most G = [`GUARD_BAND`] = 2^17 px. These conditions are linear in view space. With t = -z,
 //! and s = t under a perspective camera, s = 1 under an orthographic one, a point is inside if none
 //! of its five distances is negative:
 //!
@@ -13,20 +14,21 @@
 //!   bottom   fy y + (G - cy) s           Y <= G
 //! ```
 //!
-//! A point at t = near is kept, unlike the centre of a surfel: it is where edges are cut. Under a
-//! perspective camera near > 0, so that all that is kept has t > 0.
+//! A point at t = near is kept, unlike the centre of a surfel, because edges are cut there. Under a
+//! perspective camera near > 0, so everything that is kept has t > 0.
 //!
-//! **Cutting**, if any corner is outside: by one plane after the other in this order, as Sutherland
-//! and Hodgman do. A polygon keeps its order; where its outline crosses a plane, between a vertex
-//! inside with the distance d and one outside with the distance e < 0, it gets
+//! **Cutting**, if any corner is outside: by one plane after the other in this order, with the
+//! algorithm of Sutherland and Hodgman. A polygon keeps its order. Where its outline crosses a
+//! plane, between a vertex inside with the distance d and one outside with the distance e < 0, the
+//! polygon gets a new vertex
 //!
 //! ```text
 //!   f = -e / (d - e)     g = d / (d - e)     inside f + outside g
 //! ```
 //!
-//! for the weights and, component by component, for the position. Both factors are at least 0: no
-//! digits are lost where one end is much farther than the other. A t that rounding made less than
-//! near is set to near. Then the coordinate that the plane bounds is put on the plane:
+//! for the weights and, component by component, for the position. Both factors are at least 0, so
+//! no digits are lost where one end is much farther than the other. A t that rounding made less
+//! than near is set to near. Then the coordinate that the plane bounds is put on the plane:
 //!
 //! ```text
 //!   near   z = -near     left    x = -((G + cx) s) / fx     top      y = (G + cy) s / fy
@@ -34,17 +36,18 @@
 //! ```
 //!
 //! So a vertex on the guard band misses it by some roundings of 2^17 px, less than 1/16 px in
-//! `f32`, however far away the ends are, and [`crate::frame::raster::Snap::fixed`] holds it there.
+//! `f32`, however far away the ends are. [`crate::frame::raster::Snap::fixed`] then holds the
+//! vertex there.
 //!
-//! The result depends on the two ends and not on the direction: triangles that share an edge get
-//! the same vertices on it, and so does a segment.
+//! The result depends on the two ends and not on the direction, so triangles that share an edge get
+//! the same vertices on it. The same holds for a segment.
 //!
 //! The **weights** of a vertex say how much of each original corner is in it: any quantity that is
 //! linear in space is the sum of weights times corners. A corner that is inside keeps its position
 //! and its weight 1, exactly.
 //!
-//! A primitive with a corner that is not finite, or so far away that a distance overflows where it
-//! is cut, gives nothing.
+//! A primitive gives nothing if a corner is not finite, or if a corner is so far away that a
+//! distance overflows where the primitive is cut.
 
 #[cfg(test)]
 mod tests;
@@ -53,15 +56,16 @@ use super::View;
 use crate::frame::raster::GUARD_BAND;
 use crate::number::{Exact, Real, Truth, Vector3};
 
-/// What a view keeps of a triangle or a segment.
+/// The planes that clip triangles and segments for one view.
 #[derive(Clone, Debug)]
 pub struct Clip<R> {
-    /// In the order of the cuts.
+    /// The planes in the order of the cuts.
     planes: [ClipPlane<R>; 5],
     near: R,
 }
 
-/// The distance `(scale c + past t) + one`, in units of its own, with c the coordinate it bounds.
+/// The distance `(scale c + past t) + one`, in units of its own; c is the coordinate that the plane
+/// bounds.
 #[derive(Clone, Copy, Debug)]
 struct ClipPlane<R> {
     axis: Axis,
@@ -77,12 +81,12 @@ enum Axis {
     Z,
 }
 
-/// A vertex of what is left of a primitive of `N` corners.
+/// A vertex of the remaining part of a primitive with `N` corners.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Clipped<R, const N: usize> {
-    /// Its position in view space.
+    /// The position in view space.
     pub position: Vector3<R>,
-    /// How much of each original corner is in it: at least 0, their sum 1 but for rounding.
+    /// How much of each original corner is in the vertex: at least 0, their sum 1 up to rounding.
     pub weights: [R; N],
 }
 
@@ -108,7 +112,7 @@ impl<R: Real> ClipPlane<R> {
 }
 
 impl<R: Real> Clip<R> {
-    /// The planes of a camera.
+    /// Makes the planes of a camera.
     #[must_use]
     pub fn new(view: &View<R>) -> Self {
         let guard = R::from_f32(GUARD_BAND as f32);
@@ -136,7 +140,7 @@ impl<R: Real> Clip<R> {
         corners.iter().fold(yes, |all, p| all & inside(p))
     }
 
-    /// Whether all corners are beyond one of the planes, so that nothing is left.
+    /// Whether all corners are beyond one of the planes, so that nothing remains.
     #[must_use]
     pub fn drops(&self, corners: &[Vector3<R>]) -> R::Truth {
         let beyond = |plane: &ClipPlane<R>| {
@@ -146,7 +150,8 @@ impl<R: Real> Clip<R> {
         self.planes.iter().fold(R::Truth::from(false), |any, plane| any | beyond(plane))
     }
 
-    /// What is left of a triangle, as [`Clip::triangle`] has it; none if that is not certain.
+    /// The remaining polygon of a triangle, as [`Clip::triangle`] gives it; none if it is not
+    /// certain.
     pub(crate) fn certain(&self, corners: [Vector3<R>; 3]) -> Option<Vec<Clipped<R, 3>>> {
         if !corners.iter().all(|p| is_finite(p).certainly()) {
             return None;
@@ -158,7 +163,7 @@ impl<R: Real> Clip<R> {
         if self.keeps(&corners).certainly() { Some(polygon) } else { self.polygon(polygon) }
     }
 
-    /// What the planes leave of a polygon; `None` also if a distance overflows, or if it is not certain
+    /// Clips a polygon by all planes; `None` also if a distance overflows, or if it is not certain
     /// on which side of a plane a corner is.
     fn polygon(&self, mut polygon: Vec<Clipped<R, 3>>) -> Option<Vec<Clipped<R, 3>>> {
         for plane in &self.planes {
@@ -170,6 +175,8 @@ impl<R: Real> Clip<R> {
             let mut before = measured(polygon.last()?);
             let mut kept = Vec::with_capacity(polygon.len() + 1);
             for here in polygon.iter().map(measured) {
+                // Each edge adds its crossing with the plane, if it has one, and then its end, if
+                // that is inside.
                 match [certain(&before)?, certain(&here)?] {
                     [true, true] => kept.push(here.0),
                     [true, false] => kept.push(self.cut(plane, before, here)?),
@@ -183,8 +190,8 @@ impl<R: Real> Clip<R> {
         Some(polygon)
     }
 
-    /// Where a plane cuts between a vertex inside and one outside, each with its distance; `None`
-    /// if that is not finite.
+    /// Cuts between a vertex inside and a vertex outside, each with its distance to the plane;
+    /// `None` if the result is not finite.
     fn cut<const N: usize>(
         &self,
         plane: &ClipPlane<R>,
@@ -193,6 +200,7 @@ impl<R: Real> Clip<R> {
     ) -> Option<Clipped<R, N>> {
         let (f, g) = (-e / (d - e), d / (d - e));
         let mut position = inside.position * f + outside.position * g;
+        // Rounding may have made t less than near.
         position.z = position.z.at_most(-self.near);
         plane.put(&mut position);
         let weights = std::array::from_fn(|i| inside.weights[i] * f + outside.weights[i] * g);
@@ -203,12 +211,13 @@ impl<R: Real> Clip<R> {
 }
 
 impl<R: Exact> Clip<R> {
-    /// What is left of a triangle: the corners of a convex polygon in the order of the triangle, to
-    /// be drawn as a fan around the first; none, or 3 to 8. At each plane the crossing of the edge
-    /// that ends at a corner comes before that corner, beginning with the edge that ends at the
-    /// first.
+    /// Clips a triangle. Returns the corners of a convex polygon in the order of the triangle, to
+    /// be drawn as a fan around the first; none, or 3 to 8 corners. At each plane, the crossing of
+    /// the edge that ends at a corner comes before that corner, beginning with the edge that ends
+    /// at the first corner.
     ///
-    /// Vertices may coincide. Where an edge lies within a rounding of a plane there can be more.
+    /// Vertices may coincide. Where an edge lies within a rounding of a plane there can be more
+    /// vertices.
     #[must_use]
     pub fn triangle(&self, corners: [Vector3<R>; 3]) -> Vec<Clipped<R, 3>> {
         if !corners.iter().all(is_finite) {
@@ -218,7 +227,8 @@ impl<R: Exact> Clip<R> {
         if self.keeps(&corners) { polygon } else { self.polygon(polygon).unwrap_or_default() }
     }
 
-    /// Calls `draw` for each triangle of the fan around the first corner of what [`Clip::triangle`] leaves.
+    /// Calls `draw` for each triangle of the fan around the first corner of the polygon that
+    /// [`Clip::triangle`] returns.
     #[inline]
     pub(crate) fn fan(&self, corners: [Vector3<R>; 3], mut draw: impl FnMut([&Clipped<R, 3>; 3])) {
         if corners.iter().all(is_finite) && self.keeps(&corners) {
@@ -231,7 +241,7 @@ impl<R: Exact> Clip<R> {
         }
     }
 
-    /// What is left of a segment: its ends, in order.
+    /// Clips a segment and returns its new ends, in order.
     #[must_use]
     pub fn segment(&self, corners: [Vector3<R>; 2]) -> Option<[Clipped<R, 2>; 2]> {
         if !corners.iter().all(is_finite) {
@@ -254,7 +264,7 @@ impl<R: Exact> Clip<R> {
     }
 }
 
-/// The corners as they are, each with its own weight.
+/// The unclipped corners, each with only its own weight.
 pub(crate) fn whole<R: Real, const N: usize>(corners: [Vector3<R>; N]) -> [Clipped<R, N>; N] {
     std::array::from_fn(|i| {
         let weights = std::array::from_fn(|k| if k == i { R::ONE } else { R::ZERO });

@@ -1,4 +1,4 @@
-//! Vertices of clipped primitives, against rays, and against each other.
+//! Checks vertices of clipped primitives against rays, and against each other.
 
 use super::*;
 use crate::frame::raster::Snap;
@@ -38,7 +38,8 @@ fn screen<R: Exact>(view: &View<R>, p: Vector3<R>) -> [f64; 2] {
 const VIEWS: [(bool, f32); 4] =
     [(true, 300.0), (true, 30_000.0), (false, 300.0), (false, 30_000.0)];
 
-/// Checks every vertex of many triangles; how far beyond the guard band they are, in pixels.
+/// Checks every vertex of many triangles; returns how far beyond the guard band they are, in
+/// pixels.
 fn vertices_are_sound<R: Exact>(epsilon: f64) -> f64 {
     let (mut worst, mut cuts) = (0.0, 0);
     for (seed, (perspective, focal)) in (0..).zip(VIEWS) {
@@ -56,7 +57,7 @@ fn vertices_are_sound<R: Exact>(epsilon: f64) -> f64 {
                 }
                 let weights = v.weights.map(R::to_f64);
                 let sum: f64 = weights.iter().sum();
-                // A cut rounds some 3 times and there are 5.
+                // A cut rounds about 3 times, and there are 5 cuts.
                 assert!((sum - 1.0).abs() < 16.0 * epsilon && weights.iter().all(|w| *w >= 0.0));
                 for axis in 0..3 {
                     let parts = [0, 1, 2].map(|k| weights[k] * wide(corners[k])[axis]);
@@ -75,7 +76,7 @@ fn vertices_are_sound<R: Exact>(epsilon: f64) -> f64 {
 #[test]
 fn vertices_are_inside_and_are_what_their_weights_say() {
     // The border is a quotient of sums of about 2^17 px, and is projected again: half a dozen
-    // roundings of it.
+    // roundings.
     for (epsilon, check) in [
         (f64::from(f32::EPSILON) / 2.0, vertices_are_sound::<f32> as fn(f64) -> f64),
         (f64::EPSILON / 2.0, vertices_are_sound::<f64>),
@@ -202,7 +203,7 @@ fn corners_inside_stay_as_they_are_and_cuts_are_where_they_must_be() {
     let inside = [[0.5, 0.25, -3.0], [-1.0, 0.1, -0.125], [0.0, 7.0, -9.0]];
     let inside = inside.map(|[x, y, z]| Vector3::new(x, y, z));
     assert_eq!(clip.triangle(inside), whole(inside));
-    // From t = 1.125 to t = -0.875: half way to the near plane at 0.125.
+    // From t = 1.125 to t = -0.875: the near plane at 0.125 is half way.
     let ends = [Vector3::new(1.0, 0.5, -1.125), Vector3::new(3.0, 2.5, 0.875)];
     let middle = Clipped { position: Vector3::new(2.0, 1.5, -0.125), weights: [0.5, 0.5] };
     assert_eq!(clip.segment(ends), Some([whole(ends)[0], middle]));
@@ -211,7 +212,8 @@ fn corners_inside_stay_as_they_are_and_cuts_are_where_they_must_be() {
     let weights: Vec<_> = clip.triangle(triangle).iter().map(|v| v.weights).collect();
     let expected = [[1.0, 0.0, 0.0], [0.5, 0.5, 0.0], [0.0, 0.5, 0.5], [0.0, 0.0, 1.0]];
     assert_eq!(weights, expected);
-    // Orthographic cameras keep what is behind the eye as long as it is behind the near plane.
+    // Orthographic cameras keep points behind the eye as long as they are in front of the near
+    // plane.
     let flat = View { near: -4.0, ..view::<f64>(false, 300.0) };
     let behind = [0.0, 1.0, 2.0].map(|x| Vector3::new(x, x * x, 3.0));
     assert_eq!(Clip::new(&flat).triangle(behind), whole(behind));

@@ -16,7 +16,7 @@ pub(super) fn visited(bits: u32, a: Point, b: Point, rect: &Rect) -> Vec<(u32, u
     list
 }
 
-/// The parameters of the visits of one pixel, as fractions, by asking that pixel alone.
+/// The parameters of the visits of one pixel, as fractions, found by visiting only that pixel.
 fn parameters(bits: u32, a: Point, b: Point, x: u32, y: u32) -> Vec<(i128, i128)> {
     let pixel = [i128::from(x), i128::from(y)];
     let contains = |p: Point| (0..2).all(|k| i128::from(p[k]) >> bits == pixel[k]);

@@ -1,4 +1,4 @@
-//! Every pixel against fractions of 128-bit integers, written without the code under test.
+//! Checks every pixel against fractions of 128-bit integers, written without the code under test.
 
 mod lines;
 
@@ -9,7 +9,7 @@ use proptest::prelude::*;
 
 type Point = [i64; 2];
 
-/// A picture small enough to ask about every pixel.
+/// A picture small enough to check every pixel.
 const PICTURE: Rect = Rect { x0: 0, y0: 0, x1: 17, y1: 14 };
 
 fn pixels(rect: &Rect) -> impl Iterator<Item = (u32, u32)> {
@@ -38,8 +38,8 @@ fn side(bits: u32, corners: [Point; 3], x: u32, y: u32) -> i32 {
     least.min().map_or(-1, |w| w.signum() as i32)
 }
 
-/// The rule as Direct3D words it: corners in clockwise order, a top edge is horizontal and runs to
-/// the right, a left edge runs up.
+/// The rule as Direct3D words it, for corners in clockwise order: a top edge is horizontal and runs
+/// to the right, a left edge runs up.
 fn covers(bits: u32, corners: [Point; 3], x: u32, y: u32) -> bool {
     let ([a, mut b, mut c], p) = (corners.map(halves), center(bits, x, y));
     if cross(a, b, c) < 0 {
@@ -53,7 +53,7 @@ fn covers(bits: u32, corners: [Point; 3], x: u32, y: u32) -> bool {
     })
 }
 
-/// The covered pixels, in order, after a check of what they come with.
+/// The covered pixels, in order, after a check of the weights that come with them.
 fn covered(bits: u32, corners: [Point; 3], rect: &Rect) -> Vec<(u32, u32)> {
     let mut list = Vec::new();
     let Some(triangle) = Triangle::new(&Snap { bits }, corners) else {
@@ -68,7 +68,7 @@ fn covered(bits: u32, corners: [Point; 3], rect: &Rect) -> Vec<(u32, u32)> {
         assert!(weights.iter().all(|w| *w >= 0));
         assert_eq!(weights.iter().sum::<i64>(), triangle.area());
         for axis in 0..2 {
-            // There is one triple of this sum that gives the point.
+            // Exactly one triple with this sum gives the point.
             let parts = [0, 1, 2].map(|k| i128::from(weights[k]) * halves(corners[k])[axis]);
             let point = i128::from(triangle.area()) * center(bits, x, y)[axis];
             assert_eq!(parts.iter().sum::<i128>(), point);
@@ -97,13 +97,13 @@ fn points<const N: usize>() -> impl Strategy<Value = (u32, [Point; N])> {
     (0..=12_u32).prop_flat_map(|bits| (Just(bits), std::array::from_fn(|_| point(bits))))
 }
 
-/// Points of the whole guard band at 12 bits, and where between the first two a window lies.
+/// Points of the whole guard band at 12 bits, and where a window lies between the first two.
 fn wide<const N: usize>() -> impl Strategy<Value = ([Point; N], f64)> {
     let coordinate = || prop_oneof![-(1_i64 << 29)..=(1 << 29), Just(1 << 29), Just(-(1 << 29))];
     (std::array::from_fn(|_| [coordinate(), coordinate()]), 0.0..1.0)
 }
 
-/// Some pixels around a point of the segment.
+/// A few pixels around a point of the segment.
 fn window(a: Point, b: Point, share: f64) -> Rect {
     let [x, y] = [0, 1].map(|k| {
         let at = a[k] as f64 + (b[k] - a[k]) as f64 * share;
@@ -147,7 +147,8 @@ proptest! {
 
     #[test]
     fn triangles_on_either_side_of_an_edge_meet_without_gap((bits, [a, b, c, d]) in points::<4>()) {
-        // Of the six edges one has the other points on either side, unless three are on one line.
+        // One of the six edges has the other points on either side, unless three points are on one
+        // line.
         let apart = |[a, b, c, d]: &[Point; 4]| {
             let [p, q, r, s] = [a, b, c, d].map(|p| halves(*p));
             cross(p, r, q).signum() * cross(p, r, s).signum() < 0
@@ -173,7 +174,7 @@ proptest! {
                 prop_assert!(count <= 1);
             }
         }
-        // A convex quadrangle has the same pixels by its other diagonal.
+        // A convex quadrangle has the same pixels when it is split along its other diagonal.
         if cross(q, s, p).signum() * cross(q, s, r).signum() < 0 {
             let mut one = lists.concat();
             let mut other =
@@ -197,7 +198,7 @@ proptest! {
         });
         let [low, inner, high] = [0, 1, 2].map(|k| [x[k], y[k]]);
         prop_assume!((0..2).all(|k| low[k] < inner[k] && inner[k] < high[k]));
-        // The border clockwise: its corners, and stops on its sides.
+        // The border clockwise: its corners, and points on its sides.
         let corners = [low, [high[0], low[1]], high, [low[0], high[1]]];
         let mut border = Vec::new();
         for side in 0..4 {

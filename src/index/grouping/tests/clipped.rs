@@ -1,4 +1,4 @@
-//! What part of a disc is covered.
+//! Tests of how much of a disc is covered.
 
 use super::super::clipped::{area, by_lower};
 use super::super::disc_tree::DiscTree;
@@ -6,7 +6,7 @@ use super::*;
 use crate::number::random::unit;
 use std::f64::consts::PI;
 
-/// The samples of a surfel that another covers, as points in space.
+/// The samples of a surfel that another surfel covers, as points in space.
 pub(super) fn naive_cover(surfels: &Surfels, i: usize, j: usize, scale: f64) -> u64 {
     let (n, other) = (facing(surfels, i), facing(surfels, j));
     if n.dot(other) < 0.0 {
@@ -38,7 +38,7 @@ fn cover(surfels: &Surfels, i: usize, j: usize) -> u64 {
     tree.samples(at(i)).covered_by(&tree.discs[at(j)])
 }
 
-/// The area that two circles share, divided by that of the first.
+/// The area that two circles share, divided by the area of the first.
 fn lens(r: f64, other: f64, distance: f64) -> f64 {
     if distance >= r + other {
         return 0.0;
@@ -57,8 +57,8 @@ fn lens(r: f64, other: f64, distance: f64) -> f64 {
 #[test]
 fn the_overlap_of_two_discs_is_that_of_two_circles() {
     // A sample stands for a cell with sides of about sqrt(pi / 64) = 0.22. The edge of an overlap
-    // is at most pi long and passes some 14 of them, each of which it counts wrong by up to a half:
-    // as if at random, by sqrt(14 / 12) = 1.1 in all, and three times that in the worst of 360.
+    // is at most pi long and passes some 14 cells, and each is wrong by up to a half. If the errors
+    // are random, that is sqrt(14 / 12) = 1.1 in all, and three times that in the worst of 360.
     let (mut worst, mut sum, mut count) = (0.0_f64, 0.0, 0);
     for radius in [0.5_f32, 1.0, 3.0] {
         for step in 0..120 {
@@ -124,8 +124,8 @@ proptest! {
 
 #[test]
 fn the_covered_area_is_that_of_the_union() {
-    // 300 discs in a plane; their union by a grid of 1500 x 1500 points, off by its perimeter times
-    // half a cell at most, and in fact far less.
+    // 300 discs in a plane. Their union is measured by a grid of 1500 x 1500 points, off by its
+    // perimeter times half a cell at most, and in fact far less.
     let flat = cluttered(5, 300, [30.0, 30.0, 0.0], 0.0);
     let tree = DiscTree::new(&flat, 0..300, &Exec::sequential());
     let covered = by_lower(&tree, 1.0, &Exec::sequential(), &|_, _| ()).unwrap();
@@ -142,7 +142,7 @@ fn the_covered_area_is_that_of_the_union() {
     let hits = (0..cells).map(|y| (0..cells).filter(|&x| inside(at(x), at(y))).count());
     let union = hits.sum::<usize>() as f64 * cell * cell;
     assert!(PI * sum > 1.3 * union, "they overlap");
-    // A sample is 1/64 of a disc; 300 discs with an independent error of about one each.
+    // A sample is 1/64 of a disc; 300 discs have independent errors of about one sample each.
     assert!((PI * part / union - 1.0).abs() < 0.01, "{} {union}", PI * part);
 }
 

@@ -5,7 +5,8 @@ use super::*;
 
 #[test]
 fn a_point_far_away_leaves_the_others_in_order() {
-    // Points of a line share a cell beside one far away; the last of them is there many times.
+    // Points of a line share a cell because one point is far away; the last of them is there many
+    // times.
     let line = |i: u16| Vec3::new(f32::from(i * 75 % 511), 0.0, 0.0);
     let mut points: Vec<Vec3> = (0..511).map(line).collect();
     points.push(Vec3::new(3e38, 0.0, 3e38));
@@ -19,7 +20,8 @@ fn a_point_far_away_leaves_the_others_in_order() {
 
 #[test]
 fn neighbours_of_the_curve_are_neighbours_of_a_grid() {
-    // A grid of 32 x 32 x 32, shuffled: along the curve of Morton the first eight fill a cube, and so on.
+    // A grid of 32 x 32 x 32, shuffled: along the Morton curve the first eight fill a cube, and so
+    // on.
     let place = |i: u32| (i * 12_345 + 678) % 32_768;
     let points: Vec<Vec3> = (0..32_768)
         .map(place)

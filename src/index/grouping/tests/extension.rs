@@ -13,7 +13,7 @@ fn extended(surfels: &Surfels, groups: &Groups, extension: Extension) -> (Groups
     extend(surfels, groups, &extension, &Exec::sequential(), &silent).unwrap()
 }
 
-/// The samples of a surfel that some surfels cover.
+/// The samples of a surfel that the surfels `by` cover.
 fn clipped(surfels: &Surfels, i: usize, by: &[usize], scale: f64) -> u64 {
     by.iter().filter(|&&j| j != i).fold(0, |m, &j| m | naive_cover(surfels, i, j, scale))
 }
@@ -119,7 +119,7 @@ proptest! {
                 let after = covered_area(&scene, &members(&result, k), scale) / target;
                 prop_assert_eq!(coverage.scale, result.scale()[k]);
                 prop_assert!(near(coverage.before, before) && near(coverage.after, after));
-                // Never less, but for the samples: a disc more may hide some of another's.
+                // Never less, except for sampling: one more disc may hide samples of another disc.
                 prop_assert!(after > before - 0.02, "group {}: {} to {}", k, before, after);
             }
             if extension == Extension::None {
@@ -160,12 +160,12 @@ proptest! {
 
 #[test]
 fn discs_apart_are_enlarged_in_one_step() {
-    // A row of five with room between; the other group is one disc far away.
+    // A row of five discs with room between; the other group is one disc far away.
     let groups = |own: &[u8]| Groups::new(own.to_vec(), vec![], vec![1.0; 2]).unwrap();
     let row: Vec<[f32; 3]> = (0..5_u8).map(|i| [100.0 * f32::from(i), 0.0, 0.0]).collect();
     let scene = discs(&row, &[1.0, 1.0, 1.0, 1.0, 2.0]);
     let (result, report) = extended(&scene, &groups(&[0, 0, 0, 0, 1]), Extension::Enlarge);
-    // A = 8 pi; 4 pi s^2 = 8 pi, and 4 pi s^2 = 8 pi as well.
+    // A = 8 pi; 4 pi s^2 = 8 pi for the one group, and 4 pi s^2 = 8 pi for the other.
     let root = 2.0_f64.sqrt() as f32;
     assert_eq!(result.scale(), [root, root]);
     assert!(report.groups.iter().all(|g| g.converged));

@@ -253,7 +253,7 @@ fn threads_change_nothing() {
 
 #[test]
 fn a_row_where_each_waits_for_the_last_is_settled() {
-    // Against the order of the tree, each disc waits for the one before: colours alternate.
+    // Against the order of the tree, each disc waits for the one before, and colours alternate.
     let n = 30_000_u16;
     let centers: Vec<[f32; 3]> = (0..n).rev().map(|i| [f32::from(i), 0.0, 0.0]).collect();
     let row = discs(&centers, &vec![0.75; centers.len()]);

@@ -1,4 +1,4 @@
-//! Groups against their definitions, evaluated one pair and one sample after the other.
+//! Groups against their definitions, evaluated pair by pair and sample by sample.
 
 mod clipped;
 mod curve;
@@ -43,7 +43,7 @@ fn cluttered(seed: u64, n: usize, [width, height, depth]: [f32; 3], tilt: f32) -
     })
 }
 
-/// Numbers of which many are equal or nearly so, and some are wild.
+/// Numbers; many are equal or nearly so, and some are extreme.
 fn number() -> impl Strategy<Value = f32> {
     prop_oneof![
         6 => (-3_i8..=3).prop_map(f32::from),
@@ -68,7 +68,7 @@ fn radius() -> impl Strategy<Value = f32> {
     ]
 }
 
-/// Any surfels that are none too few to make a tree of several levels.
+/// Any surfels, enough for a tree of several levels.
 fn scene() -> impl Strategy<Value = Surfels> {
     let unit_vectors = prop::sample::select(vec![
         Vec3::Z,
@@ -108,7 +108,7 @@ fn rules() -> impl Strategy<Value = Rules> {
     })
 }
 
-/// The radius of a surfel or the longer half axis.
+/// The radius of a surfel, or its longer half axis.
 fn reach(surfels: &Surfels, i: usize) -> f64 {
     match surfels.tangents() {
         None => f64::from(surfels.radius()[i]),

@@ -1,4 +1,4 @@
-//! The list by the page of the module alone: sorted sets, sums and maxima, nothing shared.
+//! The list built from the module page alone: sorted sets, sums and maxima, with no shared code.
 
 use super::{exp2, half_axes};
 use crate::scene::{Cloud, Surfels};

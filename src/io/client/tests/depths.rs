@@ -1,4 +1,4 @@
-//! What a number says of the depth.
+//! Check the meanings of stored depths.
 
 use super::*;
 
@@ -19,7 +19,7 @@ fn t_is_t() {
     assert_eq!(depths(&bytes, 3, ""), (vec![1.5, INF, -0.0], Storage::Single));
     let (values, _) = depths(&bytes, 3, "empty = 1.5");
     assert_eq!(values, [INF, INF, -0.0]);
-    // The clear value is what f32 makes of it: 0.1 is none.
+    // The clear value is rounded to f32: 0.1 itself does not occur.
     let (values, _) = depths(&floats(&[0.1, 1.0]), 2, "empty = 0.1");
     assert_eq!(values, [INF, 1.0]);
     let (values, _) = depths(&floats(&[f32::NAN, 1.0]), 2, "empty = nan");
@@ -56,7 +56,7 @@ fn one_over_t() {
 
 #[test]
 fn depth_buffers() {
-    // Of near 1/2 and far 2, z = 2 (t - 1/2) / (1.5 t): t = 1 is 2/3, t = 4/5 is 1/2.
+    // For near 1/2 and far 2, z = 2 (t - 1/2) / (1.5 t): t = 1 is 2/3, t = 4/5 is 1/2.
     let keys = format!("{ENDS}meaning = \"z-buffer\"\n");
     let (values, storage) = depths(&floats(&[0.5, 0.0, 1.0]), 3, &keys);
     near(&values, &[0.8, 0.5, INF]);
@@ -70,7 +70,7 @@ fn depth_buffers() {
     assert_eq!(storage, Storage::DepthBuffer { step, near: 0.5, far: 2.0 });
     let (_, storage) = depths(&[0, 0], 1, &format!("{keys}format = \"f16\""));
     assert_eq!(storage, Storage::DepthBuffer { step: 1.0 / 1024.0, near: 0.5, far: 2.0 });
-    // An empty value of one's own: then 1 is the far end.
+    // With another empty value, 1 is the far end.
     let (values, _) = depths(&floats(&[1.0, 0.0]), 2, &format!("{keys}empty = 0"));
     near(&values, &[2.0, INF]);
 }
@@ -92,11 +92,11 @@ fn reversed_depth_buffers() {
     let keys = "near = 0.5\nfar = inf\nmeaning = \"reversed-z\"";
     let (values, _) = depths(&floats(&[0.125, 0.0, 1.0]), 3, keys);
     near(&values, &[4.0, INF, 0.5]);
-    // And 1 - near / t the other way round, in steps of which the radius knows.
+    // And reversed, 1 - near / t, in steps that the radius takes into account.
     let keys = "near = 0.5\nfar = inf\nmeaning = \"z-buffer\"\nformat = \"unorm8\"";
     let (values, storage) = depths(&[51, 255], 2, keys);
     near(&values, &[0.625, INF]);
-    // A code on: 52 / 255, t = 0.5 / (1 - 52 / 255).
+    // One code further: 52 / 255, t = 0.5 / (1 - 52 / 255).
     near(&[storage.radius(0.625)], &[0.5 / (203.0 / 255.0) - 0.625]);
 }
 
@@ -113,7 +113,7 @@ fn linear_depths() {
     let (values, storage) = depths(&bytes, 1, &format!("{keys}format = \"f16\""));
     assert_eq!(values, [1.25]);
     assert_eq!(storage.radius(1.25), 1.5 * 0.5 / 1024.0);
-    // The other way round: 0 at the far end.
+    // Reversed: 0 at the far end.
     let keys = "near = 2\nfar = 0.5\nmeaning = \"linear\"\nempty = 0";
     assert_eq!(depths(&floats(&[0.0, 0.5, 1.0]), 3, keys).0, [INF, 1.25, 0.5]);
 }

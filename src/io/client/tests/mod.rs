@@ -1,4 +1,4 @@
-//! Files of every kind, whose numbers were computed by hand.
+//! Check files of every kind against numbers computed by hand.
 
 mod depths;
 mod normals;
@@ -31,7 +31,7 @@ impl Folder {
         self
     }
 
-    /// The client of a TOML file in the folder, beside a camera of 2 x 2.
+    /// The client of a TOML file in the folder, with a camera of 2 x 2 pixels.
     fn read(&self, toml: &str) -> Result<Client> {
         fs::write(self.path("mine.toml"), toml).unwrap();
         self.open("mine.toml")
@@ -74,7 +74,7 @@ fn ids(client: &Client, name: &str) -> Vec<u32> {
     client.frame().index(name).unwrap().values().to_vec()
 }
 
-/// That numbers are these but for rounding of f64.
+/// Asserts that numbers are equal up to rounding in f64.
 #[track_caller]
 fn near(found: &[f64], known: &[f64]) {
     assert_eq!(found.len(), known.len(), "{found:?}");
@@ -112,7 +112,7 @@ fn the_defaults_and_the_words() {
     assert_eq!((client.rounding, client.ties), (Rounding::Ieee, Ties::Any));
     assert_eq!(client.accumulator, Storage::Half);
     assert_eq!(scalars(&client, "Z"), [3.0, 4.0, 1.0, 2.0], "the upper row is the second");
-    // The size of the file goes before that of the camera.
+    // The size in the file wins over the camera's size.
     let client = at.read("size = [1, 4]\n[planes]\nZ = \"z.raw\"").unwrap();
     assert_eq!((client.frame().width, client.frame().height), (1, 4));
 }

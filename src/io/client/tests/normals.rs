@@ -1,4 +1,4 @@
-//! Unit vectors in two numbers, encoded and decoded by formulas of their own.
+//! Check unit vectors in two numbers against independent formulas.
 
 use super::*;
 use crate::number::random;
@@ -11,7 +11,7 @@ fn encoded([x, y, z]: [f64; 3]) -> [f64; 2] {
     if z >= 0.0 { [u, v] } else { [(1.0 - v.abs()).copysign(u), (1.0 - u.abs()).copysign(v)] }
 }
 
-/// The decoding in the form of Stubbe: what sticks out of the octahedron is taken back.
+/// The decoding in the form of Stubbe: the part outside the octahedron is folded back.
 fn decoded([u, v]: [f64; 2]) -> [f64; 3] {
     let z = 1.0 - u.abs() - v.abs();
     let out = if z < 0.0 { -z } else { 0.0 };
@@ -72,7 +72,7 @@ const FORMATS: [Rounding; 6] = [
     ("f32", |v, _| (v as f32).to_le_bytes().to_vec(), 0.0),
 ];
 
-/// The normals of stored pairs, of which nothing is empty.
+/// The normals of stored pairs; no pixel is empty.
 fn read(format: &str, pairs: &[u8], depths: &[f32]) -> Client {
     let size = depths.len();
     let folder = Folder::new().with("n.raw", pairs).with("z.raw", &floats(depths));

@@ -1,4 +1,4 @@
-//! EXR, NPY and PNG.
+//! Check EXR, NPY and PNG files.
 
 use super::*;
 use crate::frame::NO_ID;
@@ -73,7 +73,7 @@ fn an_exr_with_words() {
     assert_eq!(client.storage("A"), Storage::Half);
     assert_eq!(triples(&client, "attributes")[2], [0.75, 0.5, 0.25]);
     assert_eq!(triples(&client, "")[2], [0.25, 0.5, 0.75]);
-    // What is said of the id makes 0 empty; all bits set are a surfel that is not there.
+    // The key of the id makes 0 empty, so all bits set are a surfel that does not exist.
     assert_eq!(ids(&client, "id"), [NO_ID, 1, 7, NO_ID]);
     assert_eq!(client.unknown, ["normal.X"]);
 }
@@ -101,7 +101,7 @@ fn all_planes_have_one_size() {
     let depth = npy("<f4", "(1, 3)", &floats(&[0.5, 0.25, 1.0]));
     let at = Folder::new().with("z.npy", &depth).with("frame.exr", &frame());
     let at = at.with("w.raw", &floats(&[1.0, 2.0, 3.0]));
-    // A raw file has that of the others, which are read first.
+    // A raw file has the size of the other files, which are read first.
     let client = at.read("[planes]\nA = \"w.raw\"\nZ = \"z.npy\"").unwrap();
     assert_eq!((client.frame().width, client.frame().height), (3, 1));
     let line = at.refusal("file = \"frame.exr\"\n[planes]\nZ = \"z.npy\"");

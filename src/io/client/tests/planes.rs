@@ -1,4 +1,4 @@
-//! Formats, places, indices and colours.
+//! Check formats, places, indices and colours.
 
 use super::*;
 use crate::frame::NO_ID;
@@ -40,7 +40,7 @@ fn every_format_of_numbers() {
 
 #[test]
 fn normals_in_a_range() {
-    // Of codes v: 2 v / 255 - 1; the fourth byte of a pixel is passed over.
+    // A code v means 2 v / 255 - 1; the fourth byte of a pixel is skipped.
     let bytes = [255, 0, 51, 9, 204, 255, 0, 9];
     let toml = "size = [2, 1]\n[planes.normal]\nfile = \"n.bin\"\nformat = \"unorm8\"\n\
                 range = [-1, 1]\npixel_stride = 4";
@@ -75,7 +75,8 @@ fn three_numbers_in_one_word() {
 
 #[test]
 fn numbers_at_distances() {
-    // After 3 bytes, rows of 7: two pixels of 3 bytes, of which one counts, and the last one short.
+    // After 3 bytes, rows of 7 bytes: two pixels of 3 bytes, whose first byte counts; the last row
+    // is short.
     let bytes = [9, 9, 9, 0, 8, 8, 51, 8, 8, 8, 102, 8, 8, 255];
     let keys =
         "file = \"w.raw\"\nformat = \"unorm8\"\noffset = 3\nrow_stride = 7\npixel_stride = 3";
@@ -107,7 +108,7 @@ fn indices_of_every_format() {
     let short = le(&[7_u16, 9, 0], u16::to_le_bytes);
     assert_eq!(read(&short, "format = \"u16\"\nempty = 9"), known);
     assert_eq!(read(&floats(&[7.0, -1.0, 0.0]), "format = \"f32\"\nempty = -1"), known);
-    // 7, infinity, 0 of f16: what a clear value of all bits becomes.
+    // 7, infinity, 0 in f16: a clear value of all bits becomes infinity.
     let halves = le(&[0x4700_u16, 0x7C00, 0], u16::to_le_bytes);
     assert_eq!(read(&halves, "format = \"f16\""), known);
     // The first is 1.
@@ -120,7 +121,7 @@ fn indices_of_every_format() {
 
 #[test]
 fn colors_of_srgb() {
-    // Of the tables of sRGB: the code 188 is 0.5028865, 10 lies on the straight part.
+    // From the tables of sRGB: the code 188 is 0.5028865, and 10 lies on the straight part.
     let toml = "size = [1, 1]\n[planes.RGB]\nfile = \"c.raw\"\nformat = \"unorm8\"\n\
                 encoding = \"srgb\"";
     let client = client(&[("c.raw", &[188, 10, 255])], toml);
@@ -144,7 +145,7 @@ fn colors_multiplied_by_alpha() {
     assert_eq!(radii[0], [0.5 * step, step, 0.25 * step], "the product was rounded");
     assert_eq!(radii[2], [0.0; 3]);
 
-    // Codes 51 of alpha 102: (1/255 + 0.5 / 255) / (101 / 255) = 1.5 / 101.
+    // Codes 51 with alpha 102: (1/255 + 0.5 / 255) / (101 / 255) = 1.5 / 101.
     let toml = "size = [2, 1]\n[planes]\nA = { file = \"a.raw\", format = \"unorm8\" }\n\
                 RGB = { file = \"c.raw\", format = \"unorm8\", premultiplied = true }";
     let codes = client(&[("c.raw", &[51, 0, 102, 1, 0, 0]), ("a.raw", &[102, 1])], toml);

@@ -1,4 +1,4 @@
-//! What is refused, each in one line.
+//! Check that every error is one line.
 
 use super::*;
 

@@ -1,4 +1,4 @@
-//! Folders that lie.
+//! Read folders with false contents.
 
 use super::super::index::Index;
 use super::*;
@@ -63,7 +63,7 @@ proptest! {
             if let Ok(index) = Index::parse(&bytes) {
                 let hierarchy = Hierarchy { folder: at.path().join("out"), index };
                 for node in 0..hierarchy.nodes().len() as u32 {
-                    // Either is as it should be, or one line says why not.
+                    // Either the result is valid, or one line gives the reason.
                     let _ = (hierarchy.surfels(node, u32::MAX), hierarchy.triangles(node));
                 }
             }

@@ -1,4 +1,4 @@
-//! What every hierarchy has.
+//! Check the laws of every hierarchy.
 
 use super::*;
 use crate::scene::Similarity;
@@ -47,7 +47,7 @@ fn a_mesh_is_approximated_at_every_level() {
             let cloud = hierarchy.surfels(number, u32::MAX).unwrap();
             assert_eq!(cloud.position.len(), node.surfels as usize);
             let normal = cloud.normal.clone().unwrap_or_default();
-            // Squares of what is below are as large as a pixel, and flat.
+            // Squares of the nodes below are as large as a pixel, and flat.
             let pixel = pixel(settings.side_of(node.surfels), (node.low, node.high)) as f32;
             for (i, p) in cloud.position.iter().enumerate() {
                 assert!(
@@ -91,7 +91,7 @@ fn objects_share_geometries_and_are_approximated_in_groups() {
             assert!((place + slack).cmpge(low).all() && (place - slack).cmple(high).all());
         }
     }
-    // Every surfel of the whole is on an object, in its colour.
+    // Every surfel of the root is on an object, in its colour.
     let cloud = hierarchy.surfels(0, u32::MAX).unwrap();
     let color = cloud.color.unwrap();
     let mut seen = [0; 5];
@@ -157,7 +157,7 @@ fn bad_meshes_are_told_and_sampled_where_they_can_be() {
     assert_eq!((hierarchy.nodes()[1].surfels, hierarchy.geometries()[0].flaws), (700, *flaws));
 }
 
-/// As many triangles as are approximated, and none that a pixel sees.
+/// A mesh with enough triangles to be approximated, and none that a pixel sees.
 #[test]
 fn what_nobody_sees_is_no_failure() {
     let at = given();

@@ -1,11 +1,11 @@
-//! What is drawn of a hierarchy, against the scene that it was made of.
+//! Compare pictures of a hierarchy with pictures of its scene.
 
 use super::*;
 use crate::frame::{Plane, Samples};
 use crate::scene::Objects;
 use glam::DVec3;
 
-/// The depths of a picture of a scene by the method `blue`, and what its view draws.
+/// The depths of a picture by the method `blue`, and the objects that its view draws.
 fn depth(mut file: SceneFile, eye: f64, surfel_size: f32) -> (Plane<f32>, Option<Objects>) {
     let exec = Exec::sequential();
     let quiet = |_: &str, _, _| ();
@@ -21,7 +21,7 @@ fn depth(mut file: SceneFile, eye: f64, surfel_size: f32) -> (Plane<f32>, Option
     (z.clone(), ready.loaded.scene.objects.clone())
 }
 
-/// The scene as its triangles, and the hierarchy that was made of it.
+/// The scene as its triangles, and its hierarchy.
 fn both(at: &TempDir) -> (SceneFile, SceneFile) {
     let path = at.path().join("scene.toml");
     let text = fs::read_to_string(&path).unwrap();
@@ -30,7 +30,7 @@ fn both(at: &TempDir) -> (SceneFile, SceneFile) {
     (SceneFile::open(&path).unwrap(), SceneFile::open(at.path().join("out")).unwrap())
 }
 
-/// Where more surfels are asked for than there are, the triangles of all nodes are drawn, each once.
+/// If a view needs more surfels than there are, it draws the triangles of all nodes, each once.
 #[test]
 fn close_by_it_is_the_scene() {
     let at = given();
@@ -45,7 +45,7 @@ fn close_by_it_is_the_scene() {
     );
 }
 
-/// A view from afar takes the surfels of coarse nodes, and nothing of what is below them.
+/// A distant view draws the surfels of coarse nodes, and nothing below them.
 #[test]
 fn far_away_it_is_its_root() {
     let at = given();
@@ -63,7 +63,8 @@ fn far_away_it_is_its_root() {
     let inside = expected.values().iter().filter(|z| z.is_finite()).count();
     let holes = pairs().filter(|(a, b)| b.is_finite() && !a.is_finite()).count();
     assert!(inside > 100 && holes * 50 <= inside, "{holes} holes of {inside} pixels");
-    // Discs are off by less than their radius of 0.7, but for those that reach over an outline with something behind it.
+    // Discs are off by less than their radius of 0.7, except where they reach over an outline with
+    // something behind it.
     let off = pairs().filter(|(a, b)| a.is_finite() && b.is_finite() && (*a - *b).abs() > 1.0);
     assert!(off.count() * 100 <= inside);
 }

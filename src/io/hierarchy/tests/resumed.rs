@@ -1,4 +1,4 @@
-//! The same bytes in any order, after any interruption.
+//! Check that the bytes are the same in any order, and after any interruption.
 
 use super::*;
 use proptest::prelude::*;
@@ -18,7 +18,7 @@ fn threads_and_the_order_of_subtrees_change_nothing() {
             let exec = Exec::new(threads, 16).unwrap();
             let mut work = Work::begin(&file, &folder, &settings, &exec, &quiet).unwrap();
             let count = work.wanted.len() as u32;
-            // From above; and from the middle.
+            // Once from the top; once from the middle.
             for i in 0..count {
                 let node = if number == 0 { i } else { (i * 7 + count / 2) % count };
                 work.make(node).unwrap();
@@ -71,7 +71,7 @@ fn what_was_stopped_goes_on() {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(12))]
 
-    /// Of a whole folder some files go, and some lose their end.
+    /// In a complete folder, some files are removed, and some are cut.
     #[test]
     fn what_is_missing_or_cut_is_made_again(fates in prop::collection::vec(0_u8..4, 40)) {
         let at = TempDir::new().unwrap();

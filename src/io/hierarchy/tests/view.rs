@@ -1,4 +1,4 @@
-//! What a view reads, against the view of all that there is.
+//! Compare what a view reads with a view of the whole hierarchy.
 
 use super::*;
 use crate::frame::Frame;
@@ -8,7 +8,8 @@ use crate::scene::objects::outline::{Bounds, Needed};
 use crate::scene::{Objects, Primitives, Surfels};
 use glam::DVec3;
 
-/// Views from the distance of the eye, with discs of a size: from coarse to the triangles themselves, from afar and amid.
+/// Views as distance of the eye and size of discs: from coarse to single triangles, from afar and
+/// from inside.
 const VIEWS: [(f64, f32); 6] =
     [(60.0, 9.0), (60.0, 3.0), (40.0, 1.0), (12.0, 2.0), (3.0, 4.0), (40.0, 1e-3)];
 
@@ -28,13 +29,13 @@ fn picture(ready: &Ready) -> Frame<f32> {
     session.render(&ready.camera).unwrap().frame.clone()
 }
 
-/// A folder whose files are read as the view needs them, and the view.
+/// A folder whose files are read as far as the view needs them, and the view.
 fn read(file: &SceneFile) -> Result<(Frame<f32>, Objects)> {
     let ready = file.ready(&Exec::sequential(), &quiet)?;
     Ok((picture(&ready), ready.loaded.scene.objects.clone().unwrap()))
 }
 
-/// The same of all that is in the folder.
+/// The same view after reading the whole folder.
 fn whole(file: &SceneFile) -> (Frame<f32>, Objects) {
     let exec = Exec::sequential();
     let ready = file.ready_of(file.load(&exec, &quiet).unwrap(), &exec).unwrap();
@@ -47,7 +48,7 @@ fn made() -> TempDir {
     at
 }
 
-/// How many surfels and triangles are in memory.
+/// How many surfels and triangles memory holds.
 fn held(objects: &Objects) -> (usize, usize) {
     let each = objects.geometries().iter();
     let each = each.map(|one| (one.surfels.len(), one.primitives.triangles.len()));
@@ -71,7 +72,7 @@ fn a_view_of_what_it_needs_is_the_view_of_all() {
                 assert_eq!(needed.median_radius(), objects.median_radius());
                 let ids = |of: &Objects| of.ids().clone();
                 assert_eq!(ids(&needed), ids(&objects));
-                // No more is in memory than one of the objects draws.
+                // Memory holds no more than the objects draw.
                 let (surfels, triangles) = held(&needed);
                 assert!(surfels as u64 <= needed.drawn_total(), "{view:?}");
                 assert!((surfels, triangles) <= held(&objects));
@@ -82,7 +83,7 @@ fn a_view_of_what_it_needs_is_the_view_of_all() {
     }
 }
 
-/// The files of nodes that a view from afar does not draw may be anything, or nothing.
+/// Files of nodes that a distant view does not draw may hold anything, or be missing.
 #[test]
 fn what_no_view_draws_is_not_read() {
     let at = made();
@@ -99,7 +100,7 @@ fn what_no_view_draws_is_not_read() {
     let (found, objects) = read(&file).unwrap();
     assert!(found == expected);
     assert_eq!(objects.needed().iter().filter(|one| **one != Needed::default()).count(), 1);
-    // Closer by it draws more, and says what is missing.
+    // A nearer view draws more, and names the missing file.
     let line = read(&scene(&at, VIEWS[3], "blue")).unwrap_err().to_string();
     assert!(line.contains("out/surfels-") || line.contains("out/mesh-"), "{line}");
     assert_eq!(line.lines().count(), 1);
@@ -108,7 +109,7 @@ fn what_no_view_draws_is_not_read() {
     assert!(line.contains("out/surfels-0: ") && line.lines().count() == 1, "{line}");
 }
 
-/// A camera that comes closer: each frame reads what it draws.
+/// A camera moves closer; each frame reads what it draws.
 #[test]
 fn frames_read_what_they_need() {
     let at = made();

@@ -1,4 +1,4 @@
-//! What is read, what is refused and how, and that no bytes make the reader panic.
+//! Check what is read, what is refused and how, and that no bytes make the reader panic.
 
 mod coordinates;
 mod refused;
@@ -17,7 +17,7 @@ fn ascii(header: &[&str], body: &str) -> Vec<u8> {
 
 const XYZ: [&str; 3] = ["property float x", "property float y", "property float z"];
 
-/// As [`ascii`], of vertices with x, y and z and what else is given.
+/// As [`ascii`], with vertices that have x, y, z and the given properties.
 fn vertices(count: &str, more: &[&str], body: &str) -> Vec<u8> {
     let element = format!("element vertex {count}");
     let header: Vec<&str> =
@@ -135,7 +135,7 @@ fn prefiltered_colours_are_read_as_colours_are() {
         let mipmap = cloud.mipmap.unwrap();
         assert_eq!((mipmap.levels(), mipmap.of(0)), (1, &cloud.color.unwrap()[..]), "{kind}");
     }
-    // What is named otherwise is skipped, as by readers that know nothing of all this.
+    // Properties with other names are skipped, as by any reader that does not know them.
     let others = ["red", "green", "blue", "mip_red", "mip1_alpha", "mip0_red", "mipa_red"];
     assert_eq!(text(others, "float", "0.25").mipmap, None);
 }
@@ -146,7 +146,7 @@ fn polygons_are_fans_and_short_ones_nothing() {
     assert_eq!(polygon("5 0 1 2 1 0"), [[0, 1, 2], [0, 2, 1], [0, 1, 0]]);
     assert!(polygon("2 0 1").is_empty());
     assert!(polygon("0").is_empty());
-    // Faces may come before the vertices that they name.
+    // Faces may come before their vertices.
     let first = ascii(
         &["element face 2", INDICES, "element vertex 3", XYZ[0], XYZ[1], XYZ[2]],
         "3 2 1 0\n3 0 1 2\n0 0 0\n1 0 0\n0 1 0\n",
@@ -187,7 +187,7 @@ fn elements_without_properties_take_no_time() {
 
 #[test]
 fn a_truncated_file_is_refused_wherever_it_ends() {
-    // Of the last line of the text, which ends in CR LF, LF is spared: its number is whole.
+    // The text ends in CR LF; without the LF, its last number is still whole.
     for (whole, spared) in [(binary(false), 0), (binary(true), 0), (text(), 1)] {
         for end in 0..whole.len() - spared {
             assert!(parse(&whole[..end]).is_err(), "the first {end} bytes");
@@ -257,7 +257,7 @@ fn what_is_written_is_read_back_bit_for_bit() {
     for cloud in clouds {
         write(&path, &cloud).unwrap();
         let again = read(&path).unwrap();
-        // Equality of floats would take -0 for +0, so bits are compared too.
+        // Compare bits too, because -0 and +0 are equal as floats.
         assert_eq!(again, cloud);
         assert!(
             again.position.iter().flat_map(|p| p.to_array()).map(f32::to_bits).eq(cloud
@@ -371,7 +371,7 @@ fn no_mutation_of_a_file_panics_or_is_read_wrongly() {
             read += 1;
             cloud.check().unwrap();
             assert!(!cloud.position.is_empty());
-            // No more than the bytes could hold: a position takes at least three.
+            // No more positions than the bytes could hold: each takes at least three.
             assert!(cloud.position.len() * 3 <= bytes.len());
             assert!(cloud.triangles.len().max(cloud.edges.len()) <= bytes.len());
             if let Some(groups) = cloud.groups {

@@ -1,9 +1,9 @@
-//! Bad files and what their refusal says.
+//! Check what the refusal of a bad file says.
 
 use super::super::parse;
 use super::{ENDS, INDICES, XYZ, ascii, edges, faces, vertices};
 
-/// Holds the one line of a refusal against what it must say.
+/// Compares the one line of a refusal with the expected one.
 fn refused(bytes: Vec<u8>, expected: &str) {
     let text = String::from_utf8_lossy(&bytes).into_owned();
     let message = parse(&bytes).expect_err(&text);
@@ -78,7 +78,7 @@ fn elements_and_properties() {
         "element vertex: property `x` is a list, but must be one number",
     );
     refused(vertices("0", &[], ""), "element vertex has count 0: the file holds no points");
-    // Corners are held against the vertices, of which there are none.
+    // There are no vertices that corners could refer to.
     let empty = ["element face 1", INDICES, "element vertex 0", XYZ[0], XYZ[1], XYZ[2]];
     refused(ascii(&empty, "3 0 0 0\n"), "element vertex has count 0");
 }
@@ -177,7 +177,7 @@ fn ends_of_edges() {
 const GROUP: &str = "property int group";
 const ALSO: &str = "property list uchar int also";
 
-/// Two vertices with groups, the first in group 0, and what else is declared and follows.
+/// Two vertices with groups, the first in group 0, then further declarations and values.
 fn grouped(more: &[&str], value: &str, rest: &str, expected: &str) {
     let rows = format!("0 0 0 0 0\n0 0 0 {value}\n{rest}");
     refused(vertices("2", &[&[GROUP], more].concat(), &rows), expected);

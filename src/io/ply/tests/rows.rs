@@ -1,4 +1,4 @@
-//! Vertices of one length: slabs and threads give what the walk from number to number gives.
+//! Check that slabs and threads give the same vertices as the walk from number to number.
 
 use super::super::*;
 
@@ -45,7 +45,8 @@ fn file(count: u32, big: bool) -> Vec<u8> {
         false => bytes.extend(little),
     };
     for i in 0..count {
-        // Bits of any number; those of the exponent are not all set, as a NaN is equal to nothing.
+        // The bits of any number, except that not all exponent bits are set, because a NaN equals
+        // nothing.
         let mut state = i.wrapping_mul(0x9E37_79B9);
         for (kind, _) in properties {
             state = state.wrapping_mul(0x85EB_CA6B) ^ (state >> 13);
@@ -65,7 +66,7 @@ fn file(count: u32, big: bool) -> Vec<u8> {
     bytes
 }
 
-/// What is read of a file of these bytes, or its refusal without the name.
+/// Reads a file of these bytes; an error without the file's name.
 fn read_back(bytes: &[u8], threads: usize) -> std::result::Result<Cloud, String> {
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.ply");
@@ -79,7 +80,7 @@ fn slabs_and_threads_change_nothing() {
     // Less than a slab, a slab, and some more.
     for count in [3, 1 << 16, 150_001] {
         let little = file(count, false);
-        // Big-endian files are walked through.
+        // Big-endian files are read by the walk.
         let expected = parse(&file(count, true)).unwrap();
         assert_eq!(expected.position.len(), count as usize);
         assert!(parse(&little).unwrap() == expected, "{count} in memory");

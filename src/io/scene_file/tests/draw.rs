@@ -1,11 +1,11 @@
-//! Models that are drawn as polygons, ribbons, tubes or hybrids.
+//! Check models drawn as polygons, ribbons, tubes or hybrids.
 
 use super::*;
 use crate::scene::{Counts, Primitives, Surfels};
 use crate::source::plant;
 
-/// A pyramid of four triangles without a bottom, whose apex is up, and two edges; what more a
-/// vertex has is `properties` and `values`.
+/// A pyramid of four triangles without a bottom, whose apex is up, and two edges. Vertices have
+/// these further `properties` and `values`.
 fn ply(properties: &[&str], values: &str) -> String {
     let properties: String = properties.iter().map(|p| format!("property float {p}\n")).collect();
     let corner = ["-1 0 -1", "1 0 -1", "1 0 1", "-1 0 1", "0 3 0"];
@@ -116,7 +116,7 @@ fn polygons_are_placed_and_coloured() {
     assert!(vertices.direction[4].distance(-Vec3::Z) < 1e-6, "{}", vertices.direction[4]);
     assert_eq!((vertices.radius[4], models[0].derived.unwrap().normals), (0.0, Origin::File));
     assert_eq!(vertices.color, Some(vec![Vec3::new(1.0, 0.5, 0.0); 5]));
-    // The corners turn onto each other: the box is the middle of the picture.
+    // The rotation takes the corners onto each other, so the box keeps its width.
     assert_eq!(scene.bounds(), (Vec3::new(-2.0, 10.0, -2.0), Vec3::new(2.0, 16.0, 2.0)));
 }
 
@@ -230,7 +230,7 @@ fn the_camera_frames_primitives_too() {
     let lens = Lens::FieldOfView(DEFAULT_FIELD_OF_VIEW);
     let framed = Camera::framing(40, 30, sphere, DEFAULT_SIDE, lens).unwrap();
     assert_eq!(file.camera(&alone).unwrap(), framed);
-    // Of two models no pose is that of the shape.
+    // With two models the shape's pose is not used.
     file.models.push(parse(SHAPE).models[0].clone());
     let both = load(&file).scene;
     let low = both.surfels.bounds().0.min(Vec3::new(-1.0, 0.0, -1.0));
@@ -298,7 +298,7 @@ fn what_is_not_of_a_tree_is_refused() {
         let found = not_loaded("", &tree(more));
         assert!(found.contains(what), "{found}");
     }
-    // Models that no scene file says, too.
+    // Models that no scene file can describe, too.
     let mut file = parse(&tree(""));
     file.models[0].draw = Draw::Points;
     let error = file.load(&Exec::sequential(), &|_, _, _| ()).unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! Objects, geometries and sequences.
+//! Check objects, geometries and sequences.
 
 use super::*;
 use crate::scene::Motion;
@@ -78,7 +78,7 @@ fn objects_are_where_the_file_says() {
     let flat = flatten(&Scene { objects: Some(there), ..loaded.scene.clone() }, &exec).unwrap();
     assert_eq!(ready.loaded.scene.surfels, flat.surfels);
     assert_eq!(ready.camera, file.camera(&loaded.scene).unwrap());
-    // From any other frame the same is reached.
+    // The path through another frame leads to the same scene.
     file.frame = 40;
     let other = file.ready(&exec, &|_, _, _| ()).unwrap();
     assert!(!other.is_still() && other.camera != ready.camera);
@@ -99,7 +99,7 @@ fn a_model_beside_objects_has_its_own_surfels() {
     assert_eq!(scene.surfels.median_radius(), alone.median_radius());
     let objects = scene.objects.as_ref().unwrap();
     assert_eq!((objects.objects().len(), objects.geometries().len()), (1, 2), "one is not used");
-    // A geometry in a place is what a model in this place is.
+    // A geometry in a place equals a model in this place.
     let object = "[[geometry]]\nname = \"a\"\nshape = \"torus\"\ncount = 80\n[[object]]\nof = \"a\"\n\
                   [object.transform]\nscale = 2\nrotate = { axis = [1, 2, 3], degrees = 40 }\n";
     let object = parse(object).ready(&Exec::sequential(), &|_, _, _| ()).unwrap();
@@ -108,7 +108,7 @@ fn a_model_beside_objects_has_its_own_surfels() {
     assert_eq!(object.loaded.scene.surfels.radius(), alone.radius());
 }
 
-/// Tables after a geometry called tree, the line that is named, and what is said of it.
+/// Tables after a geometry called tree, the expected line number, and the expected error.
 fn all_refused(cases: &[(&str, Option<usize>, &str)]) {
     for (text, line, what) in cases {
         let found = refused(&format!("{TREE}{text}"));

@@ -1,11 +1,12 @@
-//! Which texture a model has, and what has its colours.
+//! Check which texture a model has, and which surfels take its colours.
 
 use super::*;
 use crate::scene::Surfels;
 use glam::DVec3;
 use tempfile::TempDir;
 
-/// A folder with a square that names `own.exr`, which is red, `green.exr`, and a file `b.ply` without coordinates.
+/// A folder with a square that names `own.exr`, which is red; `green.exr`; and a file `b.ply`
+/// without coordinates.
 fn folder() -> TempDir {
     let at = TempDir::new().unwrap();
     let square = "property float x\nproperty float y\nproperty float z\n";
@@ -70,7 +71,7 @@ fn the_key_beats_the_file_and_the_colour_both() {
     assert!(polygons.vertices().color.as_ref().unwrap()[0].x > 0.5);
     let hybrid = load(&scene(&at, "draw = \"hybrid\"\nsplit = [1, 0, 0, 0.5]")).scene;
     assert!(sum(&hybrid.surfels).x > 0.5);
-    // A texture that nobody sees need not be there.
+    // A texture that is not shown need not exist.
     fs::remove_file(at.path().join("own.exr")).unwrap();
     surfels(&at, "color = [1, 1, 1]");
     let line = error(&at, "");
@@ -85,7 +86,7 @@ fn levels_are_made_of_the_texture_where_there_is_one() {
     assert_eq!((mipmap.levels(), found.len()), (6, 2));
     for i in 0..2 {
         let last = mipmap.of(i)[5];
-        // 64 outlines are the whole texture, half of which is red.
+        // 64 outlines cover the whole texture, half of which is red.
         assert!((last.x - 0.5).abs() < 1e-3, "{last}");
         assert!((found.color().unwrap()[i].x - 0.5).abs() > 0.05, "{:?}", found.color());
     }
@@ -130,7 +131,8 @@ fn textures_of_what_has_none_are_refused() {
     assert!(line.contains("`texture` means nothing to sphere: remove it"), "{line}");
 }
 
-/// The same square with its coordinates at vertices of a PLY, at corners of an OBJ, and of a material.
+/// The same square with coordinates at the vertices of a PLY, at the corners of an OBJ, and with a
+/// material.
 #[test]
 fn an_obj_with_a_material_is_drawn_as_the_ply() {
     let at = folder();

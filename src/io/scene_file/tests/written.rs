@@ -1,8 +1,8 @@
-//! What is written is read as the same scene.
+//! Check that written scene files are read as the same scene.
 
 use super::*;
 
-/// Reads what is written of a file, which must say the same.
+/// Reads the written text of a file, which must describe the same scene.
 fn check(file: &SceneFile) -> String {
     let path = Path::new("a/scene.toml");
     let text = file.text(path).unwrap();

@@ -1,4 +1,4 @@
-//! The camera and its keys.
+//! Parse and write the camera and its keys.
 
 use super::exactly::Exactly;
 use crate::io::scene_file::CameraChoice;
@@ -18,7 +18,7 @@ pub(super) struct RawCamera {
     ortho: Option<f64>,
 }
 
-/// Where the camera is in a frame.
+/// The camera's pose in a frame.
 #[derive(serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 struct RawKey {

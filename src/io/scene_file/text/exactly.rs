@@ -1,11 +1,11 @@
-//! Arrays of as many values as there must be: serde's read the first of them and drop the rest.
+//! Parse arrays of an exact length, because serde's arrays drop excess values.
 
 use serde::de::{Deserialize, Deserializer, Error, SeqAccess, Visitor};
 use serde::ser::{Serialize, Serializer};
 use std::fmt;
 use std::marker::PhantomData;
 
-/// `N` values; more or fewer are refused.
+/// Exactly `N` values; more or fewer are refused.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Exactly<T, const N: usize>(pub(super) [T; N]);
 

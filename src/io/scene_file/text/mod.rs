@@ -1,7 +1,7 @@
-//! From text to a [`SceneFile`], and back.
+//! Parse the text of a [`SceneFile`], and write it.
 //!
-//! Each table is read into a struct that mirrors its keys and then converted; a conversion that
-//! fails is reported by serde at the table's place in the text. What is written is of the same structs.
+//! Each table is read into a struct that mirrors its keys, and then converted. If the conversion
+//! fails, serde reports the table's place in the text. Writing uses the same structs.
 
 /// Implements `Deserialize` through a struct that mirrors the keys.
 macro_rules! through {
@@ -55,6 +55,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
         let what = "a hierarchy is all that a scene shows: remove it, or the models and objects";
         return Err(Error::format(path, what));
     }
+    // Geometries alone draw nothing.
     if file.hierarchy.is_none() && file.model.is_empty() && file.object.is_empty() {
         let what = match file.geometry.as_slice() {
             [] => "there is no [[model]]: name a file or a shape",
@@ -66,7 +67,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
         Error::format(path, format!("line {}: {what}", input::line(text, at)))
     })?;
     let (mut models, mut geometries, mut objects) = (file.model, file.geometry, objects);
-    // Joining keeps a path that is absolute.
+    // `join` keeps an absolute path as it is.
     let beside = |other: &Path| path.parent().unwrap_or(Path::new("")).join(other);
     for model in models.iter_mut().chain(geometries.iter_mut().map(|geometry| &mut geometry.model))
     {
@@ -142,7 +143,7 @@ through! {
     EnvironmentChoice: RawEnvironment, RawEnvironment::choice;
 }
 
-/// How many frames there are.
+/// The number of frames.
 struct Sequence(u32);
 
 impl Default for Sequence {

@@ -1,4 +1,4 @@
-//! Models and geometries.
+//! Parse and write models and geometries.
 
 use super::exactly::Exactly;
 use super::transform::RawTransform;
@@ -141,7 +141,7 @@ impl RawModel {
         }
     }
 
-    /// The source; takes every key that it uses.
+    /// The source; takes every key that it uses, so that `left` finds the rest.
     fn source(&mut self) -> Result<Source, String> {
         match (self.file.take(), self.shape.take()) {
             (Some(path), None) => {
@@ -166,7 +166,7 @@ impl RawModel {
         }
     }
 
-    /// A key that was given and that the source has not taken.
+    /// A given key that the source has not taken.
     fn left(&self) -> Option<&'static str> {
         let keys = [
             ("name", self.name.is_some()),
@@ -203,7 +203,7 @@ impl RawModel {
     }
 }
 
-/// A colour for all of something.
+/// A colour for a whole model or object.
 pub(super) fn color(color: Exactly<f32, 3>) -> Result<Vec3, String> {
     let color = Vec3::from_array(color.0);
     let refused = || format!("color must be three numbers in [0, {MAX_RADIANCE}]");

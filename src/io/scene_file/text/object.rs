@@ -1,4 +1,4 @@
-//! Objects: what they are of, and where.
+//! Parse and write objects: their geometries and places.
 
 use super::exactly::Exactly;
 use super::model::color;
@@ -12,7 +12,7 @@ use serde::de::{self, Deserialize, Deserializer};
 use std::path::PathBuf;
 use toml::Spanned;
 
-/// Objects of what is named, which may be anything.
+/// Objects whose `of` is still a name, which may belong to no geometry.
 pub(super) struct Unresolved {
     of: Spanned<String>,
     name: Option<String>,
@@ -36,7 +36,7 @@ pub(super) struct RawObject {
     scatter: Option<RawScatter>,
 }
 
-/// Where an object is in a frame.
+/// The place of an object in a frame.
 #[derive(serde::Deserialize, serde::Serialize)]
 #[serde(deny_unknown_fields)]
 struct RawKey {
@@ -161,7 +161,7 @@ impl RawScatter {
     }
 }
 
-/// The objects with their geometries, or where in the text what is wrong.
+/// Finds the geometries that the objects name; an error has the place in the text of a wrong name.
 pub(super) fn resolve(
     objects: Vec<Unresolved>,
     geometries: &[Geometry],
@@ -175,7 +175,7 @@ pub(super) fn resolve(
     Ok(resolved.collect())
 }
 
-/// The geometry that an object is of.
+/// The geometry that an object names.
 fn geometry_of(
     object: &Unresolved,
     objects: &[Unresolved],
@@ -185,7 +185,7 @@ fn geometry_of(
     if let Some(geometry) = geometries.iter().position(|geometry| geometry.name == *of) {
         return Ok(geometry);
     }
-    // It may be the name of an object, whose `of` may be one again.
+    // For the error: `of` may name an object, whose `of` may name another one.
     let mut names = vec![of.as_str()];
     let next = |name: &str| objects.iter().find(|object| object.name.as_deref() == Some(name));
     let mut cycle = false;

@@ -1,4 +1,4 @@
-//! Tables whose keys are rows of settings.
+//! Parse and write tables whose keys are rows of settings.
 
 use super::super::{Choice, GroupChoice, MethodChoice, OutputSettings};
 use crate::method::{Method, transparent};
@@ -7,13 +7,13 @@ use serde::de::{self, DeserializeSeed, Deserializer, MapAccess, SeqAccess, Visit
 use serde::ser::{Serialize, SerializeMap, Serializer};
 use std::fmt;
 
-/// The key of a method.
+/// The key for the name of a method.
 const NAME: &str = "name";
 
-/// The keys of a table, and of which type their values are.
+/// The keys of a table, and the types of their values.
 struct Table {
     rows: Vec<Setting>,
-    /// Whether there is [`NAME`] too.
+    /// Whether the table has [`NAME`] too.
     named: bool,
     check: fn(&str, &Value) -> Result<(), String>,
 }
@@ -27,8 +27,8 @@ pub(super) fn method<'de, D: Deserializer<'de>>(from: D) -> Result<MethodChoice,
     Ok(choice)
 }
 
-/// The groups of a scene file may be for any method, and ranges are the same for every method. They
-/// are checked on top of the defaults of transparency, where `most` means something.
+/// Groups of a scene file may be for any method, and ranges are the same for every method. They are
+/// checked on top of the defaults of transparency, where `most` means something.
 pub(super) fn groups<'de, D: Deserializer<'de>>(from: D) -> Result<GroupChoice, D::Error> {
     let check = |key: &str, value: &Value| check_type([GroupChoice::ALONE], key, value);
     let table = Table { rows: GroupChoice::rows(), named: false, check };
@@ -44,7 +44,7 @@ pub(super) fn output<'de, D: Deserializer<'de>>(from: D) -> Result<OutputSetting
     settings.on(OutputSettings::default(), "the output").map_err(de::Error::custom)
 }
 
-/// A table that is written.
+/// A table to write.
 pub(super) struct Written {
     /// The value of [`NAME`], if there is one.
     pub(super) name: Option<&'static str>,
@@ -92,7 +92,7 @@ impl<'de> Visitor<'de> for &Table {
                 Some(row) => chosen.push((row, map.next_value_seed(Typed(self, row))?)),
             }
         }
-        // In the order in which settings can be set.
+        // Sort into the order in which settings can be set.
         chosen.sort_by_key(|(row, _)| *row);
         let mut choice = Choice::default();
         chosen.into_iter().for_each(|(row, value)| choice.push(self.rows[row].name, value));
@@ -100,7 +100,7 @@ impl<'de> Visitor<'de> for &Table {
     }
 }
 
-/// A key: a row, or none for [`NAME`].
+/// A key: a row, or `None` for [`NAME`].
 struct SettingKey<'t>(&'t Table);
 
 impl<'de> DeserializeSeed<'de> for SettingKey<'_> {
@@ -145,7 +145,7 @@ impl<'de> DeserializeSeed<'de> for Typed<'_> {
     }
 }
 
-/// Whatever a value can be.
+/// Any type that a value may have.
 struct AnyValue;
 
 impl<'de> Visitor<'de> for AnyValue {

@@ -1,4 +1,4 @@
-//! Places and turns.
+//! Parse and write places and rotations.
 
 use super::exactly::Exactly;
 use crate::scene::transform::{self, Similarity};
@@ -45,7 +45,7 @@ impl RawTransform {
         Ok(similarity)
     }
 
-    /// None of what stays where it is.
+    /// `None` for the identity.
     pub(super) fn of(similarity: &Similarity) -> Option<Self> {
         let Similarity { rotation, scale, translation } = *similarity;
         let rows = Exactly(rotation.transpose().to_cols_array_2d().map(Exactly));

@@ -1,4 +1,4 @@
-//! A scene file as text.
+//! Write a scene file as text.
 
 use super::super::{CameraChoice, OutputSettings, SceneFile};
 use super::camera::RawCamera;
@@ -31,7 +31,7 @@ struct Tables {
     output: Option<Written>,
 }
 
-/// The text of a file at `path`, see [`SceneFile::text`].
+/// Writes the text of a file at `path`, see [`SceneFile::text`].
 pub(in crate::io::scene_file) fn write(file: &SceneFile, path: &Path) -> Result<String> {
     let tables = Tables::of(file, &Folder::of(path)?)?;
     toml::to_string(&tables)
@@ -73,18 +73,18 @@ impl Tables {
     }
 }
 
-/// An array, if there is something in it.
+/// An array, if it is not empty.
 fn some<T>(all: impl Iterator<Item = T>) -> Option<Vec<T>> {
     let all: Vec<T> = all.collect();
     (!all.is_empty()).then_some(all)
 }
 
-/// The values that are not the default.
+/// The values that differ from their defaults.
 fn other_than<T: PartialEq>(values: Vec<T>, default: &[T]) -> Vec<T> {
     values.into_iter().filter(|value| !default.contains(value)).collect()
 }
 
-/// The folder that a file is written to.
+/// The folder that the file is written to.
 pub(super) struct Folder(PathBuf);
 
 impl Folder {
@@ -93,7 +93,8 @@ impl Folder {
         Ok(Self(whole.parent().unwrap_or(&whole).to_owned()))
     }
 
-    /// How the file calls another: by what follows the folder if it lies within, else by the whole path.
+    /// The path of another file in the text: relative if it lies in the folder or below, else
+    /// absolute.
     pub(super) fn path(&self, other: &Path) -> PathBuf {
         let whole = absolute(other).unwrap_or_else(|_| other.to_owned());
         whole.strip_prefix(&self.0).map(Path::to_owned).unwrap_or(whole)

@@ -1,7 +1,7 @@
-//! `f32` as an implementation may have it: what each operation does is decided by a coin.
+//! `f32` as an implementation may compute it: a coin decides what each operation does.
 //!
-//! No formula is written twice: the crate's formulas run in this number as in any other, so that
-//! every future formula is covered too.
+//! The crate's formulas run in this number as in any other. No formula is written twice, so every
+//! future formula is covered too.
 
 use crate::number::random::bits;
 use crate::number::{Exact, Real};
@@ -13,13 +13,13 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 pub(super) enum Law {
     /// Whether a product is fused with the sum it goes into.
     Ieee,
-    /// That; the order of sums; which neighbour a result is rounded to; division by the reciprocal,
-    /// roots by inverse roots, e^x by powers of two, each as far off as is published; whether small
-    /// numbers are flushed.
+    /// The same, and more: the order of sums; the neighbour that a result is rounded to; division
+    /// by the reciprocal, roots by inverse roots, e^x by powers of two, each as far off as
+    /// published; whether small numbers are flushed.
     Gpu,
 }
 
-/// A value, the factors of which it is the product, and the terms of which it is the sum.
+/// A value, the two factors if it is a product, and the two terms if it is a sum.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lawful {
     pub(super) value: f32,
@@ -31,7 +31,7 @@ thread_local! {
     static COIN: Cell<(Law, u64, u64)> = const { Cell::new((Law::Ieee, 0, 0)) };
 }
 
-/// Starts the coin anew.
+/// Restarts the coin.
 pub(super) fn begin(law: Law, seed: u64) {
     COIN.with(|coin| coin.set((law, seed, 0)));
 }
@@ -53,11 +53,11 @@ fn toss() -> bool {
     roll(2) == 1
 }
 
-/// The result of an operation from its value in `f64`, which is so many ulp off at most, beside the
-/// rounding to a neighbour.
+/// The result of an operation from its value in `f64`. It is off by at most so many ulp, in
+/// addition to the rounding to a neighbour.
 fn rounded(exact: f64, ulps: u64) -> f32 {
     let nearest = exact as f32;
-    // An error that is relative leaves 0 alone.
+    // A relative error leaves 0 alone.
     if law() == Law::Ieee || !nearest.is_finite() || exact == 0.0 {
         return nearest;
     }
@@ -78,7 +78,7 @@ impl From<f32> for Lawful {
     }
 }
 
-/// The sum of two, of which the first may be a product that is fused.
+/// The sum of two numbers; the first may be a product that is fused.
 fn plus(a: Lawful, b: f32) -> Lawful {
     let value = match a.product {
         // A product of two `f32` is exact in `f64`; its sum is rounded there, far below an ulp.
@@ -92,7 +92,7 @@ impl Add for Lawful {
     type Output = Self;
     fn add(self, other: Self) -> Self {
         if law() == Law::Gpu && toss() {
-            // (a + b) + c as a + (b + c).
+            // Adds (a + b) + c as a + (b + c).
             if let Some((a, b)) = self.sum {
                 return plus(a.into(), plus(b.into(), other.value).value);
             }

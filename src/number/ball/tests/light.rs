@@ -1,4 +1,4 @@
-//! What an environment shows, and what is seen through a surface that bends light.
+//! The light of an environment, and the light seen through a refracting surface.
 
 use super::lawful::{Law, Lawful, angle, begin};
 use crate::frame::Plane;
@@ -10,7 +10,7 @@ use crate::scene::environment::{Map, scaled, sky};
 use crate::shade::optics::{Behind, BendingLayers, NearestLayer, Refraction, shade_before};
 use std::f64::consts::TAU;
 
-/// The light of a direction, as somebody may find it.
+/// The light of a direction, as an implementation may compute it.
 fn light(environment: &Environment, direction: Vector3<Lawful>) -> [Lawful; 3] {
     let direction = scaled(direction);
     let Environment::Map(map) = environment else { return sky::radiance(direction) };
@@ -22,14 +22,14 @@ fn light(environment: &Environment, direction: Vector3<Lawful>) -> [Lawful; 3] {
     map.between([column(i.value), column(i.value + 1.0)], row, [s - i, t - j])
 }
 
-/// A map of pixels of any colour.
+/// A map whose pixels have any colour.
 fn map(width: u32) -> Environment {
     let pixels = (0..u64::from(width * width / 2)).map(|i| [0, 1, 2].map(|c| unit(5, 3 * i + c)));
     Environment::Map(Map::new(Plane::from_values(width, width / 2, pixels.collect())).unwrap())
 }
 
 fn vector(seed: u64, i: u64) -> [f32; 3] {
-    // Some of them along an axis.
+    // Some of them point along an axis.
     [0, 1, 2].map(|c| if i % 7 == c { 0.0 } else { 2.0 * unit(seed, 3 * i + c) - 1.0 })
 }
 
@@ -38,7 +38,7 @@ fn vector_of<R: Real>(value: [f32; 3]) -> Vector3<R> {
     Vector3::new(x, y, z)
 }
 
-/// What a number finds at the surface of this index, before a light.
+/// The colour that a number computes at the surface of this index, before a light.
 fn shaded<R: Real>(i: u64, light: impl Fn(Vector3<R>) -> [R; 3]) -> [R; 3] {
     let some = |seed: u64| R::from_f32(unit(seed, i));
     let color = |seed: u64| [0, 1, 2].map(|c| R::from_f32(unit(seed, 3 * i + c)));
@@ -52,7 +52,7 @@ fn shaded<R: Real>(i: u64, light: impl Fn(Vector3<R>) -> [R; 3]) -> [R; 3] {
     shade_before(light, &Refraction { ratio, layers }, view, &nearest, &behind)
 }
 
-/// Asks whether no value escapes, and that most of the balls are small.
+/// Checks that no value escapes, and that most of the balls are small.
 fn assert_held<P: Profile>(law: Law) {
     for environment in [Environment::Sky, map(4), map(64)] {
         let (mut small, mut all) = (0, 0);

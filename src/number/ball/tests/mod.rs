@@ -1,5 +1,5 @@
-//! The ball holds every lawful value of the crate's formulas, and twins that round too little do
-//! not; then each rule of the page.
+//! The ball holds every lawful value of the crate's formulas, and variants that round too little do
+//! not; then each rule of the module's page.
 
 mod lawful;
 mod light;
@@ -13,13 +13,14 @@ use lawful::{Law, Lawful};
 use scenes::{KINDS, Problem, QUANTITIES, Quantities, VALUES, quantity};
 use std::ops::Range;
 
-/// How many values escaped, and the worst distance from a midpoint in radii, of each quantity.
+/// For each quantity, how many values escaped, and the worst distance from a midpoint in radii.
 struct Found {
     escaped: usize,
     worst: [f64; QUANTITIES.len()],
 }
 
-/// Every kind of scene, `count` problems of each, in `f32` as a coin has it; on all cores.
+/// Runs `count` problems of every kind of scene, in `f32` as a coin decides its rounding; on all
+/// cores.
 fn soundness<P: Profile>(law: Law, seed: u64, count: u64) -> Found {
     let exec = Exec::new(0, 32).expect("all cores");
     let jobs = (0..count).step_by(1000).map(|first| first..count.min(first + 1000));
@@ -65,7 +66,7 @@ fn no_lawful_value_escapes() {
     ] {
         assert_eq!(found.escaped, 0, "{:?}", found.worst);
         for (name, worst) in QUANTITIES.iter().zip(found.worst) {
-            // A bound that nothing comes near to would say little; 1 is the end of the ball.
+            // A bound that no value comes near would say little; 1 is the end of the ball.
             assert!((least..=1.0 + 1e-9).contains(&worst), "{name}: {worst} of the radius");
         }
     }
@@ -85,7 +86,7 @@ fn no_lawful_value_escapes_of_a_billion() {
     assert_eq!(soundness::<Gpu>(Law::Gpu, 2, problems).escaped, 0);
 }
 
-/// A profile that rounds as [`Ieee`] but for one number.
+/// A profile that rounds as [`Ieee`] except for one number.
 macro_rules! twin {
     ($name:ident, $sum:expr, $product:expr, $quotient:expr, $root:expr, $tiny:expr) => {
         #[derive(Clone, Copy)]
@@ -126,7 +127,8 @@ twin!(NoUnderflow, 1.0, 1.0, 1.0, 1.0, 0.0);
 
 #[test]
 fn a_ball_that_rounds_too_little_is_caught() {
-    // One operation at a time: in a long formula the slack of others hides half a rounding.
+    // One operation at a time, because in a long formula the slack of the others hides half a
+    // rounding.
     fn escapes<P: Profile>() -> bool {
         (0..20_000).any(|i| {
             let [a, b] = scenes::operands(i);

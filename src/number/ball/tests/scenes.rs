@@ -1,4 +1,4 @@
-//! Problems that the formulas of a splat and a fragment are evaluated on.
+//! Problems for the formulas of a splat and a fragment.
 
 use super::{Ball, Profile};
 use crate::number::random::{bits, unit};
@@ -9,8 +9,8 @@ use crate::splat::project::project_as;
 use crate::splat::{Disc, Footprint, Kernel, Outline, Projector, Shared, View, fragment};
 use glam::Vec3;
 
-/// What is evaluated: the projection and a fragment from the scene, and the fragment from the
-/// client's own record.
+/// The quantities that are evaluated: the projection and a fragment from the scene, and the
+/// fragment from the client's own record.
 pub(super) const QUANTITIES: [&str; 20] = [
     "shaded colour",
     "center.x",
@@ -34,16 +34,16 @@ pub(super) const QUANTITIES: [&str; 20] = [
     "own weight",
 ];
 
-/// Where surfels are.
+/// Where the surfels are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Kind {
-    /// Of 0.5 to 50 px at depths of 0.2 to 20, facing anywhere.
+    /// Surfels of 0.5 to 50 px at depths of 0.2 to 20, facing anywhere.
     Random,
     /// Within 0.1 to 0.00001 of edge-on.
     EdgeOn,
     /// At the near plane.
     Near,
-    /// By ray casting.
+    /// With depths by ray casting.
     RayCast,
     /// Without low-pass filter, by the exact outline.
     NoFilter,
@@ -80,19 +80,19 @@ pub(super) struct Problem {
 
 /// Pixels of a problem.
 const PIXELS: usize = 8;
-/// How many of the quantities are those of the splat; the others are of each pixel.
+/// How many of the quantities belong to the splat; the others belong to each pixel.
 const OF_SPLAT: usize = 12;
 
-/// The place among [`QUANTITIES`] of the value of this number.
+/// The index in [`QUANTITIES`] for this value.
 pub(super) fn quantity(value: usize) -> usize {
     let of_pixel = QUANTITIES.len() - OF_SPLAT;
     if value < OF_SPLAT { value } else { OF_SPLAT + (value - OF_SPLAT) % of_pixel }
 }
 
-/// The values of a problem.
+/// How many values a problem has.
 pub(super) const VALUES: usize = OF_SPLAT + PIXELS * (QUANTITIES.len() - OF_SPLAT);
 
-/// What a number found.
+/// What evaluating in one number gave.
 pub(super) struct Quantities<R> {
     pub(super) values: Vec<R>,
     /// Whether the disc reaches the near plane.
@@ -187,7 +187,8 @@ impl Problem {
         Self { index, camera, kernel: kernel(kind), disc, depth, offsets }
     }
 
-    /// Everything in a number that decides by itself, and the record it stores.
+    /// Evaluates everything in a number whose comparisons are all decided, and the record it
+    /// stores.
     pub(super) fn evaluate<R: Real<Truth = bool>>(&self) -> (Quantities<R>, Footprint<f32>) {
         let crosses = self.projector::<R>().crosses(&self.disc());
         let footprint = self.footprint::<R>(crosses);
@@ -196,7 +197,7 @@ impl Problem {
         (Quantities { values, crosses }, record)
     }
 
-    /// Everything in balls, the last of it from a client's record.
+    /// Evaluates everything in balls, the last part from a client's record.
     pub(super) fn judge<P: Profile>(
         &self,
         crosses: bool,
@@ -227,7 +228,7 @@ impl Problem {
         project_as(&self.projector(), &self.disc(), 0, crosses).0.footprint
     }
 
-    /// The quantities of a footprint from the scene, and of the client's own one.
+    /// The quantities of a footprint from the scene, and of the client's own footprint.
     fn values<R: Real>(&self, f: &Footprint<R>, own: &Footprint<R>) -> Vec<R> {
         let shared = Shared::new(&View::new(&self.camera), &self.kernel);
         let mut values = Vec::with_capacity(VALUES);
@@ -243,7 +244,7 @@ impl Problem {
         values
     }
 
-    /// A colour under all kinds of lights, of a client's depth and normal.
+    /// A colour under all kinds of lights, from a client's depth and normal.
     fn shaded<R: Real>(&self) -> R {
         let color = Vec3::new(0.75, 0.5, 0.25);
         let towards = Vec3::new(0.25, -0.5, 1.0);
@@ -259,7 +260,7 @@ impl Problem {
         shader.surface((x, y), depth, self.disc().normal, [R::ONE; 3])[0]
     }
 
-    /// Pixels in the ellipse, or near it, by `f64`: the same for every number.
+    /// Pixels in the ellipse, or near it, chosen in `f64`: the same for every number.
     fn pixels(&self) -> [(u32, u32); PIXELS] {
         let f = self.footprint::<f64>(false);
         let at = |position: f64| position.clamped(0.0, 65_535.0) as u32;

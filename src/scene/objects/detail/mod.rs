@@ -1,25 +1,27 @@
-//! Levels of detail: which surfels of an object a view draws.
+//! Levels of detail: choose which surfels of an object a view draws.
 //!
 //! - [`tree`]: nodes of a sequential point tree \[GBP04, 7.2\].
 //! - [`prefix`]: a prefix of an order \[BJFM19, 4.1\].
-//! - [`refine`]: of an object and its finer ones, how much of which \[BJFM19, 4\].
+//! - [`refine`]: how much of an object and of its finer objects is drawn \[BJFM19, 4\].
 //!
-//! What a view draws is an f64 computation, given to every method as the camera is.
+//! The choice is an f64 computation, and every method receives its result, as it receives the
+//! camera.
 //!
-//! An object with levels of detail whose sphere is not in the view frustum draws nothing and has no ids; of
-//! other objects all surfels are drawn. With the sphere in its place and in view
-//! space, its depth t and radius R, in f64, it is outside if `t + R <= near`, or on one of the four sides, if it is
-//! beyond the border of the picture widened by m pixels: for the left one
+//! An object with levels of detail draws nothing and has no ids if its sphere is not in the view
+//! frustum. Objects without levels of detail always draw all surfels. The test uses the sphere in
+//! its place and in view space, with the depth t of its centre and the radius R, in f64. The sphere
+//! is outside if `t + R <= near`. It is also outside if it is beyond one of the four borders of the
+//! picture widened by m pixels: for the left border
 //!
 //! ```text
 //!   fx x + (cx + m) t < -R sqrt(fx fx + (cx + m) (cx + m))
 //!   fx x + (cx + m)   < -R fx                                      orthographic
 //! ```
 //!
-//! for the right one with -x and `width - cx`, for the upper one with fy, -y and cy, for the lower one with
-//! fy, y and `height - cy`. View space is `((m0 x + m1 y) + m2 z) + m3` of the camera's matrix. m is 16 plus the
-//! error that nodes may have, or the size of discs.
-//! `Decided:` 16 pixels, more than the filter of a splat adds to it.
+//! for the right one with -x and `width - cx`, for the upper one with fy, -y and cy, for the lower
+//! one with fy, y and `height - cy`. View space is `((m0 x + m1 y) + m2 z) + m3` of the camera's
+//! matrix. m is 16 plus the error that nodes may have, or plus the size of discs. `Decided:` 16
+//! pixels, more than the filter of a splat adds to the splat.
 
 pub mod prefix;
 pub mod refine;
@@ -36,10 +38,10 @@ use prefix::Prefix;
 use std::sync::Arc;
 use tree::Tree;
 
-/// How much the picture is widened on each side, in pixels.
+/// How far the picture is widened on each side, in pixels.
 const MARGIN: f64 = 16.0;
 
-/// Levels of detail of a geometry.
+/// The levels of detail of a geometry.
 #[derive(Clone, Debug)]
 pub enum Detail {
     /// Nodes of a tree.
@@ -59,7 +61,7 @@ impl Detail {
 }
 
 impl Geometry {
-    /// The tree of which the surfels are the nodes, if there is one.
+    /// The tree whose nodes the surfels are, if there is one.
     #[must_use]
     pub fn tree(&self) -> Option<&Tree> {
         match &self.detail {
@@ -68,7 +70,7 @@ impl Geometry {
         }
     }
 
-    /// The order in which the surfels are, if that is known.
+    /// The order of the surfels, if it is known.
     #[must_use]
     pub fn prefix(&self) -> Option<&Prefix> {
         match &self.detail {
@@ -77,7 +79,7 @@ impl Geometry {
         }
     }
 
-    /// Whether the geometry may get levels of detail.
+    /// Checks that the geometry may get levels of detail.
     fn check_plain(&self) -> Result<()> {
         if self.detail.is_none() && !self.surfels.is_empty() {
             return Ok(());
@@ -86,7 +88,7 @@ impl Geometry {
         Err(Error::Invalid(format!("{} has {what} levels of detail", self.name)))
     }
 
-    /// How many surfels are drawn where no camera is known, and their median radius.
+    /// How many surfels are drawn before a camera is known, and their median radius.
     pub(super) fn at_rest(&self) -> (u32, f32) {
         match self.tree() {
             Some(tree) => (tree.count, tree.median_radius),
@@ -95,14 +97,14 @@ impl Geometry {
     }
 }
 
-/// What a view draws of an object.
+/// The part of an object that a view draws.
 #[derive(Clone, Debug)]
 pub(super) struct Shown {
-    /// How many surfels are looked at, and have ids.
+    /// How many surfels the view looks at; these have ids.
     count: u32,
-    /// Which of them are drawn; none: all.
+    /// Which of them are drawn; none means all.
     mask: Option<Arc<Mask>>,
-    /// As what they are drawn; none: as they are.
+    /// The discs that they are drawn as; none means their own shapes.
     pub(super) disc: Option<Disc>,
     /// Whether primitives are drawn.
     pub(super) primitives: bool,
@@ -111,7 +113,7 @@ pub(super) struct Shown {
 /// The discs of a prefix.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Disc {
-    /// Of all, in world units.
+    /// The radius of every disc, in world units.
     pub radius: f32,
     /// The side of their squares in pixels.
     pub side: f32,
@@ -128,13 +130,13 @@ impl Shown {
         Self { mask: Some(Arc::default()), primitives: false, ..Self::default() }
     }
 
-    /// All that an object has, before a camera is known.
+    /// Everything that an object has, before a camera is known.
     pub(super) fn at_rest(geometry: &Geometry, all: u32) -> Self {
         Self { count: all, mask: geometry.tree().map(Tree::leaves), ..Self::default() }
     }
 }
 
-/// A bit for each of the first so many surfels of an object: whether it is drawn.
+/// One bit for each surfel at the beginning of an object: whether the surfel is drawn.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
 pub struct Mask {
     words: Vec<u64>,
@@ -173,8 +175,8 @@ impl Mask {
 }
 
 impl Objects {
-    /// The same objects as a camera sees them: which surfels those with [levels of detail](self) draw, their ids,
-    /// and the unit of epsilon.
+    /// Chooses what a camera sees of the objects: which surfels the objects with [levels of
+    /// detail](self) draw, the ids of these surfels, and the unit of epsilon.
     ///
     /// # Errors
     /// As [`Ids::new`].
@@ -197,19 +199,20 @@ impl Objects {
         self.forest.is_some() || self.geometries.iter().any(|geometry| geometry.detail.is_some())
     }
 
-    /// Which surfels of an object are drawn; none: all.
+    /// Which surfels of an object are drawn; none means all.
     #[must_use]
     pub fn drawn(&self, object: u32) -> Option<&Mask> {
         self.shown[object as usize].mask.as_deref()
     }
 
-    /// As which discs the surfels of an object are drawn; none: as they are.
+    /// The discs that the surfels of an object are drawn as; none means their own shapes.
     #[must_use]
     pub fn disc(&self, object: u32) -> Option<Disc> {
         self.shown[object as usize].disc
     }
 
-    /// The squares of all surfels that are drawn, in the order of their ids; none if no object has any.
+    /// The squares of all surfels that are drawn, in the order of their ids; none if no object has
+    /// squares.
     pub(crate) fn sides(&self) -> Result<Option<Sides>> {
         let objects = || self.ids.order().iter().filter(|&&object| self.drawn_of(object) > 0);
         if objects().all(|&object| self.disc(object).is_none()) {
@@ -252,18 +255,19 @@ impl Objects {
         ids
     }
 
-    /// The lower median of all radii that are drawn; an object without levels of detail has its median radius as
-    /// often as it has surfels, if it is drawn.
+    /// The lower median of all radii that are drawn. An object without levels of detail contributes
+    /// its median radius as often as it has surfels, if it is drawn.
     fn median_of_drawn(&self, exec: &Exec) -> f32 {
         let middle = self.drawn_total().saturating_sub(1) / 2;
-        // Radii are positive, so that their bits ascend as they do: first the high half, then the low.
+        // Radii are positive, so their bits ascend as the radii do: first find the high half, then
+        // the low.
         let (high, before) = nth(&self.histogram(exec, |bits| Some(bits >> 16)), middle);
         let low = |bits: u32| (bits >> 16 == high).then_some(bits & 0xFFFF);
         let (low, _) = nth(&self.histogram(exec, low), middle - before);
         f32::from_bits(high << 16 | low)
     }
 
-    /// How many radii that are drawn have which of 2^16 keys.
+    /// Counts the drawn radii for each of 2^16 keys.
     fn histogram(&self, exec: &Exec, key: impl Fn(u32) -> Option<u32> + Sync) -> Vec<u64> {
         let objects: Vec<u32> = (0..self.objects.len() as u32).collect();
         let share = objects.len().div_ceil(4 * exec.threads());
@@ -296,7 +300,7 @@ impl Objects {
     }
 }
 
-/// The key of which the element of a rank is, and how many come before those of the key.
+/// The key of the element with this rank, and how many elements have lower keys.
 fn nth(counts: &[u64], rank: u64) -> (u32, u64) {
     let mut before = 0;
     for (key, &count) in (0..).zip(counts) {
@@ -308,7 +312,7 @@ fn nth(counts: &[u64], rank: u64) -> (u32, u64) {
     (0, 0)
 }
 
-/// A camera as levels of detail see it.
+/// A camera in the numbers that levels of detail need.
 struct Eye {
     camera: Camera,
     view_from_world: DMat4,
@@ -331,7 +335,7 @@ impl Eye {
         f64::from(self.camera.fx.at_least(self.camera.fy))
     }
 
-    /// Whether a sphere reaches into the picture, widened by so many pixels.
+    /// Whether a sphere reaches into the picture widened by `margin` pixels.
     fn may_see(&self, (middle, radius): (DVec3, f64), margin: f64) -> bool {
         let Camera { width, height, projection, fx, fy, cx, cy, near, .. } = self.camera;
         let [fx, fy, cx, cy, near] = [fx, fy, cx, cy, near].map(f64::from);

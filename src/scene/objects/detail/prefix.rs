@@ -1,8 +1,9 @@
-//! Prefixes of an order \[BJFM19, 4.1\].
+//! Draw a prefix of the ordered surfels, as many as the view needs \[BJFM19, 4.1\].
 //!
-//! The surfels of the geometry are in an order of which every prefix is spread over all of them, such as that
-//! of a [sampler](crate::source::sampler). A view draws the first p(r) of them as discs of one radius r, which
-//! is s / 2 pixels where the object is nearest, in the coordinates of the geometry. In f64:
+//! The surfels of the geometry are in an order whose every prefix covers the surface, such as the
+//! order of a [sampler](crate::source::sampler). A view draws the first p(r) of them as discs of
+//! one radius r, in the coordinates of the geometry. r is s / 2 pixels where the object is nearest.
+//! In f64:
 //!
 //! ```text
 //!   d_p  = (t / f) / k      the width of a pixel where the object is nearest; orthographic: (1 / f) / k
@@ -10,17 +11,20 @@
 //!   p(r) = p_m (q q)        q = r_m / r
 //! ```
 //!
-//! f is the greater of fx and fy, k the scale of the object, and `r_m` the [`Estimate::distance`] of a prefix of
-//! `p_m` = [`Estimate::count`] surfels. The object is nearest at the point c of the box around its geometry
-//! that is the closest to the eye e, both in the coordinates of the geometry, `c = max(low, min(e, high))` a
-//! component; t is its depth, in its place, at least that of the near plane. The box is around the positions of
-//! all surfels and of the vertices that a primitive uses, without their radii. e is that of [`super::tree`]; a
-//! place is that of [`crate::scene::Similarity`], which is not rounded to f32 here.
+//! f is the greater of fx and fy, k the scale of the object, and `r_m` the [`Estimate::distance`]
+//! of a prefix of `p_m` = [`Estimate::count`] surfels. t is the depth of the object's nearest point
+//! c, in its place, but at least the depth of the near plane. c is the point of the box around the
+//! geometry that is closest to the eye e, both in the coordinates of the geometry:
+//! `c = max(low, min(e, high))` for each component. The box is around the positions of all surfels
+//! and of the vertices that a primitive uses, without their radii. e is the eye of [`super::tree`].
+//! A place is one of [`crate::scene::Similarity`], but is not rounded to f32 here.
 //!
-//! `Departs:` the paper prints r = s / (2 `d_p`), with which discs shrink where pixels become wider.
+//! `Departs:` the paper prints r = s / (2 `d_p`), with which discs shrink where pixels become
+//! wider.
 //!
-//! `Decided:` `d_p` is that of the closest point, the paper's example. Discs farther away are smaller than s
-//! on the screen: a long object gets more of them than it needs, as the paper says in its section 6.
+//! `Decided:` `d_p` is taken at the closest point, as in the paper's example. Discs farther away
+//! are smaller than s on the screen, so a long object gets more of them than it needs, as the paper
+//! says in its section 6.
 
 use super::{Detail, Eye};
 use crate::error::{Error, Result};
@@ -30,14 +34,14 @@ use crate::scene::objects::outline::Bounds;
 use crate::scene::{Projection, Similarity, bounds};
 use glam::DVec3;
 
-/// How densely an order covers: "\[`r_m`\] is the precomputed median minimum distance for a fixed prefix length
-/// \[`p_m`\]".
+/// How densely an order covers: "\[`r_m`\] is the precomputed median minimum distance for a fixed
+/// prefix length \[`p_m`\]".
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Estimate {
-    /// `p_m`: surfels of the prefix.
+    /// `p_m`: how many surfels the prefix has.
     pub count: u32,
-    /// `r_m`: the lower median of the distances of each to the nearest other that faces alike, see
-    /// [`mod@crate::source::sampler::estimate`]; 0 if there is no other.
+    /// `r_m`: the lower median of the distances from each surfel to the nearest other that faces
+    /// alike, see [`mod@crate::source::sampler::estimate`]; 0 if there is no other.
     pub distance: f32,
 }
 
@@ -45,7 +49,7 @@ pub struct Estimate {
 #[derive(Clone, Debug)]
 pub struct Prefix {
     estimate: Estimate,
-    /// n: all surfels.
+    /// n: the number of all surfels.
     count: u32,
     /// The box around the geometry.
     corners: [DVec3; 2],
@@ -53,7 +57,7 @@ pub struct Prefix {
 }
 
 impl Prefix {
-    /// That of a geometry of which no more is known.
+    /// Makes the prefix of a geometry from its outline alone.
     pub(in crate::scene::objects) fn outlined(
         count: u32,
         estimate: Estimate,
@@ -75,7 +79,7 @@ impl Prefix {
         self.count
     }
 
-    /// p(r): how many surfels of the radius r cover.
+    /// p(r): how many surfels of this radius cover the surface.
     #[must_use]
     pub fn covering(&self, radius: f64) -> f64 {
         let q = f64::from(self.estimate.distance) / radius;
@@ -105,12 +109,12 @@ impl Prefix {
 }
 
 impl Geometry {
-    /// The geometry with the order in which its surfels are. Radii of its surfels are of no use from here on
-    /// but where no camera is known.
+    /// Gives the geometry the order of its surfels. From here on the radii of the surfels are used
+    /// only where no camera is known.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if there are no surfels, or levels of detail already, or if the estimate is of no surfel
-    /// or of more than there are, or its distance is not finite or less than 0.
+    /// [`Error::Invalid`] if there are no surfels, or levels of detail already; if the estimate
+    /// counts no surfel or more than there are; or if its distance is not finite or less than 0.
     pub fn with_prefix(self, estimate: Estimate) -> Result<Self> {
         self.check_plain()?;
         let Estimate { count, distance } = estimate;

@@ -1,12 +1,13 @@
-//! How large the discs of prefixes are, and which of an object and its finer ones are drawn
-//! \[BJFM19, 4, 4.1, 4.4\].
+//! Choose how large the discs of prefixes are, and how much of an object and of its finer objects
+//! is drawn \[BJFM19, 4, 4.1, 4.4\].
 //!
-//! **Objects and finer ones.** Objects may form a forest: the finer objects of one show the same surfaces with
-//! more surfels, and the primitives of a geometry that has a [prefix](super::prefix) are its surfaces
-//! themselves. "We blend between the node's approximation and its children's approximations or original geometry by
-//! gradually decreasing the number of rendered surfels for the node while increasing the number of rendered
-//! surfels of the child nodes or rendering the original geometry." `Decided:` each object has a weight w, 1
-//! if it is the finer one of none. With n surfels of which p = p(r) are asked for, in f64:
+//! **Objects and finer objects.** Objects may form a forest: the finer objects of an object show
+//! the same surfaces with more surfels. The primitives of a geometry that has a
+//! [prefix](super::prefix) are the surfaces themselves. "We blend between the node's approximation
+//! and its children's approximations or original geometry by gradually decreasing the number of
+//! rendered surfels for the node while increasing the number of rendered surfels of the child nodes
+//! or rendering the original geometry." `Decided:` each object has a weight w, which is 1 if no
+//! object is coarser. Let the object have n surfels, and let p = p(r) be asked for. In f64:
 //!
 //! ```text
 //!   fade    = 0 if there is nothing finer, else min(max(2 (p / n) - 1, 0), 1)
@@ -15,45 +16,51 @@
 //!   weight of each finer object, and of the primitives  =  w min(2 fade, 1)
 //! ```
 //!
-//! so that the fade begins where half of the surfels are asked for, and ends where all are. In its first half
-//! the finer ones grow, in the second the coarser one shrinks: one of both is always drawn whole. Where one
-//! shrinks while the other grows there are holes halfway, as two prefixes of half the length know nothing of
-//! each other. Primitives are drawn where their weight is greater than 0:
-//! a surface is there or is not. So is an object without a prefix, whose finer ones have its weight w.
+//! So the fade begins where half of the surfels are asked for, and ends where all are. In its first
+//! half the finer objects grow; in its second half the coarser object shrinks. One of both is
+//! always drawn whole. If one shrank while the other grew, there would be holes halfway, because
+//! two prefixes of half the length know nothing of each other. Primitives are drawn where their
+//! weight is greater than 0, because a surface is either there or not. The same holds for an object
+//! without a prefix, whose finer objects have its weight w.
 //!
-//! **Where nothing is finer** and p(r) exceeds n, all n are drawn, with the radius `r_n` = `r_m` sqrt(`p_m` /
-//! n) with which they cover: nothing more is known of the surface. `Decided:` here discs grow beyond the size
-//! asked for; with a fixed size there would be holes.
+//! **Where nothing is finer** and p(r) exceeds n, all n are drawn, because nothing more is known of
+//! the surface. They get the radius with which they cover, `r_n` = `r_m` sqrt(`p_m` / n).
+//! `Decided:` here discs grow beyond the size asked for; with a fixed size there would be holes.
 //!
-//! **Size.** s is the [size](Refinement::surfel_size) asked for, z the factor of the object's zone, and r =
-//! (size (`d_p` z)) / 2, where size is s, or greater by the budget. Discs have the radius r k, or `r_n` k, in the world, with the scale k of the object,
-//! and the side of the [square](crate::scene::Sides) of a surfel is size z, or (size z) (`r_n` / r). Both are
-//! brought between 2^-100 and 2^100, then rounded to f32.
+//! **Size.** s is the [size](Refinement::surfel_size) asked for, z the factor of the object's zone,
+//! and r = (size (`d_p` z)) / 2, where size is s, or a greater number because of the budget. In the
+//! world, discs have the radius r k, or `r_n` k, with the scale k of the object. The side of the
+//! [square](crate::scene::Sides) of a surfel is size z, or (size z) (`r_n` / r). Both are brought
+//! between 2^-100 and 2^100, then rounded to f32.
 //!
-//! **Zones** \[4.4\]: pairs of a distance from the principal point of the camera, in pixels, and a factor of
-//! the size, "interpolate\[d\] \[...\] between zones on a per-object basis": between the pairs (a, from) and
-//! (b, to) at the distance d `from + (to - from) ((d - a) / (b - a))`, in f64; the first factor before the
-//! first distance and the last behind the last; at equal distances the later pair. `Decided:` the distance of
-//! an object is that of the middle of its sphere on the screen, less the sphere's radius there, at least 0. In
-//! f64, with the middle (x, y) at the depth t in view space, and f the greater of fx and fy:
+//! **Zones** \[4.4\]: pairs of a distance from the principal point of the camera, in pixels, and a
+//! factor of the size, "interpolate\[d\] \[...\] between zones on a per-object basis". Between the
+//! pairs (a, from) and (b, to) the factor at the distance d is
+//! `from + (to - from) ((d - a) / (b - a))`, in f64. The first factor holds before the first
+//! distance, and the last factor behind the last; at equal distances the later pair counts.
+//! `Decided:` the distance of an object is the distance of the middle of its sphere on the screen,
+//! less the sphere's radius there, at least 0. In f64, with the middle (x, y) at the depth t in
+//! view space, R the radius, and f the greater of fx and fy:
 //!
 //! ```text
 //!   a = (fx x) / t     b = (fy y) / t     max(sqrt(a a + b b) - (f R) / t, 0), but 0 if t <= R
 //!   a = fx x           b = fy y           max(sqrt(a a + b b) - f R, 0), whatever t      orthographic
 //! ```
 //!
-//! **Budget**: at most so many surfels of prefixes are drawn, the best first. Of all surfels that may be
-//! drawn those come first whose prefix has the widest gaps on the screen; so a common greater size takes the
-//! place of the size asked for, the k-th of s, s (65/64), (s (65/64)) (65/64) and so on, up to k = 2048. k is 0
-//! if the objects draw no more than the budget with s; else it is found by halving: `(few, many) = (2048, 0)`,
-//! and while `few - many > 1`, of `k = (few + many) / 2`, rounded down, few becomes k if they draw no more with
-//! it, else many becomes k; k = few. Fades follow the greater size, so that finer objects give way to coarser
-//! ones. Where objects draw more even then, those surfels are left out that come after the budget in the order
-//! of objects: one object may keep its first ones. Primitives stay as they are.
+//! **Budget**: at most this many surfels of prefixes are drawn, the best first. The best are the
+//! surfels whose prefix has the widest gaps on the screen. So one greater size, common to all
+//! objects, replaces the size asked for. The sizes tried are s, s (65/64), (s (65/64)) (65/64) and
+//! so on, numbered k = 0 up to k = 2048. k is 0 if the objects draw no more than the budget with s.
+//! Otherwise k is found by bisection: start with `(few, many) = (2048, 0)`. While `few - many > 1`,
+//! take `k = (few + many) / 2`, rounded down; few becomes k if the objects draw no more than the
+//! budget with it, else many becomes k. The result is k = few. Fades follow the greater size, so
+//! finer objects give way to coarser ones. If the objects draw more even then, the surfels after
+//! the budget in the order of objects are left out: one object may keep its first surfels.
+//! Primitives stay as they are.
 //!
-//! An object with a prefix whose sphere is not in the view frustum, by the test of [`super`] with the margin
-//! 16 + s z, with the s that is asked for and not the budget's, draws neither surfels nor primitives; its finer objects have the weight that they
-//! would have.
+//! An object with a prefix draws neither surfels nor primitives if its sphere is not in the view
+//! frustum. [`super`] defines the test; the margin is 16 + s z, with the s that is asked for and
+//! not the budget's. Its finer objects have the weight that they would have if it were in sight.
 
 use super::prefix::Prefix;
 use super::{Disc, Eye, MARGIN, Shown};
@@ -64,7 +71,7 @@ use crate::scene::Projection;
 use crate::scene::objects::{Detail, Objects};
 use std::sync::Arc;
 
-/// How large discs of prefixes may be, in pixels.
+/// The largest size of discs of prefixes, in pixels.
 pub const MOST_SIZE: f32 = 4096.0;
 
 /// What a view asks of prefixes.
@@ -72,9 +79,10 @@ pub const MOST_SIZE: f32 = 4096.0;
 pub struct Refinement {
     /// s: the diameter of discs where an object is nearest, in pixels, in (0, [`MOST_SIZE`]].
     pub surfel_size: f32,
-    /// The most surfels of prefixes that are drawn; all that are asked for if absent.
+    /// The most surfels of prefixes that are drawn; if absent, all that are asked for.
     pub budget: Option<u32>,
-    /// Distances from the principal point in pixels, ascending, and factors of the size there, greater than 0.
+    /// Distances from the principal point in pixels, ascending, and factors of the size there,
+    /// greater than 0.
     pub zones: Vec<[f32; 2]>,
 }
 
@@ -85,7 +93,7 @@ impl Default for Refinement {
 }
 
 impl Refinement {
-    /// Whether the numbers are in range.
+    /// Checks that the numbers are in range.
     ///
     /// # Errors
     /// [`Error::Invalid`] if one is not.
@@ -128,23 +136,23 @@ impl Refinement {
     }
 }
 
-/// Which objects are finer ones of which.
+/// The forest of objects and their finer objects.
 #[derive(Clone, Debug)]
 pub(in crate::scene::objects) struct Forest {
-    /// The object of which each is a finer one.
+    /// For each object, the coarser object, if there is one.
     coarser: Vec<Option<u32>>,
-    /// Whether each has finer ones.
+    /// Whether each object has finer ones.
     has_finer: Vec<bool>,
-    /// All objects, each after the one that it is a finer one of.
+    /// All objects, each after its coarser object.
     order: Vec<u32>,
 }
 
 impl Forest {
-    /// The forest in which each object is a finer one of another, or of none.
+    /// Makes the forest from the coarser object of each object, if it has one.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if there is not one entry for each object, or one is of no object, or objects are
-    /// finer than themselves.
+    /// [`Error::Invalid`] if there is not one entry for each object, if an entry is no object, or
+    /// if an object is finer than itself.
     fn new(coarser: Vec<Option<u32>>, objects: usize) -> Result<Self> {
         let invalid = |what| Err(Error::Invalid(what));
         if coarser.len() != objects {
@@ -160,6 +168,7 @@ impl Forest {
             }
         }
         let mut next = 0;
+        // From the roots down: this never reaches objects that are finer than themselves.
         while let Some(&object) = order.get(next) {
             order.extend(&finer[object as usize]);
             next += 1;
@@ -182,18 +191,18 @@ struct Asked {
     seen: bool,
 }
 
-/// What is drawn of an object.
+/// The amount that is drawn of an object.
 #[derive(Clone, Copy, Default)]
 struct Drawn {
-    /// Surfels of a prefix.
+    /// The surfels of a prefix.
     count: u32,
-    /// The weight of the object, and of its primitives.
+    /// The weight of the object, and the weight of its primitives.
     weight: f64,
     of_primitives: f64,
 }
 
 impl Objects {
-    /// The same objects with other wishes of views.
+    /// Replaces what views ask of prefixes.
     ///
     /// # Errors
     /// As [`Refinement::check`].
@@ -202,10 +211,11 @@ impl Objects {
         Ok(Self { refinement: Arc::new(refinement), ..self })
     }
 
-    /// The same objects as a forest: of each the object of which it is a finer one, if there is one.
+    /// Makes the objects a forest: `coarser` has the coarser object of each object, if it has one.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if that is no forest, or if an object without a prefix has surfels and finer objects.
+    /// [`Error::Invalid`] if that is no forest, or if an object without a prefix has surfels and
+    /// finer objects.
     pub fn with_coarser(self, coarser: Vec<Option<u32>>) -> Result<Self> {
         let forest = Forest::new(coarser, self.objects.len())?;
         for (object, _) in (0..).zip(&forest.has_finer).filter(|(_, has)| **has) {
@@ -219,13 +229,13 @@ impl Objects {
         Ok(Self { forest: Some(Arc::new(forest)), ..self })
     }
 
-    /// The object of which one is a finer one.
+    /// The coarser object of an object, if it has one.
     #[must_use]
     pub fn coarser(&self, object: u32) -> Option<u32> {
         self.forest.as_ref().and_then(|forest| forest.coarser[object as usize])
     }
 
-    /// Whether a geometry has prefixes.
+    /// Whether some geometry has prefixes.
     #[must_use]
     pub fn have_prefixes(&self) -> bool {
         self.geometries.iter().any(|geometry| geometry.prefix().is_some())
@@ -237,7 +247,7 @@ impl Objects {
         &self.refinement
     }
 
-    /// What a camera draws of each object.
+    /// Chooses what a camera draws of each object.
     pub(super) fn refined(&self, eye: &Eye, exec: &Exec) -> Vec<Shown> {
         let all: Vec<u32> = (0..self.objects.len() as u32).collect();
         let asked = exec.ordered(all.clone(), |object| self.asked(object, eye));
@@ -247,6 +257,8 @@ impl Objects {
             let Drawn { count, weight, of_primitives } = drawn[at];
             let geometry = self.geometry(object);
             let seen = asked[at].seen;
+            // Without levels of detail an object is drawn even out of sight, unless it has faded
+            // out.
             match &geometry.detail {
                 _ if weight == 0.0 => Shown::nothing(),
                 None => Shown { count: self.count_of_all(object), ..Shown::default() },
@@ -283,7 +295,7 @@ impl Objects {
         }
     }
 
-    /// The size and what is drawn with it, within the budget.
+    /// Finds the size that keeps the budget, and what is drawn with it.
     fn within_budget(&self, asked: &[Asked]) -> (f64, Vec<Drawn>) {
         let mut size = f64::from(self.refinement.surfel_size);
         let drawn = self.drawn_with(size, asked);
@@ -304,6 +316,7 @@ impl Objects {
             let fits = total(&self.drawn_with(sizes[k], asked)) <= budget;
             *(if fits { &mut few } else { &mut many }) = k;
         }
+        // Even the largest size may exceed the budget: then the last objects lose their surfels.
         let mut drawn = self.drawn_with(sizes[few], asked);
         let mut left = budget;
         for one in &mut drawn {
@@ -313,12 +326,13 @@ impl Objects {
         (sizes[few], drawn)
     }
 
-    /// What is drawn with a size: how the weights go down the forest.
+    /// What is drawn with a size: this pushes the weights down the forest.
     fn drawn_with(&self, size: f64, asked: &[Asked]) -> Vec<Drawn> {
         let mut drawn = vec![Drawn { count: 0, weight: 1.0, of_primitives: 1.0 }; asked.len()];
         let mut one = |object: u32, coarser: Option<u32>| {
             let weight = coarser.map_or(1.0, |of| drawn[of as usize].of_primitives);
             let geometry = self.geometry(object);
+            // An object without a prefix only passes its weight on.
             let Some(prefix) = geometry.prefix() else {
                 drawn[object as usize] = Drawn { count: 0, weight, of_primitives: weight };
                 return;
@@ -350,7 +364,7 @@ impl Objects {
         drawn
     }
 
-    /// Whether the surfaces of an object are known better than by its surfels.
+    /// Whether anything shows the surfaces of an object better than its surfels.
     fn has_finer(&self, object: u32) -> bool {
         let forest = self.forest.as_ref();
         forest.is_some_and(|forest| forest.has_finer[object as usize])
@@ -361,6 +375,7 @@ impl Objects {
     fn disc_with(&self, object: u32, prefix: &Prefix, size: f64, asked: &Asked) -> Disc {
         let (mut radius, mut side) = (size * asked.pixel / 2.0, size * asked.factor);
         let of_all = prefix.radius_of_all();
+        // Discs grow beyond the size asked for only where nothing finer could fill the holes.
         if !self.has_finer(object) && of_all > radius {
             side *= of_all / radius;
             radius = of_all;
@@ -372,7 +387,7 @@ impl Objects {
     }
 }
 
-/// Steps of the size until the budget holds.
+/// The most steps by which the size grows until the budget holds.
 const STEPS: usize = 2048;
 /// 2^-100.
 const LEAST: f64 = 1.0 / 1_267_650_600_228_229_401_496_703_205_376.0;

@@ -1,8 +1,8 @@
-//! Nodes of a sequential point tree \[GBP04, 7.2\].
+//! Draw nodes of a sequential point tree as a level of detail \[GBP04, 7.2\].
 //!
-//! A geometry has the nodes of a [sequential point tree](crate::index::sequential) in the
-//! place of its surfels, in the order of the list, and a threshold tau in pixels. Of an object of scale k,
-//! rotation R and translation T, seen by a camera at the eye E with the focal lengths fx and fy, in f64:
+//! A geometry has the nodes of a [sequential point tree](crate::index::sequential) instead of its
+//! surfels, in the order of the list, and a threshold tau in pixels. An object of scale k, rotation
+//! R and translation T is seen by a camera at the eye E with the focal lengths fx and fy. In f64:
 //!
 //! ```text
 //!   e    = (transpose(R) (E - T)) / k           the eye in the coordinates of the geometry, sums (a + b) + c
@@ -11,14 +11,16 @@
 //!   r    = 1 / k                                of every node, orthographic
 //! ```
 //!
-//! A perspective camera draws the nodes that [`Sequential::holds`] at r(p) and s, an orthographic one
-//! those that [`Sequential::cuts`] at r and s. Before a camera is known the surfels are drawn that
-//! the geometry was made of.
+//! A perspective camera draws the nodes that [`Sequential::holds`] at r(p) and s, an orthographic
+//! one the nodes that [`Sequential::cuts`] at r and s. Before a camera is known, the surfels that
+//! the geometry was made of are drawn.
 //!
-//! Only the first so many nodes of the list are looked at, and have [ids](crate::scene::objects::ids) in that view:
-//! [`Sequential::prefix`] of s and the least distance, `|c - e| - R - (|c| + R) / 2^20`, at least 0,
-//! with c and R of the sphere around the surfels that the geometry was made of, and its primitives, in its
-//! own coordinates; r of an orthographic camera. Discs of inner nodes reach beyond the surfels by tau at most.
+//! A view looks only at a beginning of the list, and only these nodes have
+//! [ids](crate::scene::objects::ids) in that view. The beginning is [`Sequential::prefix`] of s and
+//! the least distance, `|c - e| - R - (|c| + R) / 2^20`, at least 0; for an orthographic camera the
+//! distance is r. c and R belong to the sphere around the surfels that the geometry was made of,
+//! and its primitives, in the geometry's own coordinates. Discs of inner nodes reach beyond the
+//! surfels by tau at most.
 
 use super::{Detail, Eye, Mask};
 use crate::error::{Error, Result};
@@ -39,14 +41,15 @@ pub struct Tree {
     list: Sequential,
     threshold: f64,
     leaves: Arc<Mask>,
-    /// Of the surfels that the geometry was made of: how many, their median radius, and a sphere.
+    /// For the surfels that the geometry was made of: their number, their median radius, and a
+    /// sphere.
     pub(super) count: u32,
     pub(super) median_radius: f32,
     pub(super) sphere: (DVec3, f64),
 }
 
 impl Tree {
-    /// When each node is drawn.
+    /// The list, which tells when each node is drawn.
     #[must_use]
     pub fn list(&self) -> &Sequential {
         &self.list
@@ -58,12 +61,12 @@ impl Tree {
         self.threshold
     }
 
-    /// The surfels that the geometry was made of.
+    /// A mask of the surfels that the geometry was made of.
     pub(super) fn leaves(&self) -> Arc<Mask> {
         Arc::clone(&self.leaves)
     }
 
-    /// How many nodes of an object in its place are looked at, and which of them are drawn.
+    /// How many nodes of an object in its place the view looks at, and which of them it draws.
     pub(super) fn drawn(&self, geometry: &Geometry, place: &Similarity, eye: &Eye) -> (u32, Mask) {
         let scale = eye.focal() / self.threshold;
         if eye.camera.projection == Projection::Orthographic {
@@ -86,12 +89,13 @@ impl Tree {
 }
 
 impl Geometry {
-    /// The geometry with the nodes of a tree, which are its surfels from here on. `threshold` is tau,
-    /// in [0, [`MOST_PIXELS`]]. Prefiltered colours are left out: those of inner nodes are averages.
+    /// Replaces the surfels of the geometry by the nodes of a tree. `threshold` is tau, in [0,
+    /// [`MOST_PIXELS`]]. Prefiltered colours are left out, because the colours of inner nodes are
+    /// averages already.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the threshold is out of range, if there are no surfels, or levels of detail
-    /// already, and as [`Sequential::new`].
+    /// [`Error::Invalid`] if the threshold is out of range, if there are no surfels, or levels of
+    /// detail already, and as [`Sequential::new`].
     pub fn with_detail(self, threshold: f64, exec: &Exec) -> Result<Self> {
         if !(0.0..=MOST_PIXELS).contains(&threshold) {
             let what = format!("levels of detail of {threshold} pixels; give 0 to {MOST_PIXELS}");

@@ -29,7 +29,7 @@ fn pair(seed: u64, index: u64) -> (V, V) {
     (view, if normal.dot(view) < 0.0 { -normal } else { normal })
 }
 
-/// The view under an angle from [`UP`].
+/// The view at an angle from [`UP`].
 fn view_at(angle: f64) -> V {
     Vector3::new(sin(angle), 0.0, cos(angle))
 }
@@ -59,8 +59,8 @@ fn a_mirror_halves_the_angle() {
     assert_eq!(reflect(UP, UP), UP);
 }
 
-/// Light takes the path whose time does not change to first order (Fermat): with the speeds 1/ratio
-/// above and 1 below, through points of the surface around the origin.
+/// Light takes the path whose time does not change to first order (Fermat). The speeds are 1/ratio
+/// above and 1 below, and the paths go through points of the surface around the origin.
 #[test]
 fn one_layer_is_the_stationary_path() {
     let mut checked = 0;
@@ -127,7 +127,7 @@ fn layers_add_up() {
 
 #[test]
 fn total_reflection_begins_where_the_sine_passes_one() {
-    // Sines that are exact: ratio^layers times them is exactly 1.
+    // Exact sines: ratio^layers times each is exactly 1.
     for (sine, ratio, layers) in [(0.5_f32, 2.0, 1.0), (0.25, 2.0, 2.0), (0.25, 4.0, 1.0)] {
         let view = |s: f32| Vector3::new(s, 0.0, (1.0 - s * s).sqrt());
         let up = single(UP);
@@ -203,7 +203,7 @@ fn fresnel_is_the_sine_law_and_the_tangent_law() {
     }
 }
 
-/// Glass of index 1.5, as tables of optics print it.
+/// Glass of index 1.5, as printed in tables of optics.
 #[test]
 fn fresnel_of_glass() {
     let glass = |degrees: f64| fresnel(cos(degrees.to_radians()), 1.0 / 1.5);
@@ -226,7 +226,7 @@ fn laws_of_fresnel() {
         assert_eq!(fresnel(cosine, 1.0), 0.0, "a ratio of 1 is no surface");
         let grazing = if ratio == 1.0 { 0.0 } else { 1.0 };
         assert_eq!(fresnel(0.0, ratio), grazing);
-        // From the other side, under the angle that the light has there, as much is reflected.
+        // From the other side, at the angle that the light has there, the same part is reflected.
         let k = 1.0 - ratio * ratio * (1.0 - cosine * cosine);
         if k > 1e-6 {
             let back = fresnel(k.sqrt(), 1.0 / ratio);

@@ -16,7 +16,7 @@ fn glass(layers: BendingLayers) -> Refraction {
 
 const BLACK: Behind<f64> = Behind { color: [0.0; 3], opacity: 0.0, hidden: 0.0 };
 
-/// Where everything is of radiance 1, so is what is seen: no light is made and none is lost.
+/// Where everything has radiance 1, the pixel has radiance 1: no light is made and none is lost.
 #[test]
 fn a_white_furnace_stays_white() {
     let (white, mut least, mut total) = (even(1.0), 1.0_f64, 0);
@@ -27,7 +27,8 @@ fn a_white_furnace_stays_white() {
         let ratio = [0, 1, 2].map(|c| (0.25 + 2.0 * number(20, 3 * i + c)) as f32);
         let refraction = Refraction { ratio, layers: BendingLayers::Multiple };
         let hidden = if i % 3 == 0 { number(21, i) } else { 0.0 };
-        // Where an opaque surfel hides the environment it sends what the environment would have.
+        // Where an opaque surfel hides the environment, the surfel sends what the environment would
+        // have sent.
         let passed = (0..i % 5).fold(1.0, |product, _| product * (1.0 - alpha));
         let color = [1.0 - passed * (1.0 - hidden); 3];
         let behind = Behind { color, opacity: alpha * count, hidden };
@@ -35,7 +36,7 @@ fn a_white_furnace_stays_white() {
         for value in shade(&white, &refraction, view, &nearest, &behind) {
             assert!((value - 1.0).abs() < 1e-12, "{i}: {value}");
         }
-        // And without the layers' own light nothing is above 1.
+        // Without the layers' own light, nothing is above 1.
         let nearest = NearestLayer { color: [0.0; 3], ..nearest };
         let behind = Behind { color: [0.0; 3], ..behind };
         for value in shade(&white, &refraction, view, &nearest, &behind) {
@@ -58,7 +59,7 @@ fn an_opaque_pixel_is_its_phong_colour() {
         for kind in [BendingLayers::Single, BendingLayers::Multiple] {
             let shaded = shade(&Environment::Sky, &glass(kind), single(view), &nearest, &behind);
             assert_eq!(shaded, color);
-            // And nearly so if it is nearly opaque: the sun is below 26.
+            // A nearly opaque pixel is nearly so too: the sun is below 26.
             let nearly = NearestLayer { opacity: 1.0 - 1.0 / 4096.0, ..nearest };
             let shaded = shade(&Environment::Sky, &glass(kind), single(view), &nearly, &behind);
             assert!((0..3).all(|c| (shaded[c] - color[c]).abs() < 2.0 * 27.0 / 4096.0));
@@ -176,7 +177,7 @@ fn single_precision_is_close_and_nothing_is_nan() {
             normal: single(normal),
         };
         let found = shade(&smooth, &refraction, single(view), &nearest, &behind);
-        // Beside the poles of the map a direction's rounding is a turn of any angle.
+        // Near the poles of the map, the rounding of a direction can be a turn by any angle.
         let tolerance = if i % 4 == 0 { 0.05 } else { 1e-3 };
         assert!(
             (0..3).all(|c| (f64::from(found[c]) - truth[c]).abs() < tolerance),

@@ -6,7 +6,8 @@ use glam::DVec3;
 
 fn quiet(_: &str, _: u64, _: u64) {}
 
-/// A square of side 2 in the plane z = 0, cut into four, seen from the front and aslant.
+/// A square of side 2 in the plane z = 0, cut into four triangles, seen from the front and at an
+/// angle.
 fn square(texture: Texture, at: impl Fn(Vec3) -> Vec2) -> Cloud {
     let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
     let position = vec![
@@ -40,7 +41,8 @@ fn noise() -> Texture {
     Texture::new(Plane::from_pixels([90, 70], |x, y| [0, 1, 2].map(|c| value(x, y, c)))).unwrap()
 }
 
-/// An affine map J: a disc of the side s of a pixel becomes s s J J^T, from wherever it is seen.
+/// An affine map J takes a disc of the radius of a pixel's side s to s s J J^T, from wherever it is
+/// seen.
 #[test]
 fn a_candidate_has_the_mean_of_the_texture_around_it() {
     let at = |p: Vec3| Vec2::new(0.25 * p.x + 0.125 * p.y + 0.5, 0.375 * p.y + 0.5);
@@ -58,7 +60,7 @@ fn a_candidate_has_the_mean_of_the_texture_around_it() {
         let expected = paint.color(at(p).as_dvec2(), outline);
         assert!((color - expected).abs().max_element() < 1e-4, "{p}: {color} and {expected}");
     }
-    // The same points as without a texture, in other colours.
+    // The same points as without a texture, in different colours.
     let bare = found(Cloud { paint: None, ..cloud }, 60, &Exec::sequential()).0;
     assert_eq!(
         (bare.cloud.position, bare.cloud.normal),
@@ -67,8 +69,8 @@ fn a_candidate_has_the_mean_of_the_texture_around_it() {
     assert!(bare.cloud.color.unwrap().iter().all(|color| color.distance(Vec3::ONE) < 1e-6));
 }
 
-/// Squares of 1/64 of a pixel alias where a pixel has the colour of one texel: half of the candidates would be
-/// black and half white.
+/// Squares of 1/64 of a pixel would alias if a pixel had the colour of one texel: half of the
+/// candidates would be black and half white.
 #[test]
 fn what_is_finer_than_a_pixel_is_grey() {
     let board = Plane::from_pixels([1024, 1024], |x, y| [((x + y) % 2) as f32; 3]);
@@ -78,7 +80,7 @@ fn what_is_finer_than_a_pixel_is_grey() {
     assert!(colors.len() > 300 && colors.iter().all(|color| (color.x - 0.5).abs() < 0.01));
 }
 
-/// Triangles that are dropped take their coordinates with them: the others keep theirs.
+/// Dropped triangles take their coordinates with them; the other triangles keep theirs.
 #[test]
 fn what_is_dropped_does_not_move_the_texture() {
     let halves =
@@ -89,7 +91,8 @@ fn what_is_dropped_does_not_move_the_texture() {
     cloud.position.extend([Vec3::NAN, Vec3::new(0.0, 0.0, 0.5)]);
     cloud.normal = Some(vec![Vec3::Z, Vec3::Z, Vec3::Z, Vec3::Z, Vec3::Z, Vec3::Z, Vec3::ZERO]);
     cloud.color = None;
-    // At a place that is nowhere, without coordinates, with a null normal; and the four that stay, one twice.
+    // One triangle at an infinite place, one without coordinates, one with a null normal; and four
+    // that stay, one of them twice.
     let [a, b, c, d] = [[0, 1, 4], [1, 2, 4], [2, 3, 4], [3, 0, 4]];
     cloud.triangles = vec![[0, 5, 1], a, b, c, [0, 1, 6], [0, 1, 6], a, c, d];
     let nan = [Vec2::splat(0.5), Vec2::new(0.5, f32::NAN), Vec2::splat(0.5)];

@@ -10,8 +10,8 @@ fn property(name: &str, values: Vec<f32>) -> Property {
     Property { name: name.into(), values }
 }
 
-/// A plate of n x n points in the plane z = x / 2, with numbers that are affine in x and y, and colours of the same
-/// formula, and one point that is nowhere before all others.
+/// A plate of n x n points in the plane z = x / 2. Its numbers are affine in x and y, and its
+/// colours have the same formula. One point before all others is nowhere.
 fn plate(n: u32, number: [fn(f32, f32) -> f32; 2]) -> Cloud {
     let at = |i: u32| {
         let (x, y) = ((i % n) as f32 / (n - 1) as f32, (i / n) as f32 / (n - 1) as f32);
@@ -49,7 +49,8 @@ fn found(cloud: Cloud) -> (Candidates, Derived) {
     of_cloud(cloud, &directions, 40, &Exec::sequential(), &quiet).unwrap()
 }
 
-/// What is affine over a mesh is so between its points, whatever its triangles are: no weights, no rasterizer.
+/// A number that is affine over a mesh is affine between its points, whatever the triangles: no
+/// weights, no rasterizer.
 #[test]
 fn affine_numbers_are_those_of_the_place() {
     let number: [fn(f32, f32) -> f32; 2] = [|x, y| 0.25 + 0.5 * x - 0.125 * y, |x, y| 3.0 * y + x];
@@ -63,14 +64,14 @@ fn affine_numbers_are_those_of_the_place() {
     assert_eq!(names, ["gloss", "height"]);
     for (i, p) in position.iter().enumerate() {
         assert!((opacity[i] - number[0](p.x, p.y)).abs() < 1e-6, "{} at {p}", opacity[i]);
-        // The rasterizer's own attribute, by the same formula, to the bit.
+        // The rasterizer interpolates colours by the same formula, to the bit.
         assert_eq!(properties[0].values[i].to_bits(), color[i].x.to_bits());
         assert!((properties[1].values[i] + p.z).abs() < 1e-6);
     }
     let threads = Exec::new(3, 16).unwrap();
     let directions = Directions::These(vec![DVec3::Z, DVec3::new(1.0, 2.0, -3.0)]);
     assert_eq!(of_cloud(mesh.clone(), &directions, 40, &threads, &quiet).unwrap().0, candidates);
-    // The same points as without: numbers have no part in what is seen.
+    // The same points as without, because numbers do not affect what is seen.
     let bare = found(Cloud { opacity: None, properties: vec![], ..mesh }).0;
     assert!(bare.cloud.opacity.is_none() && bare.cloud.properties.is_empty());
     assert_eq!((&bare.cloud.position, &bare.cloud.color), (position, &candidates.cloud.color));

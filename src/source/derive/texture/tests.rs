@@ -6,7 +6,7 @@ use crate::scene::Texture;
 
 fn quiet(_: &str, _: u64, _: u64) {}
 
-/// Texels of 100 x 80, whose colour is their place: x, y and 0.
+/// A texture of 100 x 80 texels whose colour is their place: x, y and 0.
 fn ramp() -> Texture {
     Texture::new(Plane::from_pixels([100, 80], |x, y| [x as f32 + 0.5, y as f32 + 0.5, 0.0]))
         .unwrap()
@@ -36,14 +36,14 @@ fn painted(mut cloud: Cloud, texture: Texture, levels: usize) -> Cloud {
     cloud
 }
 
-/// The same coordinates, told corner by corner.
+/// The same coordinates, given for each corner.
 fn by_corners(cloud: Cloud) -> Cloud {
     let all = cloud.coordinates.clone().unwrap();
     let corners = cloud.triangles.iter().enumerate().map(|(i, c)| all.of(i, *c)).collect();
     Cloud { coordinates: Some(Coordinates::Corners(corners)), ..cloud }
 }
 
-/// An affine map J has one matrix everywhere, r r J J^T, and a facet of it the colour of its own ellipse.
+/// An affine map J has one matrix everywhere, r r J J^T. A facet has the colour of its own ellipse.
 #[test]
 fn colours_are_means_within_the_outlines() {
     let exec = Exec::new(3, 16).unwrap();
@@ -72,7 +72,7 @@ fn colours_are_means_within_the_outlines() {
                 let scale = [1.0, 4.0, 16.0, 64.0][k];
                 let expected =
                     paint.color(at(points.position()[i]), Ellipse::of(u, v).times(scale));
-                // Corners of rounded coordinates have no affine map.
+                // Corners with rounded coordinates have no exact affine map.
                 assert!((found - expected).abs().max_element() < 1e-4, "{map:?} {i} level {k}");
             }
         }
@@ -96,7 +96,7 @@ fn colours_are_means_within_the_outlines() {
 
 #[test]
 fn a_ramp_is_sampled_where_the_surfels_are() {
-    // 8 of 100 texels and 12 of 80 a unit.
+    // 8 of 100 texels and 12 of 80 in each unit.
     let cloud = painted(grid([0.08, 0.0, 0.0, -0.1]), ramp(), 0);
     let expected = |p: Vec3| Vec3::new(50.0 + 8.0 * p.x, 40.0 + 8.0 * p.y, 0.0);
     let exec = Exec::sequential();
@@ -152,7 +152,7 @@ fn a_point_at_a_seam_has_something_of_both_sides() {
     assert_eq!(points.mipmap().unwrap().of(0), [both]);
     assert_eq!(of_facets(cloud.clone(), &exec, &quiet).unwrap().0.color().unwrap(), [red, blue]);
 
-    // What has no coordinate is dropped and counted; so is a point of no triangle.
+    // A triangle without a coordinate is dropped and counted, and so is a point without a triangle.
     let mut cloud = cloud;
     cloud.coordinates = Some(Coordinates::Corners(vec![[near; 3], [far, Vec2::NAN, far]]));
     cloud.position.push(Vec3::ONE);

@@ -1,7 +1,8 @@
 use super::*;
 use proptest::prelude::*;
 
-/// Boxes of all sizes, some of them equal, some without an extent; on a lattice all arithmetic with them is exact.
+/// Boxes of all sizes, some equal, some without an extent. On a lattice all arithmetic with them is
+/// exact.
 fn boxes(lattice: bool) -> impl Strategy<Value = Vec<Item>> {
     let corner = || prop::array::uniform3(-1.0_f32..1.0);
     let one = (corner(), corner(), 0_u32..24, 1_u64..4);
@@ -19,7 +20,8 @@ fn boxes(lattice: bool) -> impl Strategy<Value = Vec<Item>> {
     })
 }
 
-/// The definition of the page, item by item: from the root down, with cells as cubes of real numbers.
+/// The definition on the page, item by item from the root down, with cells as cubes of real
+/// numbers.
 fn naive(items: &[Item], bound: u64) -> Vec<Vec<u32>> {
     let low = items.iter().fold(Vec3::INFINITY, |a, item| a.min(item.low)).as_dvec3();
     let high = items.iter().fold(Vec3::NEG_INFINITY, |a, item| a.max(item.high)).as_dvec3();

@@ -1,4 +1,4 @@
-//! The surfels of every shape, made again from the page alone.
+//! Rebuild the surfels of every shape from the page alone.
 
 use crate::number::elementary::{cos, sin};
 use crate::number::random::{GOLDEN, bits, unit};
@@ -21,7 +21,7 @@ const PALETTE: [V; 8] = [
 /// Low, high, z, normal, colour.
 type Plate = ([f64; 2], [f64; 2], f64, V, V);
 
-/// Surfels as the page makes them: position, normal, radius, colour.
+/// Surfels made by the page: position, normal, radius, colour.
 struct Page {
     seed: u64,
     made: Vec<(V, V, f64, V)>,

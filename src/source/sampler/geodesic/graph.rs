@@ -1,6 +1,7 @@
-//! The graph of neighbours that face alike.
+//! Build the graph of neighbours that face alike.
 //!
-//! Inside, points have the ranks of the tree, in which neighbours are near in memory.
+//! Internally, points have the ranks of the tree, because neighbours in the tree are near in
+//! memory.
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;
@@ -11,11 +12,11 @@ use crate::source::sampler::search::LEAF;
 use glam::Vec3;
 use std::ops::Range;
 
-/// Neighbours of a point.
+/// The most neighbours of a point.
 const NEAR: usize = 16;
 /// Points of one job.
 const JOB: usize = 4096;
-/// What the tree, neighbours and edges take for a point, at most.
+/// The most bytes that the tree, neighbours and edges take for a point.
 const BYTES_A_POINT: u64 = 40 + 3 * 8 * NEAR as u64;
 
 /// A graph of points, see the [module](super).
@@ -23,19 +24,20 @@ const BYTES_A_POINT: u64 = 40 + 3 * 8 * NEAR as u64;
 pub struct Graph {
     /// The rank of each point, by index.
     rank: Vec<u32>,
-    /// For each rank the end of its edges, which begin where those of the rank before end.
+    /// For each rank, the end of its edges; they begin at the end of the rank before.
     ends: Vec<u64>,
     /// Rank and length.
     edges: Vec<(u32, f32)>,
 }
 
 impl Graph {
-    /// The graph of some points, a normal each. `progress` is told the name of the step, how many points are
-    /// done, and of how many.
+    /// The graph of points, each with a normal. `progress` gets the name of the step, the number of
+    /// points done, and their total.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if there are not as many normals as points, if a point is not finite, if a normal is
-    /// null or not finite, if the reach is no number above 0 or not finite, or if there are 2^32 points or more.
+    /// [`Error::Invalid`] if there are not as many normals as points, if a point is not finite, if
+    /// a normal is null or not finite, if the reach is not a finite number above 0, or if there are
+    /// 2^32 points or more.
     pub fn new(
         points: &[Vec3],
         normals: &[Vec3],
@@ -69,19 +71,19 @@ impl Graph {
         Ok(Self { rank, ends, edges })
     }
 
-    /// How many points it has.
+    /// The number of points.
     #[must_use]
     pub fn len(&self) -> usize {
         self.rank.len()
     }
 
-    /// Whether it has no point.
+    /// Whether the graph has no point.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.rank.is_empty()
     }
 
-    /// How many parts it has that no edge connects.
+    /// The number of connected parts.
     #[must_use]
     pub fn parts(&self) -> usize {
         let mut seen = vec![false; self.len()];
@@ -111,7 +113,7 @@ impl Graph {
         self.rank[id as usize]
     }
 
-    /// The edges at a rank: to which rank, and how long.
+    /// The edges at a rank: the other rank, and the length.
     #[inline(always)]
     pub(super) fn edges(&self, rank: u32) -> &[(u32, f32)] {
         &self.edges[range(&self.ends, rank)]
@@ -145,11 +147,11 @@ fn range(ends: &[u64], rank: u32) -> Range<usize> {
     from as usize..ends[rank] as usize
 }
 
-/// Edges at both of their ends, of those that are known at one or at both.
+/// Edges at both of their ends, from edges that are known at one end or at both.
 fn both_ways(ends: &[u64], near: &[(u32, f32)]) -> (Vec<u64>, Vec<(u32, f32)>) {
     let n = ends.len() as u32;
     let of = |rank: u32| &near[range(ends, rank)];
-    // Those that the other end does not know.
+    // The edges that the other end does not know.
     let one_way = |from: u32| {
         let unknown = move |&&(to, _): &&(u32, f32)| of(to).iter().all(|(back, _)| *back != from);
         of(from).iter().filter(unknown).map(move |&(to, length)| (from, to, length))
@@ -191,7 +193,7 @@ struct Near {
     rank: u32,
 }
 
-/// Of which point neighbours are searched, and those found so far, in their order.
+/// The point whose neighbours are searched, and the neighbours found so far, in their order.
 struct Query {
     point: Vec3,
     normal: Vec3,
@@ -200,7 +202,7 @@ struct Query {
 }
 
 impl Around<'_> {
-    /// The neighbours of each of some ranks.
+    /// The neighbours of the points with these ranks.
     fn of(&self, ranks: Range<usize>) -> Vec<Vec<Near>> {
         let one = |entry: &crate::index::point_tree::Entry| {
             let normal = self.normals[entry.id as usize];
@@ -223,13 +225,14 @@ impl Around<'_> {
         let (low, high) = (range.start..middle, middle + 1..range.end);
         let (near, far) = if out < 0.0 { (low, high) } else { (high, low) };
         self.search(near, query);
-        // Rounded, too, no point behind the plane is nearer than the plane: rounding is monotone.
+        // This holds after rounding too: rounding is monotone, so no point behind the plane is
+        // nearer than the plane.
         if out * out <= self.limit(query) {
             self.search(far, query);
         }
     }
 
-    /// No point farther than this is of interest.
+    /// Points farther away than this are not needed.
     fn limit(&self, query: &Query) -> f32 {
         query.found.get(NEAR - 1).map_or(self.reach2, |last| last.d2)
     }

@@ -1,15 +1,18 @@
-//! The greedy permutation along a surface: distances on a graph of the points \[BJFM19, 6\].
+//! Order points along a surface instead of through it: the greedy permutation with distances on a
+//! graph \[BJFM19, 6\].
 //!
-//! "Since our sampling method currently does not incorporate the normal of a sampling point, it might happen
-//! that we incorectly distribute the surfels on the surface of such objects \[thin walls\], which results in holes
-//! \[...\] we want to include (approximate) geodetic distances in our generation of greedy permutations". Two sides of
-//! a wall that is thinner than the distance of picks share the picks if distances are straight: each side has
-//! holes, as one side's picks keep picks of the other away. Here a path from side to side leads around the wall.
+//! "Since our sampling method currently does not incorporate the normal of a sampling point, it
+//! might happen that we incorectly distribute the surfels on the surface of such objects \[thin
+//! walls\], which results in holes \[...\] we want to include (approximate) geodetic distances in
+//! our generation of greedy permutations". With straight distances, the two sides of a wall that is
+//! thinner than the distance of picks share the picks. Each side then has holes, because the picks
+//! of one side keep picks of the other side away. Here a path from side to side leads around the
+//! wall.
 //!
 //! # Definition
 //!
-//! Given are n finite points with finite normals of length above 0, a reach h > 0, a start and a count. Squared
-//! distances d2 are those of [`super::greedy`], in `f32`.
+//! Given are n finite points with finite normals of length above 0, a reach h > 0, a start and a
+//! count. Squared distances d2 are those of [`super::greedy`], in `f32`.
 //!
 //! ```text
 //!   a, b face alike   if  s >= 0  or  4 s s < (a . a)(b . b),  s = a . b      of normals, in f64,
@@ -21,29 +24,34 @@
 //!                     addition rounded to f32; +inf if there is no path
 //! ```
 //!
-//! The order is that of [`super::greedy`], its steps 1 to 5, with D(q, i) in the place of the squared distance,
-//! so that m is a distance. [`Order::distance`] has its square m m, rounded, as all orders have squares.
+//! The order is defined by the steps 1 to 5 of [`super::greedy`], with D(q, i) in place of the
+//! squared distance, so that m is a distance. [`Order::distance`] has its square m m, rounded,
+//! because all orders have squares.
 //!
-//! Points that no path connects with a pick are infinitely far, and equal distances go to the lower index: so
-//! each *part* of the graph, in the order of lowest indices, has a pick before any has two.
+//! Points that no path connects to a pick are infinitely far away, and ties go to the lower index.
+//! So each *part* of the graph, in the order of lowest indices, has a pick before any part has two.
 //!
 //! # Decided
 //!
-//! - Normals face alike if they are less than 120 degrees apart: a right angle is no border, rounded or not, and
-//!   both sides of a wall are. Across the edge of a wedge of less than 60 degrees no path leads.
-//! - 16 neighbours are all within about 1.1 pixels where four directions saw a surface, and two rings of a
-//!   raster where one did. A reach of two pixels then has neighbours along every slope: a pixel of the direction
-//!   that sees a surface best is stretched to at most sqrt(3) of its side.
-//! - Paths along edges are longer than the surface is, by some per cent and in every direction alike.
-//! - Parts come first, however small: a pick that nobody else can stand for. A mesh of many small visible parts
-//!   spends as many picks on them.
+//! - Normals face alike if they are less than 120 degrees apart. So a right angle is no border,
+//!   rounded or not, but the two sides of a wall are apart. No path leads across the edge of a
+//!   wedge of less than 60 degrees.
+//! - 16 neighbours are all within about 1.1 pixels where four directions saw a surface, and two
+//!   rings of a raster where one direction did. A reach of two pixels then has neighbours along
+//!   every slope, because the direction that sees a surface best stretches a pixel to at most
+//!   sqrt(3) of its side.
+//! - Paths along edges are longer than the surface is, by some per cent and in every direction
+//!   alike.
+//! - Parts come first, however small, because no other pick can stand for them. A mesh of many
+//!   small visible parts spends as many picks on them.
 //!
-//! # How
+//! # How it is computed
 //!
-//! After each pick a search of shortest paths (Dijkstra's) begins at it and ends where it comes no nearer than an
-//! earlier pick. That is exact: adding a length and rounding is monotone and never shortens, so that a path that
-//! is no shorter at a point is no shorter behind it. The m only fall: the next pick is found by a heap of m's that
-//! may be too large, which are put back as they are.
+//! After each pick, a search for shortest paths (Dijkstra's) begins at the pick, and ends where it
+//! comes no nearer than an earlier pick. This is exact: adding a length and rounding is monotone
+//! and never shortens, so that a path that is no shorter at a point is no shorter behind it. The m
+//! only fall. Therefore a heap of m's finds the next pick: an m on top that is too large is
+//! corrected and put back.
 
 mod graph;
 #[cfg(test)]
@@ -60,13 +68,13 @@ use std::collections::BinaryHeap;
 
 /// Picks between two reports of progress.
 const REPORT: usize = 256;
-/// What both heaps and the distances take for a point, at most.
+/// The most bytes that both heaps and the distances take for a point.
 const BYTES_A_POINT: u64 = 64;
 
 impl Greedy {
     /// The first `count` picks along a graph, or all points if there are fewer; see the
-    /// [module](crate::source::sampler::geodesic). `progress` is told the name of a step, how many picks there
-    /// are, and how many there will be.
+    /// [module](crate::source::sampler::geodesic). `progress` gets the name of a step, the number
+    /// of picks, and their total.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] if the start is not the index of a point.
@@ -104,22 +112,22 @@ impl Greedy {
     }
 }
 
-/// A point in the heap: the larger distance first, of equal ones the lower index. Bits of numbers that are not
-/// negative are in the order of the numbers.
+/// A point in the heap: the larger distance first, of equal ones the lower index. The bits of
+/// non-negative numbers are in the order of the numbers.
 fn key(distance: f32, id: u32) -> u64 {
     u64::from(distance.to_bits()) << 32 | u64::from(!id)
 }
 
-/// The distances to what has been picked, by ranks in the graph.
+/// The distances to the picks so far, by ranks in the graph.
 struct Front<'a> {
     graph: &'a Graph,
     least: Vec<f32>,
-    /// Distances, which may have become less since, and ranks: the least first.
+    /// Distances, which may be outdated and too large, and ranks; the least first.
     heap: BinaryHeap<Reverse<u64>>,
 }
 
 impl Front<'_> {
-    /// Lowers the distances to those from one more pick.
+    /// Lowers the distances to the distances from one more pick.
     fn spread(&mut self, pick: u32) {
         self.offer(0.0, pick);
         while let Some(Reverse(entry)) = self.heap.pop() {
@@ -142,7 +150,7 @@ impl Front<'_> {
         }
     }
 
-    /// The index of the farthest point. The heap has all points, at no less than their distances.
+    /// The index of the farthest point. The heap holds all points, at no less than their distances.
     fn farthest(&self, heap: &mut BinaryHeap<u64>) -> u32 {
         while let Some(mut top) = heap.peek_mut() {
             let id = !(*top as u32);

@@ -1,4 +1,5 @@
-//! The order along a graph against a plain one, and what walls do to both kinds of distance.
+//! Check the order along a graph against a plain implementation, and what walls do to both kinds of
+//! distance.
 
 use super::super::greedy::{Start, squared_distance};
 use super::*;
@@ -14,7 +15,7 @@ fn graph(points: &[Vec3], normals: &[Vec3], reach: f32) -> Graph {
     Graph::new(points, normals, reach, &Exec::sequential(), SILENT).unwrap()
 }
 
-/// The edges, of every pair.
+/// The edges, found by testing every pair.
 fn edges(points: &[Vec3], normals: &[Vec3], reach: f32) -> Vec<(usize, usize, f32)> {
     let near = |i: usize| {
         let cosine = |j: usize| {
@@ -37,7 +38,7 @@ fn edges(points: &[Vec3], normals: &[Vec3], reach: f32) -> Vec<(usize, usize, f3
     both.collect()
 }
 
-/// The distances from a point by going along all edges until none helps (Bellman and Ford).
+/// The distances from a point, by relaxing all edges until nothing changes (Bellman and Ford).
 fn distances(n: usize, edges: &[(usize, usize, f32)], from: usize) -> Vec<f32> {
     let mut distance = vec![f32::INFINITY; n];
     distance[from] = 0.0;
@@ -102,7 +103,7 @@ proptest! {
     }
 }
 
-/// A strip bent to a U, as a row of points: the ends are near, but the way is long.
+/// A strip bent to a U, as a row of points: its ends are near, but the way along it is long.
 #[test]
 fn a_bent_strip_is_as_if_it_were_straight() {
     let bent = |i: i32| match i {
@@ -130,8 +131,8 @@ fn a_bent_strip_is_as_if_it_were_straight() {
     assert!((20..=21).contains(&halves), "then the bend, not {halves}");
 }
 
-/// Two walls back to back, as points by chance. The covering radius of the worse side is that of picks on its own
-/// side: what a renderer needs that draws one side.
+/// Two walls of random points, back to back. The covering radius of the worse side counts only
+/// picks on the same side, because a renderer that draws one side needs them.
 fn worse_side(points: &[Vec3], normals: &[Vec3], order: &Order) -> f32 {
     let mut worst = 0.0;
     for (point, normal) in points.iter().zip(normals) {
@@ -153,7 +154,8 @@ fn thin_walls_have_holes_by_straight_distances_and_none_along_the_surface() {
     let greedy = Greedy { start: Start::Index(0) };
     let exec = Exec::new(2, 32).unwrap();
     let mut first = None;
-    // The distance of picks is about 0.05: thicker walls are two surfaces to both.
+    // The distance of picks is about 0.05, so thicker walls are two surfaces for both kinds of
+    // distance.
     for (gap, straight_holes) in
         [(0.2, 0.9..1.1), (0.05, 0.9..1.1), (0.02, 1.3..1.6), (0.005, 1.6..2.0)]
     {

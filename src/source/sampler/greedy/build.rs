@@ -1,11 +1,11 @@
-//! From points to regions of buckets.
+//! Divide points into regions of buckets.
 //!
-//! 1. A sample of the points is halved by its medians, widest axis first, to as many leaves as
-//!    there are to be.
-//! 2. Each chunk of the points is sorted by leaf, one chunk a job.
+//! 1. A sample of the points is halved at its medians, widest axis first, into the wanted number of
+//!    leaves.
+//! 2. Each chunk of the points is sorted by leaf; a chunk is a job.
 //! 3. Each region takes neighbouring leaves, and halves the points of each down to buckets.
 //!
-//! Nothing of the result depends on the tree, only the time.
+//! The tree affects only the time, not the result.
 
 use super::rounds::How;
 use super::tree::{BUCKET, Bucket, Group, Region};
@@ -16,14 +16,14 @@ use crate::number::random;
 use glam::Vec3;
 use std::ops::Range;
 
-/// One point in so many is in the sample.
+/// One of this many points is in the sample.
 const SAMPLE: usize = 8;
-/// The most leaves: each chunk of the points is scattered to all of them.
+/// The most leaves, because each chunk of the points is scattered to all of them.
 const MOST_LEAVES: usize = 4096;
 /// The most points of a group.
 const GROUP: usize = BUCKET * LANES;
 
-/// The tree, without distances; there is at least one point.
+/// Builds the tree, without distances, from at least one point.
 pub(super) fn regions(points: &[Vec3], how: &How, exec: &Exec) -> Vec<Region> {
     let leaves = points.len().div_ceil(how.leaf).min(MOST_LEAVES);
     let cuts = Cuts::new(points, leaves, exec);
@@ -43,7 +43,7 @@ pub(super) fn regions(points: &[Vec3], how: &How, exec: &Exec) -> Vec<Region> {
             sorted.iter().for_each(|sorted| entries.extend_from_slice(sorted.of(leaf)));
             growing.leaf(&mut entries);
         }
-        // A sample may leave a region without points.
+        // The sample may leave a region without points.
         if growing.groups.is_empty() {
             growing.groups.push(Group::new(0));
         }
@@ -51,16 +51,16 @@ pub(super) fn regions(points: &[Vec3], how: &How, exec: &Exec) -> Vec<Region> {
     })
 }
 
-/// Where space is cut: a tree of planes, whose root is 1, and whose node i has the children 2 i and
-/// 2 i + 1. All paths are of one length, and lead to a leaf each.
+/// The planes that cut space, as a tree: the root is 1, and node i has the children 2 i and 2
+/// i + 1. All paths have one length, and each leads to a leaf.
 struct Cuts {
     planes: Vec<(f32, u8)>,
     depth: u32,
-    /// The leaf of each path.
+    /// The leaf at the end of each path.
     leaf: Vec<u16>,
 }
 
-/// Some of the sample, the node that cuts it, and the leaves that it is to be cut into.
+/// A part of the sample, the node that cuts it, and its range of leaves.
 struct Part<'a> {
     sample: &'a mut [Vec3],
     node: usize,
@@ -70,7 +70,7 @@ struct Part<'a> {
 impl Cuts {
     fn new(points: &[Vec3], leaves: usize, exec: &Exec) -> Self {
         let depth = leaves.next_power_of_two().ilog2();
-        // One of every few, by chance: the points of a grid in rows would all be of few rows.
+        // Choose at random, because regular steps would take only a few rows of points on a grid.
         let mut sample: Vec<Vec3> = points
             .chunks_exact(SAMPLE)
             .zip(0..)
@@ -78,7 +78,7 @@ impl Cuts {
             .collect();
         let paths = 1 << depth;
         let mut cuts = Self {
-            // Everything is below such a plane.
+            // Everything is below an infinite plane.
             planes: vec![(f32::INFINITY, 0); paths],
             depth,
             leaf: vec![0; paths],
@@ -98,10 +98,10 @@ impl Cuts {
         cuts
     }
 
-    /// The leaf that a point is in.
+    /// The leaf of a point.
     #[inline(always)]
     fn leaf(&self, point: Vec3) -> u16 {
-        // The masks change nothing, and spare the checks of indices.
+        // The masks change no index, and save bounds checks.
         let point = [point.x, point.y, point.z, 0.0];
         let last = self.planes.len() - 1;
         let mut node = 1;
@@ -118,7 +118,7 @@ impl<'a> Part<'a> {
     fn cut(self) -> (usize, (f32, u8), Vec<Self>) {
         let Self { sample, node, leaves } = self;
         if leaves.len() < 2 {
-            // All on the lower side.
+            // Everything stays on the lower side.
             return (node, (f32::INFINITY, 0), vec![Part { sample, node: 2 * node, leaves }]);
         }
         let half = leaves.len() / 2;
@@ -137,15 +137,15 @@ impl<'a> Part<'a> {
     }
 }
 
-/// Some of the points, leaf by leaf.
+/// A chunk of the points, sorted by leaf.
 struct Sorted {
     entries: Vec<Entry>,
-    /// Where each leaf ends.
+    /// The end of each leaf.
     ends: Vec<u32>,
 }
 
 impl Sorted {
-    /// Points from an index on.
+    /// Sorts a chunk of points; `first` is the index of its first point.
     fn new(cuts: &Cuts, first: usize, points: &[Vec3]) -> Self {
         let mut ends = vec![0; cuts.leaf.len()];
         let leaf: Vec<u16> = points.iter().map(|&point| cuts.leaf(point)).collect();
@@ -169,14 +169,14 @@ impl Sorted {
     }
 }
 
-/// A region while it is built.
+/// A region under construction.
 struct Growing {
     buckets: Vec<Bucket>,
     groups: Vec<Group>,
 }
 
 impl Growing {
-    /// The groups of a leaf, each as full as the others.
+    /// Makes the groups of a leaf, all about equally full.
     fn leaf(&mut self, entries: &mut [Entry]) {
         let groups = entries.len().div_ceil(GROUP);
         if groups > 1 {
@@ -191,7 +191,7 @@ impl Growing {
         }
     }
 
-    /// The buckets of a group, all but the last full.
+    /// Makes the buckets of a group; all but the last are full.
     fn bucket(&mut self, entries: &mut [Entry], group: &mut Group, first: usize) {
         let buckets = entries.len().div_ceil(BUCKET);
         if buckets > 1 {
@@ -201,7 +201,7 @@ impl Growing {
             return;
         }
         group.put(self.buckets.len() - first, bounds(entries), lowest(entries));
-        // In its place at once: it is large.
+        // Fill the bucket in its place, because it is large.
         self.buckets.push(Bucket::EMPTY);
         let Some(bucket) = self.buckets.last_mut() else { return };
         for (lane, entry) in entries.iter().enumerate() {
@@ -210,9 +210,9 @@ impl Growing {
     }
 }
 
-/// The lower points along the widest axis, so many, and the others.
+/// Splits entries into the `low` lowest along the widest axis, and the others.
 fn halves(entries: &mut [Entry], low: usize) -> (&mut [Entry], &mut [Entry]) {
-    // A comparison of a known axis is a good part faster.
+    // A comparison along a constant axis is clearly faster.
     match widest(entries.iter().map(|entry| entry.point)) {
         0 => entries.select_nth_unstable_by(low, |a, b| a.point.x.total_cmp(&b.point.x)),
         1 => entries.select_nth_unstable_by(low, |a, b| a.point.y.total_cmp(&b.point.y)),

@@ -1,4 +1,4 @@
-//! Rounds: all points whose m is not below a floor are picked, whatever their turn.
+//! Pick in rounds: each round picks all points whose m is not below a floor, whatever their turn.
 
 use super::Order;
 use super::build;
@@ -9,24 +9,26 @@ use std::collections::BinaryHeap;
 use std::collections::binary_heap::PeekMut;
 use std::slice;
 
-/// How the work is divided, which changes nothing of the result.
+/// How the work is divided; this does not change the result.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct How {
     /// The most regions.
     pub(super) regions: usize,
-    /// Points of a leaf of the tree, on the average.
+    /// Average number of points in a leaf of the tree.
     pub(super) leaf: usize,
-    /// The least picks before regions are treated in parallel: the first ones reach everything.
+    /// Regions are treated in parallel after this many picks, because the first picks reach
+    /// everything.
     pub(super) warm: usize,
-    /// The floor, in largest m.
+    /// The floor, as a fraction of the largest m.
     pub(super) floor: f32,
 }
 
-/// Many regions have much border, and what is within reach of it is left to one thread.
+/// The most regions, because more regions have more border, and one thread must treat what is near
+/// a border.
 const MOST_REGIONS: usize = 16;
-/// How many rounds are run between two reports of progress.
+/// Rounds between two reports of progress.
 const STRETCH: usize = 16;
-/// So many buckets and more are worth waking threads for.
+/// With this many buckets it pays to wake threads.
 const MANY: usize = 512;
 
 impl How {
@@ -78,11 +80,11 @@ pub(super) fn order(
     order
 }
 
-/// What there is between two rounds.
+/// The state between two rounds.
 struct State<'a> {
     points: &'a [Vec3],
     regions: Vec<Region>,
-    /// Of what was picked after the start: all keys from the last floor up, in no order.
+    /// The keys of all picks after the start, down to the last floor, unsorted.
     keys: Vec<Key>,
     /// How many picks are wanted after the start.
     count: usize,
@@ -101,14 +103,14 @@ impl State<'_> {
         });
     }
 
-    /// Picks all from a new floor up; false if there was nothing more to do.
+    /// Picks all points down to a new floor; false if there is nothing left to do.
     fn round(&mut self) -> bool {
         self.regions.iter_mut().for_each(Region::refresh);
         let most = self.regions.iter().fold(0, |most, region| most.max(region.most()));
         if most == 0 || self.keys.len() >= self.count {
             return false;
         }
-        // On a surface there are twice as many picks at half of the squared distance.
+        // On a surface, half the squared distance means twice as many picks.
         let there = self.keys.len() as f32 / self.count as f32;
         let part = if there > self.how.floor { there } else { self.how.floor };
         let floor = (f32::from_bits(most) * part).to_bits().max(1);
@@ -128,16 +130,17 @@ impl State<'_> {
     }
 }
 
-/// What picks all from a floor up in some regions, but what others could reach.
+/// A pass that picks all points down to a floor in some regions, except the points that other
+/// regions could reach.
 struct Pass<'a> {
     points: &'a [Vec3],
-    /// The bits of the least m.
+    /// The bits of the floor.
     floor: u32,
     others: &'a [Border],
     exec: &'a Exec,
 }
 
-/// The largest key of a bucket, and where the bucket is.
+/// The largest key of a bucket, with its region and its slot.
 type Listed = (Key, u32, u32);
 
 impl Pass<'_> {
@@ -148,9 +151,9 @@ impl Pass<'_> {
             listed.extend(region.found.iter().map(|&slot| (region.key(slot), number, slot)));
         }
         let mut keys = Vec::with_capacity(listed.len());
-        // All at once: a read from anywhere in the points by itself is waited for.
+        // Read all points first, because a single random read would stall.
         let points: Vec<_> = listed.iter().map(|listed| self.point(listed.0)).collect();
-        // In the order of memory, which the caches like better than that of keys.
+        // Go in the order of memory, which is better for caches than the order of keys.
         for (&(key, region, slot), &point) in listed.iter().zip(&points) {
             if regions[region as usize].key(slot) == key && self.pick(regions, key, point) {
                 keys.push(key);
@@ -160,8 +163,8 @@ impl Pass<'_> {
             *key = regions[*region as usize].key(*slot);
         }
         listed.retain(|(key, ..)| key.most() >= self.floor);
-        // And what is left in the order of keys, where only what another region could reach is in
-        // the way. Keys only fall: one that is out of date is moved back.
+        // Treat the rest in the order of keys, so that only points within reach of another region
+        // are left out. Keys only fall: an outdated key is moved back.
         let mut heap = BinaryHeap::from(listed);
         while let Some(mut top) = heap.peek_mut() {
             let (key, region, slot) = *top;

@@ -1,4 +1,4 @@
-//! The order against its definition, index by index and bit by bit, and its laws.
+//! Check the order against its definition, index by index and bit by bit, and against its laws.
 
 use super::rounds::{self, How};
 use super::*;
@@ -17,7 +17,7 @@ fn grid(sides: [u32; 3]) -> Vec<Vec3> {
     points.map(Vec3::from).collect()
 }
 
-/// By the order of random numbers.
+/// Shuffles points by random numbers.
 fn shuffled(mut points: Vec<Vec3>) -> Vec<Vec3> {
     for i in (1..points.len()).rev() {
         points.swap(i, random::bits(5, i as u64) as usize % (i + 1));
@@ -30,11 +30,11 @@ fn sphere(n: u64) -> Vec<Vec3> {
     random_points(3, n).into_iter().map(onto).collect()
 }
 
-/// Sets on which programs that are almost right are not.
+/// Point sets that expose programs that are almost right.
 fn hard_sets() -> Vec<(&'static str, Vec<Vec3>)> {
     let line = |step: Vec3| (0..700).map(|i| step * i as f32).collect::<Vec<_>>();
     let spiral = (0..1500).map(|i| {
-        // Ever wider turns: reaches grow along the curve, without sines.
+        // A spiral of ever wider turns: reaches grow along the curve, without sines.
         let t = i as f32 * 0.01;
         let (c, s) = ((1.0 - t * t) / (1.0 + t * t), 2.0 * t / (1.0 + t * t));
         Vec3::new(c * t * t, s * t * t, t)

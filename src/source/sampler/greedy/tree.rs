@@ -1,7 +1,8 @@
-//! Buckets of points, groups of buckets, groups of groups; one such tree a region.
+//! Buckets of points, groups of buckets, and groups of groups; each region is one such tree.
 //!
-//! Squared distances are never negative, so that their bits compare as they do: minima and maxima of
-//! integers have no rule for NaN, and become vectors.
+//! Squared distances are never negative, so that their bits compare like the numbers. Minima and
+//! maxima use these integers, because they have no rule for NaN, and so the loops become vector
+//! code.
 
 #![expect(
     clippy::needless_range_loop,
@@ -14,7 +15,8 @@ use crate::number::lanes::{LANES, each, vectorized};
 /// The most points of a bucket.
 pub(super) const BUCKET: usize = 64;
 
-/// Neighbouring points, lane by lane. A lane without a point has m = 0, and so is never the largest.
+/// Neighbouring points, one in each lane. A lane without a point has m = 0, so that it is never the
+/// largest.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(super) struct Bucket {
@@ -29,7 +31,7 @@ impl Bucket {
     pub(super) const EMPTY: Self =
         Self { position: [[0.0; BUCKET]; 3], least: [0; BUCKET], id: [u32::MAX; BUCKET] };
 
-    /// Puts a point that has no distance yet into a lane.
+    /// Puts a point without a distance into a lane.
     pub(super) fn put(&mut self, lane: usize, point: [f32; 3], id: u32) {
         for axis in 0..3 {
             self.position[axis][lane] = point[axis];
@@ -38,7 +40,8 @@ impl Bucket {
         self.id[lane] = id;
     }
 
-    /// Lowers m to the distances from `p`; the largest m, and the lowest index that has it.
+    /// Lowers each m to the distance from `p`; returns the largest m, and the lowest index that has
+    /// it.
     #[inline(always)]
     fn relax(&mut self, p: [f32; 3]) -> (u32, u32) {
         let [x, y, z] = &self.position;
@@ -57,15 +60,15 @@ impl Bucket {
     }
 }
 
-/// Sixteen buckets or groups, lane by lane. A lane without a child has the largest m 0.
+/// Sixteen buckets or groups, one in each lane. A lane without a child has the largest m 0.
 #[derive(Clone, Debug)]
 #[repr(align(64))]
 pub(super) struct Group {
     low: [[f32; LANES]; 3],
     high: [[f32; LANES]; 3],
-    /// The bits of the largest m; of groups that at the last [`Region::refresh`] or a larger one.
+    /// The bits of the largest m. For groups it is as of the last [`Region::refresh`], or larger.
     most: [u32; LANES],
-    /// The lowest index that has the largest m; only of buckets.
+    /// The lowest index that has the largest m; for buckets only.
     id: [u32; LANES],
     /// The number of the first child; the others follow.
     first: u32,
@@ -82,7 +85,7 @@ impl Group {
         }
     }
 
-    /// Puts a child into a lane: its box, and its lowest index; it has no distances yet.
+    /// Puts a child without distances into a lane: its box, and its lowest index.
     pub(super) fn put(&mut self, lane: usize, [low, high]: [[f32; 3]; 2], id: u32) {
         for axis in 0..3 {
             self.low[axis][lane] = low[axis];
@@ -99,7 +102,7 @@ impl Group {
         [low, high]
     }
 
-    /// The children that hold points which `p` may be nearer to than their m, a bit each.
+    /// The children with points to which `p` may be nearer than their m, as bits.
     #[inline(always)]
     fn within_reach(&self, p: [f32; 3]) -> u32 {
         let distance = each(|i| {
@@ -115,7 +118,7 @@ impl Group {
         bits(|i| distance[i] < self.most[i])
     }
 
-    /// The buckets whose key is larger, a bit each.
+    /// The buckets with a larger key, as bits.
     #[inline(always)]
     fn larger(&self, key: Key) -> u32 {
         let (most, id) = (key.most(), key.id());
@@ -129,14 +132,14 @@ impl Group {
     }
 }
 
-/// The lanes in which a condition holds, a bit each.
+/// The lanes in which a condition holds, as bits.
 #[inline(always)]
 fn bits(holds: impl Fn(usize) -> bool) -> u32 {
     let lanes = each(|i| u32::from(holds(i)) << i);
     lanes.iter().fold(0, |all, lane| all | lane)
 }
 
-/// The bits that are set, in ascending order.
+/// Visits the set bits in ascending order.
 #[inline(always)]
 fn set(mut bits: u32, mut each: impl FnMut(u32)) {
     while bits != 0 {
@@ -145,7 +148,8 @@ fn set(mut bits: u32, mut each: impl FnMut(u32)) {
     }
 }
 
-/// The bits of m, then the index so that the lower one is larger: the largest key is picked next.
+/// The bits of m, then the index, inverted so that the lower index is larger: the largest key is
+/// picked next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(super) struct Key(u64);
 
@@ -163,20 +167,20 @@ impl Key {
     }
 }
 
-/// A part of the points that one thread may treat.
+/// A part of the points that one thread treats.
 #[derive(Debug)]
 pub(super) struct Region {
     buckets: Vec<Bucket>,
-    /// Groups of buckets, groups of these, and so on to a single one.
+    /// Groups of buckets, groups of these, and so on up to a single group.
     levels: Vec<Vec<Group>>,
-    /// The slots that the last [`Region::reach`] or [`Region::list`] has found: 16 times the number
-    /// of a group of buckets, and a lane.
+    /// The slots found by the last [`Region::reach`] or [`Region::list`]: 16 times the number of a
+    /// group of buckets, plus a lane.
     pub(super) found: Vec<u32>,
-    /// Groups of one level, and of the next.
+    /// The groups to visit on one level, and on the next.
     ahead: [Vec<u32>; 2],
 }
 
-/// A region as others see it.
+/// What other regions need to know of a region.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Border {
     bounds: [[f32; 3]; 2],
@@ -184,7 +188,7 @@ pub(super) struct Border {
 }
 
 impl Border {
-    /// Whether a point may be nearer to points behind the border than their m.
+    /// Whether a point may be nearer to points of the region than their m.
     pub(super) fn reached(&self, p: [f32; 3]) -> bool {
         let [low, high] = self.bounds;
         let [x, y, z] =
@@ -194,7 +198,7 @@ impl Border {
 }
 
 impl Region {
-    /// Of buckets and their groups, of which there is at least one.
+    /// A region of buckets and their groups, at least one.
     pub(super) fn new(buckets: Vec<Bucket>, groups: Vec<Group>) -> Self {
         let mut levels = vec![groups];
         while let Some(below) = levels.last().filter(|below| below.len() > 1) {
@@ -211,7 +215,7 @@ impl Region {
         Self { buckets, levels, found: Vec::new(), ahead: [Vec::new(), Vec::new()] }
     }
 
-    /// Brings the largest m of groups of groups up to date.
+    /// Updates the largest m of groups of groups.
     pub(super) fn refresh(&mut self) {
         for level in 1..self.levels.len() {
             let (below, above) = self.levels.split_at_mut(level);
@@ -223,7 +227,7 @@ impl Region {
         }
     }
 
-    /// The region as others see it, after [`Region::refresh`].
+    /// What other regions need to know, after [`Region::refresh`].
     pub(super) fn border(&self) -> Border {
         let root = &self.levels[self.levels.len() - 1][0];
         Border { bounds: root.bounds(), most: root.most() }
@@ -253,7 +257,7 @@ impl Region {
         }
     }
 
-    /// Walks down to the groups of buckets, through the children that `take` says.
+    /// Walks down to the groups of buckets, through the children that `take` selects.
     #[inline(always)]
     fn descend(&mut self, take: impl Fn(&Group) -> u32) {
         let Self { levels, found, ahead: [ahead, next], .. } = self;
@@ -278,8 +282,8 @@ fn place(slot: u32) -> (usize, usize) {
 }
 
 vectorized!(
-    /// Finds the slots that hold points which `p` may be nearer to than their m; false, and not all
-    /// of them, if one has a larger key.
+    /// Finds the slots with points to which `p` may be nearer than their m. Stops and returns false
+    /// if one has a larger key.
     pub(super) fn reach(region: &mut Region, p: [f32; 3], key: Key) -> bool {
         region.descend(|group| group.within_reach(p));
         for &number in &region.ahead[0] {
@@ -295,7 +299,7 @@ vectorized!(
 );
 
 vectorized!(
-    /// Lowers m in the slots that were found to the distances from `p`.
+    /// Lowers m in the found slots to the distances from `p`.
     pub(super) fn relax(region: &mut Region, p: [f32; 3]) {
         for &slot in &region.found {
             let (group, lane) = place(slot);

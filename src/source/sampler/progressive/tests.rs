@@ -17,7 +17,7 @@ fn least(points: &[Vec3], picks: &[u32], i: u32) -> f32 {
     all.fold(f32::INFINITY, |a, b| if b < a { b } else { a })
 }
 
-/// The page once more, with lists and all distances.
+/// The page again, with plain lists and all distances.
 fn by_the_page(
     points: &[Vec3],
     start: u32,
@@ -29,7 +29,7 @@ fn by_the_page(
     let mut rest: Vec<u32> = (0..points.len() as u32).filter(|&i| i != start).collect();
     let mut number = 0;
     let mut round = 0;
-    // What the round after this one does.
+    // The sizes of the next round.
     let (mut samples, mut accepted) = if schedule == Schedule::Paper { (200, 1) } else { (200, 0) };
     while picks.len() < count && !rest.is_empty() {
         let mut drawn = Vec::new();
@@ -127,7 +127,7 @@ proptest! {
     }
 }
 
-/// After thousands of rounds too, where the schedule has changed several times.
+/// The page holds after thousands of rounds too, when the schedule has changed several times.
 #[test]
 fn a_long_order_is_that_of_the_page() {
     let points: Vec<Vec3> = Shape::Torus.surfels(6_000, 4).unwrap().position().to_vec();

@@ -7,7 +7,7 @@ use crate::source::Shape;
 use glam::Vec3;
 use proptest::prelude::*;
 
-/// Balls of some surfels, with a threshold or without levels of detail, in places.
+/// Balls with `count` surfels each, with a threshold or without levels of detail, in places.
 fn scene(count: usize, thresholds: &[Option<f64>], places: &[(usize, Similarity)]) -> Objects {
     let exec = Exec::sequential();
     let geometries = thresholds.iter().map(|threshold| {
@@ -36,7 +36,7 @@ fn camera(eye: DVec3, target: DVec3, lens: Lens) -> Camera {
     Camera::new(64, 48, Pose { eye, target, up: DVec3::Y }, lens).unwrap()
 }
 
-/// The radii that are drawn in the world, object by object.
+/// The radii that are drawn, in the world, object by object.
 fn radii(objects: &Objects) -> Vec<Vec<f32>> {
     let all = |object: u32| {
         let (surfels, scale) =
@@ -51,8 +51,8 @@ fn radii(objects: &Objects) -> Vec<Vec<f32>> {
 }
 
 proptest! {
-    /// In the world, with nothing of the tests of the list: where a node is drawn its error is at most tau
-    /// pixels, and its parent's is more, but for the gap; every surfel has a node that is drawn.
+    /// In the world, without the tests of the list: a drawn node has an error of at most tau
+    /// pixels, and its parent has more, except for the gap. Every surfel has a node that is drawn.
     #[test]
     fn what_is_drawn_is_good_enough_and_no_better(
         degrees in 0.0..360.0_f64, scale in 0.25..4.0_f64, tau in prop_oneof![Just(0.0), 0.25..8.0_f64],
@@ -96,7 +96,7 @@ proptest! {
         }
     }
 
-    /// What has a fragment in the picture is not left out by the frustum.
+    /// The frustum test drops nothing that has a fragment in the picture.
     #[test]
     fn what_is_left_out_is_outside(
         x in -60.0..60.0_f64, y in -60.0..60.0_f64, z in -60.0..60.0_f64, ortho in any::<bool>(),
@@ -121,7 +121,7 @@ proptest! {
                 && (0.0..48.0).contains(&row);
         }
         prop_assert!(!inside || seen.drawn_total() > 0);
-        // Far outside nothing is drawn.
+        // Far outside, nothing is drawn.
         let p = camera.view_from_world.as_dmat4().transform_point3(center);
         if -p.z < -radius {
             prop_assert_eq!((seen.drawn_total(), seen.ids().count(0)), (0, 0));

@@ -5,8 +5,8 @@ use crate::scene::objects::detail::prefix::Estimate;
 use crate::scene::objects::detail::refine::Refinement;
 use crate::scene::{Cloud, Triangles, Vertices};
 
-/// A wall of n x n points, a unit apart, around the origin: rows in order, which is no good order, but whose
-/// estimate is known.
+/// A wall of n x n points, a unit apart, around the origin. The rows are in order: that is no good
+/// order, but its estimate is known.
 fn wall(n: usize) -> Surfels {
     let at = |i: usize| i as f32 - (n - 1) as f32 / 2.0;
     let position: Vec<Vec3> = (0..n * n).map(|i| Vec3::new(at(i % n), at(i / n), 0.0)).collect();
@@ -25,7 +25,7 @@ fn in_order(n: usize, primitives: Primitives) -> Geometry {
     plain.with_prefix(Estimate { count, distance: 1.0 }).unwrap()
 }
 
-/// Objects of walls in places, of which some are finer ones.
+/// Walls in places, some of them finer ones of others.
 fn walls(of: &[(usize, Similarity)], coarser: Vec<Option<u32>>) -> Objects {
     let geometries = of.iter().map(|&(n, _)| in_order(n, Primitives::default())).collect();
     let objects = (0..).zip(of).map(|(geometry, &(_, place))| Object {
@@ -57,7 +57,7 @@ fn counts(objects: &Objects) -> Vec<u32> {
 }
 
 proptest! {
-    /// In the world: two neighbouring pixels, thrown onto the plane through the closest point.
+    /// In the world: two neighbouring pixels, projected onto the plane through the closest point.
     #[test]
     fn discs_are_as_wide_as_asked_where_the_object_is_nearest(
         degrees in 0.0..360.0_f64, scale in 0.25..4.0_f64, size in 0.25..8.0_f32,
@@ -68,7 +68,7 @@ proptest! {
         let lens = if ortho { Lens::Orthographic(30.0 * scale) } else { Lens::FieldOfView(40.0) };
         let camera = camera(target + DVec3::new(0.2, 0.3, 1.0).normalize() * (away * scale), target, lens);
         let found = seen(&walls(&[(11, place)], vec![None]), asks(size), &camera);
-        // The point of the wall that is the closest to the eye, by looking at many.
+        // The point of the wall that is the closest to the eye, found by trying many.
         let mut closest = (f64::INFINITY, 0.0);
         for i in 0..=400 {
             for j in 0..=400 {
@@ -95,7 +95,7 @@ proptest! {
             prop_assert_eq!(disc.side, size);
             prop_assert!((wanted * 0.998..=wanted * 1.002 + 1.0).contains(&count), "{count} {wanted}");
         }
-        // What is placed has that radius, and is the first so many.
+        // The placed surfels have that radius, and are the first ones.
         let (flat, _) = found.flattened(&Exec::sequential()).unwrap();
         prop_assert_eq!(flat.len(), found.ids().count(0) as usize);
         prop_assert!(flat.radius().iter().all(|r| (f64::from(*r) / (radius * scale) - 1.0).abs() < 1e-6));
@@ -115,7 +115,8 @@ proptest! {
         if free.drawn_total() <= u64::from(budget) {
             prop_assert_eq!(counts(&free), counts(&kept));
         } else if budget >= 2 {
-            // Of each as many as a common, larger size has: one step less would be too many.
+            // Each object has as many as a common, larger size gives; one step less would give too
+            // many.
             prop_assert!(kept.drawn_total() as f64 >= f64::from(budget) * 0.969 - 2.0);
             let [a, b] = [0, 1].map(|object| kept.disc(object).unwrap());
             prop_assert!(a.side >= size && a.radius <= b.radius);
@@ -126,11 +127,11 @@ proptest! {
         }
     }
 
-    /// From far away to close by an object gives way to two finer ones.
+    /// From far away to close by, an object gives way to two finer ones.
     #[test]
     fn finer_objects_fade_in_as_theirs_fades_out(away in 4.0..400.0_f64) {
         let place = at(0.0, 1.0, DVec3::ZERO);
-        // Each finer one shows the half of the surface, twice as densely.
+        // Each finer object shows half of the surface, twice as densely.
         let half = at(0.0, 0.5, DVec3::ZERO);
         let three = walls(&[(32, place), (32, half), (32, half)], vec![None, Some(0), Some(0)]);
         let found = seen(&three, asks(2.0), &front(away));
@@ -144,7 +145,8 @@ proptest! {
             let fade = 2.0 * (wanted / 1024.0) - 1.0;
             let [own, other] = [1.0 - fade, fade].map(|share| (2.0 * share).at_most(1.0));
             prop_assert!((coarse - own * wanted).abs() < 1.001);
-            // Half the size of the geometry: a quarter of the surfels for the same discs, of two objects.
+            // Half the size of the geometry: a quarter of the surfels for the same discs, in two
+            // objects.
             prop_assert!((finer - 2.0 * (other * wanted / 4.0).at_most(1024.0)).abs() < 2.002, "{finer}");
         } else if wanted > 1024.1 {
             prop_assert_eq!(coarse, 0.0);
