@@ -44,7 +44,6 @@ macro_rules! vectorized {
 }
 pub(crate) use vectorized;
 
-<<<<<<< HEAD
 /// [`vectorized`] for AVX2 with FMA and for what every target has: for kernels in `f64` that are long to compile
 /// and that AVX-512 makes no faster.
 macro_rules! vectorized_avx2 {
@@ -55,10 +54,7 @@ macro_rules! vectorized_avx2 {
 }
 pub(crate) use vectorized_avx2;
 
-/// A value for each lane.
-=======
 /// Makes a value for each lane.
->>>>>>> main
 #[inline(always)]
 pub(crate) fn each<T: Copy + Default>(value: impl Fn(usize) -> T) -> [T; LANES] {
     let mut lanes = [T::default(); LANES];
