@@ -1,7 +1,7 @@
 //! The verifier on the client: no lawful habit is called wrong, and every bug is found.
 
-use crate::cases::{Case, cases};
-use crate::client::{Bug, Habit, How, records, render};
+use crate::verify::cases::{Case, cases};
+use crate::verify::client::{Bug, Habit, How, records, render};
 use splatref::frame::Exec;
 use splatref::method::{Method, Session};
 use splatref::splat::Epsilon;
