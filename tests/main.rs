@@ -4,6 +4,7 @@
 //! - [`oracle`]: every method, stage by stage, against independent computations; laws; bits.
 //! - [`verify`]: verdicts on a client that is no part of the crate.
 //! - [`settings`], [`docs`], [`models`]: the rows of settings, the pages, real scans.
+//! - [`rooms`]: no folder of `src/` imports a higher one.
 //! - [`deferred`], `blue`: where two methods fail, on the scenes of the benches.
 //! - `cli`, `browser`: the program, and its pages in a real browser.
 //!
@@ -13,6 +14,7 @@ mod deferred;
 mod docs;
 mod models;
 mod oracle;
+mod rooms;
 mod settings;
 mod verify;
 
