@@ -28,6 +28,7 @@ mod findings;
 mod marks;
 mod outcomes;
 pub mod peeling;
+mod planes;
 pub mod projection;
 pub mod pyramid;
 mod session;

@@ -34,7 +34,7 @@ impl Session<'_> {
         self.check_client(camera, client)?;
         self.ask(camera, Making::Verdict)?;
         let names = self.numbers();
-        let client = &*numbered(names.as_ref(), client)?;
+        let client = &*numbered(names.as_ref(), self.method(), client)?;
         let verdict = match client.rounding {
             Rounding::Gpu => table::verify::<Gpu>(method, &job, client, budget),
             Rounding::Ieee => table::verify::<Ieee>(method, &job, client, budget),
@@ -56,7 +56,7 @@ impl Session<'_> {
         self.check_client(camera, client)?;
         self.ask(camera, Making::Verdict)?;
         let names = self.numbers();
-        let client = &*numbered(names.as_ref(), client)?;
+        let client = &*numbered(names.as_ref(), self.method(), client)?;
         let mut checks = match client.rounding {
             Rounding::Gpu => table::checks::<Gpu>(self.method(), &job, client, pixel),
             Rounding::Ieee => table::checks::<Ieee>(self.method(), &job, client, pixel),
@@ -92,9 +92,13 @@ impl Session<'_> {
 }
 
 /// A client with indices of surfels in the place of their ids.
-fn numbered<'c>(names: Option<&Names<'_>>, client: &'c Client) -> Result<Cow<'c, Client>> {
+fn numbered<'c>(
+    names: Option<&Names<'_>>,
+    method: &Method,
+    client: &'c Client,
+) -> Result<Cow<'c, Client>> {
     let Some(names) = names else { return Ok(Cow::Borrowed(client)) };
     let mut numbered = client.clone();
-    names.number_given(numbered.frame_mut())?;
+    names.number_given(numbered.frame_mut(), method.stages())?;
     Ok(Cow::Owned(numbered))
 }

@@ -25,7 +25,7 @@ pub(super) fn plane(
 ) -> Reason<(Samples<f64>, Storage)> {
     check_keys(wanted, kind)?;
     check_encoding(wanted)?;
-    let (holds, keys, file) = (wanted.row.holds, &wanted.keys, numbers.file);
+    let (holds, keys, file) = (wanted.row.holds.plain(), &wanted.keys, numbers.file);
     let format = keys.format.unwrap_or(file);
     if !format.fits(file) {
         let (format, file) = (format.word(), file.word());
@@ -63,10 +63,11 @@ pub(super) fn plane(
 fn check_keys(wanted: &Wanted, kind: Kind) -> Reason<()> {
     let Wanted { keys, row, .. } = wanted;
     let (is_depth, is_raw) = (wanted.is_depth(), kind == Kind::Raw);
-    let (is_color, is_index) = (row.holds == Holds::Color, row.holds == Holds::Index);
-    let is_vector = row.holds == Holds::Vector;
+    let holds = row.holds.plain();
+    let (is_color, is_index) = (holds == Holds::Color, holds == Holds::Index);
+    let is_vector = holds == Holds::Vector;
     let has_channels = matches!(kind, Kind::Exr | Kind::Png);
-    let is_number = !is_index && row.holds != Holds::Count;
+    let is_number = !is_index && holds != Holds::Count;
     for (key, given, means) in [
         ("channel", keys.channel.is_some(), has_channels),
         ("offset", keys.offset.is_some(), is_raw),
@@ -96,18 +97,15 @@ fn check_keys(wanted: &Wanted, kind: Kind) -> Reason<()> {
     Ok(())
 }
 
-/// The planes that hold unit vectors.
-const UNIT: [&str; 2] = ["normal", "projection.normal"];
-
 /// Refuses an encoding that does not fit what the plane holds.
 fn check_encoding(wanted: &Wanted) -> Reason<()> {
     let holds = wanted.row.holds;
     match wanted.keys.encoding {
-        Some(Encoding::Octahedral) if !UNIT.contains(&wanted.row.name) => {
-            let unit = UNIT.join(" and ");
+        Some(Encoding::Octahedral) if holds != Holds::Normal => {
+            let unit = "normal and projection.normal";
             Err(format!("encoding is octahedral, which needs unit vectors: {unit}"))
         }
-        Some(Encoding::Linear | Encoding::Srgb) if holds == Holds::Vector => {
+        Some(Encoding::Linear | Encoding::Srgb) if holds.plain() == Holds::Vector => {
             Err("encoding is for colours; for vectors give \"octahedral\", or remove it".into())
         }
         _ => Ok(()),

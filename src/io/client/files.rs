@@ -100,7 +100,7 @@ impl<'e> Files<'e> {
         let refused = |what: String| Error::format(path, format!("planes.{key}: {what}"));
         match kind {
             Kind::Raw => {
-                let format = keys.format.unwrap_or(match row.holds {
+                let format = keys.format.unwrap_or(match row.holds.plain() {
                     Holds::Index => Format::U32,
                     Holds::Count => Format::U8,
                     _ => Format::F32,
@@ -127,7 +127,7 @@ impl<'e> Files<'e> {
                 let names = picture.names(wanted, keys, kind).map_err(refused)?;
                 let mut numbers = picture.numbers(&names).map_err(refused)?;
                 // A PNG has stored whole numbers as codes of colours.
-                if matches!(row.holds, Holds::Index | Holds::Count) {
+                if matches!(row.holds.plain(), Holds::Index | Holds::Count) {
                     numbers.as_codes();
                 }
                 Ok(numbers)

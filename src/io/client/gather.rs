@@ -38,7 +38,7 @@ impl Wanted {
 
     /// Whether the plane holds depths t.
     pub(super) fn is_depth(&self) -> bool {
-        self.row.holds == Holds::Scalar && (self.name == "Z" || self.name.ends_with(".Z"))
+        self.row.holds == Holds::Depth
     }
 
     /// Whether the plane holds unit vectors in two numbers a pixel.
@@ -141,12 +141,12 @@ fn in_picture(image: &Image, wanted: &[Wanted], stages: &[Stage], all: DepthKeys
     let mut found: Vec<Wanted> = Vec::new();
     for row in stages.iter().flat_map(|stage| stage.leaves) {
         for (channel, _) in &image.channels {
-            // // One of three channels stands for the plane, so that it is found once.
-            let name = match row.holds {
+            // One of three channels stands for the plane, so that it is found once.
+            let name = match row.holds.plain() {
                 Holds::Color if channel == COLOR[0] => Some(""),
                 Holds::Color => channel.strip_suffix(".R"),
                 Holds::Vector => channel.strip_suffix(".X"),
-                Holds::Scalar | Holds::Index | Holds::Count => Some(channel.as_str()),
+                _ => Some(channel.as_str()),
             };
             let Some(name) = name.filter(|name| row.is_called(name)) else { continue };
             let is_new = wanted.iter().chain(&found).all(|other| other.name != name);

@@ -65,7 +65,7 @@ pub(super) mod normalization;
 mod picture;
 pub(crate) mod planes;
 pub(crate) mod possible;
-pub(super) mod visibility;
+pub(crate) mod visibility;
 
 pub use crate::splat::SplatSettings as Settings;
 

@@ -63,7 +63,7 @@
 mod blending;
 pub mod explain;
 mod fast;
-mod layers;
+pub(crate) mod layers;
 mod picture;
 pub(crate) mod planes;
 mod settings;

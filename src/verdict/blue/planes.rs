@@ -1,7 +1,6 @@
 //! The planes that a client has handed in.
 
 use crate::frame::NO_ID;
-use crate::method::Holds;
 use crate::method::blue::planes::{COLOR, ID, NORMAL, OFFSET, WEIGHT};
 use crate::method::surface::{ALPHA, DEPTH, SHADED};
 use crate::number::ball::Profile;
@@ -126,13 +125,10 @@ impl<'a> BluePlanes<'a> {
                 number(0, plane, at, truth, report);
             }
         }
-        let triples = [
-            (&self.normal, Holds::Vector, shown.surface.normal),
-            (&self.color, Holds::Color, shown.surface.color),
-        ];
-        for (plane, holds, truth) in triples {
+        let triples = [(&self.normal, shown.surface.normal), (&self.color, shown.surface.color)];
+        for (plane, truth) in triples {
             if let Some(plane) = plane {
-                triple(0, (plane, holds), at, truth, report);
+                triple(0, plane, at, truth, report);
             }
         }
     }
@@ -161,7 +157,7 @@ impl<'a> BluePlanes<'a> {
         report: &mut Report<'_>,
     ) {
         if let Some(plane) = &self.shaded {
-            triple(1, (plane, Holds::Color), at, truth, report);
+            triple(1, plane, at, truth, report);
         }
     }
 

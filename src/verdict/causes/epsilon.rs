@@ -18,6 +18,8 @@
 
 use super::Change;
 use crate::frame::{Frame, Plane, Samples};
+use crate::method::ewa::visibility::Foremost;
+use crate::method::surface;
 use crate::method::{Method, Session};
 use crate::number::Real;
 use crate::scene::{Camera, Projection};
@@ -104,6 +106,9 @@ pub(super) fn moved(session: &Session<'_>, client: &Client) -> Vec<(String, Chan
     ]
 }
 
+/// The planes of the depth that the visibility pass is judged by, the first of those that are there.
+const DEPTHS: [&str; 2] = [Foremost::<f32>::PLANES[0].row.name, surface::DEPTH.name];
+
 /// The client as if its band ended there.
 pub(super) fn banded(client: &Client, band: Band) -> Client {
     let client = if band == Band::Before { up_to_sums(client) } else { client.clone() };
@@ -132,15 +137,14 @@ fn is_sum(name: &str) -> bool {
 
 /// The client whose discs would not be moved by this.
 pub(super) fn moved_back(client: &Client, by: f64) -> Client {
-    let depths = ["visibility.Z", "Z"];
     let mut back = client.mapped(|name, samples| match samples {
         // An empty pixel stays at infinity.
-        Samples::Scalar(plane) if depths.contains(&name) => {
+        Samples::Scalar(plane) if DEPTHS.contains(&name) => {
             Samples::Scalar(plane.map(|depth| depth - by))
         }
         other => other.clone(),
     });
-    for name in depths {
+    for name in DEPTHS {
         if back.storage(name) == Storage::Single {
             // The sum was rounded; beside what is lost where it is undone that is all.
             let lost = 4.0 / 16_777_216.0;
@@ -202,8 +206,7 @@ impl Client {
 
     /// The depth that the visibility pass is judged by: its plane, and the greatest finite value.
     pub(super) fn depth_of_visibility(&self) -> Option<(&'static str, f64)> {
-        let name =
-            ["visibility.Z", "Z"].into_iter().find(|name| self.frame().scalar(name).is_ok())?;
+        let name = DEPTHS.into_iter().find(|name| self.frame().scalar(name).is_ok())?;
         let values = self.frame().scalar(name).ok()?.values();
         let finite = values.iter().filter(|depth| depth.is_finite());
         Some((name, finite.fold(0.0, |most: f64, &depth| most.at_least(depth))))
