@@ -32,7 +32,7 @@ pub(crate) fn try_ask(
         return Ok(());
     }
     Err(format!(
-        "{} takes up to {} of memory, beside {} in use, but {} is the limit; give less to do, or \
+        "{} needs up to {} of memory, beside {} in use, but the limit is {}; reduce the work, or \
          raise --memory",
         what(),
         in_words(bytes),

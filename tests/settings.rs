@@ -139,7 +139,7 @@ fn generated(old: &str) -> String {
     text.trim_end().to_owned() + "\n"
 }
 
-/// `SPLATREF_BLESS=1 cargo test --test settings` writes the comments of the example anew; the run
+/// `SPLATREF_BLESS=1 cargo test --release settings::` writes the comments of the example anew; the run
 /// that does so fails.
 #[test]
 fn the_example_is_written_from_the_rows() {
@@ -153,7 +153,7 @@ fn the_example_is_written_from_the_rows() {
     assert!(
         example == expected,
         "{EXAMPLE} is not what the rows say, first at {differs:?}; \
-         SPLATREF_BLESS=1 cargo test --test settings writes it anew"
+         SPLATREF_BLESS=1 cargo test --release settings:: writes it anew"
     );
 }
 

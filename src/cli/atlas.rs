@@ -1,4 +1,4 @@
-//! `splatref study failures`: the atlas.
+//! `splatref study failures`: writes the atlas of failures.
 
 use super::options::ExecOptions;
 use super::{Ended, Ending, progress, report, say};
@@ -19,10 +19,10 @@ Examples:
   splatref study failures
   splatref study failures --only eps-sheets -o out/eps")]
 pub(super) struct Args {
-    /// Where the files go; made if it is not there
+    /// Write the files into this folder; it is made if it does not exist
     #[arg(short, long, value_name = "DIR", default_value = "out/study")]
     output: PathBuf,
-    /// One failure alone, by its name
+    /// Measure only the failure with this name
     #[arg(long, value_name = "NAME", value_parser = named)]
     only: Option<&'static Failure>,
     #[command(flatten)]
@@ -51,7 +51,7 @@ pub(super) fn run(args: &Args) -> Ended {
     Ok(Ending::Good)
 }
 
-/// Writes the charts, the pictures and the page; where that is.
+/// Writes the charts, the pictures and the page, and returns the path of the page.
 fn publish(folder: &Path, files: &Files) -> Result<PathBuf> {
     let beside = |id: &str, end: &str| folder.join(PICTURES).join(id).with_extension(end);
     let text =
@@ -79,7 +79,7 @@ fn print(curve: &Curve) {
     }
 }
 
-/// A failure by its name.
+/// Finds a failure by its name.
 fn named(name: &str) -> std::result::Result<&'static Failure, String> {
     let all = failures();
     all.iter().find(|failure| failure.id == name).copied().ok_or_else(|| {

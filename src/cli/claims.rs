@@ -1,4 +1,4 @@
-//! `splatref study claims`: what the papers claim.
+//! `splatref study claims`: measures what the papers claim.
 
 use super::options::ExecOptions;
 use super::{Ended, Ending, progress, report, say};
@@ -20,9 +20,9 @@ Examples:
   splatref study claims
   splatref study claims bunny.ply dragon.ply -o docs")]
 pub(super) struct Args {
-    /// Scans to measure beside the shapes: scenes of surfels
+    /// Measure these scans too: scenes of surfels
     scans: Vec<PathBuf>,
-    /// Where the files go; made if it is not there
+    /// Write the files into this folder; it is made if it does not exist
     #[arg(short, long, value_name = "DIR", default_value = "out/study")]
     output: PathBuf,
     #[command(flatten)]

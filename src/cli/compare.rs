@@ -1,4 +1,4 @@
-//! `splatref compare`: two pictures, plane by plane.
+//! `splatref compare`: compares two pictures, plane by plane.
 
 use super::{Ended, Ending, report, say};
 use splatref::compare::metrics;
@@ -11,12 +11,20 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 #[command(after_help = "\
-A NAME stands for a channel (Z), for the three of a colour or a vector (normal), or, with a * at its
-end, for all that start so (visibility.*); the colour of the picture is R,G,B. An EXR, a PNG (as it
-is stored, sRGB) and an NPY (h x w or h x w x 3, floats or integers; it is called as its file, or
---as, and RGB.npy is R,G,B) are compared in the planes that both kinds can hold. A plane `margin`
-that only the first picture has is left out. Of the colours RMSE, PSNR and SSIM are printed, and the
-mean of FLIP at 67 pixels per degree, for which what is stored as sRGB is made linear.
+Names of planes (--planes, --tolerance):
+  Z               one channel
+  normal          the three channels of a vector or a colour
+  visibility.*    every channel whose name starts so
+  R,G,B           the colour of the picture
+
+You can mix file types; the planes that both can hold are compared:
+  EXR   every plane
+  PNG   the colours as stored, in sRGB
+  NPY   one plane, h x w or h x w x 3, floats or integers; its name is the file's, or --as;
+        RGB.npy holds R,G,B
+
+A plane `margin` that only the first picture has is left out. For colours the program also prints
+RMSE, PSNR, SSIM and the mean of FLIP at 67 pixels per degree; FLIP makes sRGB linear first.
 
 Examples:
   splatref compare out/a.exr out/b.exr
@@ -26,26 +34,26 @@ Examples:
   splatref compare truth.exr Z.npy
   splatref compare truth.exr screen.png --max-abs 0.004
 
-Exit codes: 0 equal or within the tolerance, 1 different.")]
+Exit codes: 0 equal or within the tolerance, 1 different or failed, 2 wrong usage.")]
 pub(super) struct Args {
-    /// The picture that is right: an .exr, .png or .npy
+    /// The reference picture: an .exr, .png or .npy
     first: PathBuf,
-    /// The picture in question
+    /// The picture to check
     second: PathBuf,
     /// Compare only these planes
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     planes: Option<Vec<String>>,
-    /// Let floats pass that are so many representable numbers apart
+    /// Accept floats at most N representable numbers apart
     #[arg(long, value_name = "N")]
     max_ulp: Option<u32>,
-    /// Let floats pass that differ by so much
+    /// Accept floats that differ by at most X
     #[arg(long, value_name = "X", value_parser = bound, allow_hyphen_values = true)]
     max_abs: Option<f32>,
-    /// The tolerance of a plane, instead of that of all: ulp=N, abs=X, and pixels=N that may differ
-    /// by more, of indices at all; repeatable
+    /// Set the tolerance of one plane: ulp=N, abs=X, and pixels=N, how many pixels may exceed it
+    /// (or differ at all, for indices); repeatable
     #[arg(long, value_name = "NAME:BOUNDS", value_parser = tolerance)]
     tolerance: Vec<(String, Tolerance)>,
-    /// The name of the plane that an NPY holds
+    /// Give the plane in an NPY this name
     #[arg(long = "as", value_name = "NAME")]
     name: Option<String>,
 }
@@ -70,10 +78,11 @@ pub(super) fn run(args: &Args) -> Ended {
     })
 }
 
-/// How far the colours of two pictures are apart, in a line; none unless both have one, of one size.
+/// The distance between the colours of two pictures, as a line; `None` unless both have colours and
+/// one size.
 ///
-/// RMSE, PSNR and SSIM are of what is compared; FLIP is of light, and what is stored as sRGB is made
-/// linear for it.
+/// RMSE, PSNR and SSIM are computed on the values as compared. FLIP is defined on linear light, so
+/// sRGB values are made linear for it.
 fn distances(first: &Image, second: &Image, stored: bool, exec: &Exec) -> Result<Option<String>> {
     let light = |image: &Image| {
         let color = image.color()?;
@@ -107,11 +116,11 @@ impl Args {
     }
 }
 
-/// A picture as its kind of file holds it.
+/// A picture, by the kind of its file.
 enum PictureFile {
     Exr(Image),
     Png(png::Stored),
-    /// One plane, and where it is from.
+    /// One plane, and the file that it is from.
     Npy(Image, PathBuf),
 }
 
@@ -136,7 +145,8 @@ impl PictureFile {
     }
 }
 
-/// Two pictures with what both kinds of files can hold: an NPY one plane, a PNG encoded colours.
+/// Reduces two pictures to what both kinds of files can hold: an NPY has one plane, a PNG encoded
+/// colours.
 fn alike(pair: [PictureFile; 2]) -> Result<(Image, Image)> {
     Ok(match pair {
         [PictureFile::Png(first), second @ (PictureFile::Exr(_) | PictureFile::Npy(..))] => {
@@ -157,7 +167,7 @@ fn alike(pair: [PictureFile; 2]) -> Result<(Image, Image)> {
     })
 }
 
-/// The channels of a picture that an NPY has too.
+/// Keeps the channels that an NPY has too.
 fn part_of(mut all: Image, plane: &Image, path: &Path) -> Result<Image> {
     let names = |image: &Image| -> Vec<String> {
         image.channels.iter().map(|(name, _)| name.clone()).collect()
@@ -168,15 +178,17 @@ fn part_of(mut all: Image, plane: &Image, path: &Path) -> Result<Image> {
         let (held, there) = (held.join(", "), there.join(", "));
         return Err(Error::format(
             path,
-            format!("holds {held}, which the other picture has not; give --as one of: {there}"),
+            format!(
+                "holds {held}, which the other picture does not have; give --as one of: {there}"
+            ),
         ));
     }
     Ok(all)
 }
 
-/// `Z:ulp=4,abs=1e-6,pixels=3`.
+/// Parses `Z:ulp=4,abs=1e-6,pixels=3`.
 fn tolerance(text: &str) -> std::result::Result<(String, Tolerance), String> {
-    let form = "give a NAME, a colon and bounds, such as Z:ulp=4,abs=1e-6,pixels=3";
+    let form = "give a name, a colon and tolerances, such as Z:ulp=4,abs=1e-6,pixels=3";
     let (name, bounds) = text.rsplit_once(':').ok_or(form)?;
     let mut tolerance = Tolerance::default();
     for part in bounds.split(',') {
@@ -191,7 +203,7 @@ fn tolerance(text: &str) -> std::result::Result<(String, Tolerance), String> {
     Ok((name.to_owned(), tolerance))
 }
 
-/// A number >= 0.
+/// Parses a number >= 0.
 fn bound(text: &str) -> std::result::Result<f32, String> {
     text.parse().ok().filter(|most| *most >= 0.0).ok_or_else(|| "give a number >= 0".into())
 }

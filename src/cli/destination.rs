@@ -12,7 +12,7 @@ use splatref::{Error, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Where pictures go of which nobody says; made when they are written.
+/// The default folder of pictures; made when they are written.
 const FOLDER: &str = "out";
 
 /// What the command line says of the files of `render`.
@@ -26,7 +26,7 @@ pub(super) struct Destination<'a> {
 }
 
 impl Destination<'_> {
-    /// Where the picture goes, or that of a frame.
+    /// The path of the picture, or of one frame.
     pub(super) fn place(&self, file: &SceneFile, frame: Option<u32>) -> Result<PathBuf> {
         let named = |path: &Path| match frame {
             None => path.to_owned(),
@@ -40,7 +40,9 @@ impl Destination<'_> {
             }
             Some(path) => {
                 let path = path.display();
-                Err(Error::Usage(format!("{path}: the picture is an EXR; give a name in .exr")))
+                Err(Error::Usage(format!(
+                    "{path}: the picture is an EXR; give a name that ends in .exr"
+                )))
             }
             None => {
                 let path = named(&Path::new(FOLDER).join(format!("{}.exr", file.name)));
@@ -50,14 +52,14 @@ impl Destination<'_> {
         }
     }
 
-    /// Writes what a frame saw, if somebody asked for that.
+    /// Writes the state after a frame, if `--keep-state` asks for it.
     pub(super) fn keep(&self, ready: &Ready, frame: u32, seen: Option<&Seen>) -> Result<()> {
         let (Some(path), Some(seen)) = (self.keep_state, seen) else { return Ok(()) };
         let state = State { frame, seen: seen.clone() };
         state::pending(path, &state, &ready.identity()?)?.put()
     }
 
-    /// Whether a state can be kept where it was asked for, beside these pictures: before anything is drawn.
+    /// Checks, before anything is drawn, that the state can be written beside these pictures.
     pub(super) fn check_state(
         &self,
         ready: &Ready,
@@ -74,8 +76,9 @@ impl Destination<'_> {
         let Some(path) = self.keep_state else { return Ok(()) };
         if !ready.method.draws_objects() {
             let name = ready.method.name();
-            let what =
-                format!("--keep-state: the method {name} carries nothing from frame to frame");
+            let what = format!(
+                "--keep-state: the method {name} has no state between frames; give --method deferred"
+            );
             return Err(Error::Usage(what));
         }
         output::check(path, self.scene, file)?;
@@ -86,7 +89,7 @@ impl Destination<'_> {
         Ok(())
     }
 
-    /// Makes the folder of pictures, if nobody says where they go.
+    /// Makes the default folder, if no output is named.
     pub(super) fn make_folder(&self) -> Result<()> {
         if self.output.is_some() {
             return Ok(());
@@ -96,7 +99,7 @@ impl Destination<'_> {
     }
 }
 
-/// Writes a picture and its preview, both before one is put in its place.
+/// Writes a picture and its preview; both are complete before either replaces an old file.
 pub(super) fn write(
     picture: &Path,
     frame: &Frame<f32>,

@@ -1,4 +1,4 @@
-//! Scenes and sessions, with progress.
+//! Loads scenes and prepares sessions, with progress.
 
 use super::options::SceneOptions;
 use super::progress;
@@ -15,7 +15,8 @@ pub(super) fn ready(file: &SceneFile, exec: &Exec) -> Result<Ready> {
     file.ready(exec, &|what, done, of| steps.show(what, done, of))
 }
 
-/// Prepares a scene for its method, with progress; the session goes on from what the frame before saw.
+/// Prepares a scene for its method, with progress. The session continues from the state that the
+/// options name.
 pub(super) fn session<'a>(
     ready: &'a Ready,
     options: &SceneOptions,
@@ -28,7 +29,7 @@ pub(super) fn session<'a>(
     Ok((session, made))
 }
 
-/// What the frame before saw, if somebody says.
+/// The state after the previous frame, if the options name one.
 pub(super) fn seen(ready: &Ready, options: &SceneOptions) -> Result<Option<Seen>> {
     options.state().map(|path| ready.state(path)).transpose()
 }

@@ -2,16 +2,16 @@
 
 use splatref::Result;
 
-/// How a command ended that did its work.
+/// How a command ended that ran to its end.
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(super) enum Ending {
-    /// As it should be.
+    /// Success.
     Good,
     /// Pictures that should be equal are not.
     Different,
-    /// Nothing can be said.
+    /// No verdict is possible.
     Undecidable,
 }
 
-/// How a command ended.
+/// The result of a command.
 pub(super) type Ended = Result<Ending>;

@@ -1,4 +1,4 @@
-//! `splatref explain`: every decision at one pixel.
+//! `splatref explain`: prints every decision at one pixel.
 
 use super::options::{ExecOptions, SceneOptions};
 use super::{Ended, Ending, draw, report, say, verify};
@@ -21,10 +21,10 @@ pub(super) struct Args {
     x: u32,
     /// Row of the pixel, from 0 at the top
     y: u32,
-    /// What another renderer drew, as for verify: each of its values beside what it may be
+    /// Print the values of another renderer beside what each may be; the file is as for verify
     #[arg(long, value_name = "FILE")]
     client: Option<PathBuf>,
-    /// What the other renderer promises, as for verify
+    /// Set the precision that the other renderer promises, as for verify
     #[arg(long, value_name = "gpu|ieee", value_parser = verify::rounding, requires = "client")]
     promise: Option<Rounding>,
     #[command(flatten)]
@@ -35,7 +35,7 @@ pub(super) struct Args {
 
 pub(super) fn run(args: &Args) -> Ended {
     let file = args.options.scene_file(&args.scene)?;
-    file.output.check_kept("what is explained are the decisions of f32 or f64")?;
+    file.output.check_kept("explain shows the decisions of f32 or f64")?;
     let exec = args.exec.exec()?;
     let ready = draw::ready(&file, &exec)?;
     ready.camera.check_pixel(args.x, args.y)?;
@@ -61,9 +61,10 @@ pub(super) fn run(args: &Args) -> Ended {
     say("");
     say(text.trim_end());
     if args.client.is_some() && checks.is_empty() {
-        say("\nthe client: nothing of this pixel is judged; see splatref verify");
+        say("\nthe client: none of its planes can be judged at this pixel; see splatref verify");
     } else if !checks.is_empty() {
-        say("\nthe client, stage by stage, each from what it has of the stage before:");
+        say("\nthe client, stage by stage, each computed from the client's planes of the stage \
+             before:");
         checks.iter().for_each(|check| say(format!("  {check}")));
     }
     Ok(Ending::Good)

@@ -1,4 +1,4 @@
-//! `splatref golden`: the pictures under `golden/` are reproduced bit for bit, or blessed.
+//! `splatref golden`: reproduces the pictures under `golden/` bit for bit, or blesses them.
 
 use super::options::ExecOptions;
 use super::{Ended, Ending, draw, say};
@@ -18,27 +18,28 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 #[command(after_help = "\
-A case is a scene NAME.toml beside its picture NAME.exr. Exit codes: 0 all equal, 1 any different
-or blessed.
+A case is a scene NAME.toml and its picture NAME.exr in one folder.
 
 Examples:
   splatref golden
   splatref golden ewa_raycast_sheets --threads 1 --tile 8
-  splatref golden --bless")]
+  splatref golden --bless
+
+Exit codes: 0 all equal, 1 any different or blessed, 2 wrong usage.")]
 pub(super) struct Args {
-    /// The cases to check; all if none is named
+    /// The cases to check; without names, all of them
     names: Vec<String>,
-    /// Rewrite pictures that differ or are missing, and still exit 1
+    /// Overwrite pictures that differ or are missing; the exit code is still 1
     #[arg(long)]
     bless: bool,
-    /// Where the cases are
+    /// Read the cases from this folder
     #[arg(long, value_name = "PATH", default_value = "golden")]
     dir: PathBuf,
     #[command(flatten)]
     exec: ExecOptions,
 }
 
-/// One case, and what rendering it gave.
+/// One case, and its rendered picture.
 struct Case {
     scene: PathBuf,
     picture: PathBuf,
@@ -57,7 +58,7 @@ pub(super) fn run(args: &Args) -> Ended {
                 equal += usize::from(is_equal);
                 rendered.push((name.as_str(), image));
             }
-            // A case that cannot be rendered is different from every picture; the others go on.
+            // A case that cannot be rendered counts as different; the other cases still run.
             Err(error) => say(format!("different  {name}: {error}")),
         }
     }
@@ -67,7 +68,7 @@ pub(super) fn run(args: &Args) -> Ended {
     Ok(if different == 0 { Ending::Good } else { Ending::Different })
 }
 
-/// The cases of a directory, in the order of names; a picture without its scene is one too.
+/// The cases of a directory, sorted by name. A picture without a scene counts as a case too.
 fn names(dir: &Path, wanted: &[String]) -> Result<Vec<String>> {
     let mut found = BTreeSet::new();
     for entry in fs::read_dir(dir).map_err(|source| Error::io(dir, source))? {
@@ -78,20 +79,23 @@ fn names(dir: &Path, wanted: &[String]) -> Result<Vec<String>> {
         }
     }
     if found.is_empty() {
-        return Err(Error::format(dir, "there is no case here: add a scene NAME.toml"));
+        return Err(Error::format(dir, "no case is here; add a scene NAME.toml"));
     }
     if let Some(unknown) = wanted.iter().find(|name| !found.contains(*name)) {
-        return Err(Error::Usage(format!("{}: no case is called {unknown}", dir.display())));
+        return Err(Error::Usage(format!(
+            "{}: no case is called {unknown}; leave out the names to check all cases",
+            dir.display()
+        )));
     }
     Ok(found.into_iter().filter(|name| wanted.is_empty() || wanted.contains(name)).collect())
 }
 
-/// Renders a case, says what became of it, and tells the picture and whether it is equal.
+/// Renders a case, prints the outcome, and returns the picture and whether it is equal.
 fn check(args: &Args, exec: &Exec, name: &str) -> Result<(Image, bool)> {
     let case = render(&args.dir, exec, name)?;
     let actual = Image::from(&case.frame);
     let stored = match fs::exists(&case.picture) {
-        Ok(false) => Err("there is no picture yet".to_owned()),
+        Ok(false) => Err("there is no picture yet; --bless writes it".to_owned()),
         _ => exr::read_with(&case.picture, exec).map_err(|error| error.to_string()),
     };
     let exact = Criteria::default();
@@ -108,7 +112,7 @@ fn check(args: &Args, exec: &Exec, name: &str) -> Result<(Image, bool)> {
         Err(why) => say(format!("different  {name}: {why}")),
     }
     if args.bless {
-        // Kept for long: small is worth the time.
+        // A golden is kept for long, so a small file is worth the time.
         exr::pending(&case.picture, &case.frame, &case.text, Compression::Zip, exec)?.put()?;
         say(format!("  blessed: wrote {}", case.picture.display()));
     } else {
@@ -117,7 +121,7 @@ fn check(args: &Args, exec: &Exec, name: &str) -> Result<(Image, bool)> {
     Ok((actual, false))
 }
 
-/// Draws a golden; of a sequence its last frame, after those before.
+/// Draws a golden. For a sequence this is the last frame, after all frames before it.
 fn render(dir: &Path, exec: &Exec, name: &str) -> Result<Case> {
     let (scene, picture) = (dir.join(format!("{name}.toml")), dir.join(format!("{name}.exr")));
     let file = SceneFile::read(&scene)?;
@@ -132,7 +136,7 @@ fn render(dir: &Path, exec: &Exec, name: &str) -> Result<Case> {
     Ok(Case { scene, picture, text, frame: drawn.frame })
 }
 
-/// The picture of a frame after what the frame before saw, and its text.
+/// The picture of a frame, given the state after the previous frame, and the text of its file.
 fn picture_of(
     ready: &Ready,
     seen: Option<Seen>,
@@ -147,7 +151,7 @@ fn picture_of(
     Ok((drawn, provenance::text(&loaded.scene, groups, camera, method, output)))
 }
 
-/// The first planes that differ, and how to look into the first pixel.
+/// Prints the first planes that differ, and the command that explains the first pixel.
 fn differences(name: &str, case: &Case, report: &Comparison) {
     let lines = report.lines();
     let (verdict, planes) = lines.split_last().map_or(("", [].as_slice()), |(v, p)| (v, p));
@@ -165,7 +169,7 @@ fn differences(name: &str, case: &Case, report: &Comparison) {
     }
 }
 
-/// Leaves what was expected and what came for a person to look at.
+/// Writes the expected and the actual picture, so that you can look at both.
 fn keep(name: &str, case: &Case, stored: Option<&Image>) -> Result<()> {
     let folder = Path::new("out").join("golden");
     fs::create_dir_all(&folder).map_err(|source| Error::io(&folder, source))?;
@@ -181,7 +185,7 @@ fn keep(name: &str, case: &Case, stored: Option<&Image>) -> Result<()> {
     Ok(())
 }
 
-/// The colour and the coverage of a stored picture, as far as it has them.
+/// The colour and the coverage of a stored picture, if it has them.
 fn preview(image: &Image) -> Result<Frame<f32>> {
     let (width, height) = (image.width, image.height);
     let channel = |name: &str| match image.channel(name) {

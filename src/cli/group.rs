@@ -1,4 +1,4 @@
-//! `splatref group`: a scene divided into groups, into a PLY.
+//! `splatref group`: divides a scene into groups, and writes a PLY.
 
 use super::options::named;
 use super::rows::{OfGroupsAlone, RowOptions};
@@ -24,18 +24,18 @@ Examples:
 pub(super) struct Args {
     /// A .ply, an .obj, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster
     scene: PathBuf,
-    /// Where the surfels go with their groups
+    /// Write the surfels with their groups into this file
     #[arg(short, long, value_name = "FILE.ply")]
     output: PathBuf,
     #[command(flatten)]
     groups: RowOptions<OfGroupsAlone>,
-    /// Surfels of a procedural shape [default: 200000]
+    /// Make a procedural shape of about N surfels [default: 200000]
     #[arg(long, value_name = "N")]
     count: Option<usize>,
-    /// Seed of a procedural shape [default: 0]
+    /// Set the random seed of a procedural shape [default: 0]
     #[arg(long, value_name = "N")]
     seed: Option<u64>,
-    /// Threads; 0 takes every core
+    /// Use N threads; 0 uses every core
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
 }
@@ -44,7 +44,9 @@ pub(super) fn run(args: &Args) -> Ended {
     let grouping = args.grouping()?;
     if !matches!(FileKind::from_extension(&args.output), Ok(FileKind::Ply)) {
         let path = args.output.display();
-        return Err(Error::Usage(format!("{path}: groups go into a PLY; give a name in .ply")));
+        return Err(Error::Usage(format!(
+            "{path}: groups are written as a PLY; give a name that ends in .ply"
+        )));
     }
     let file = named(&args.scene, args.count, args.seed)?;
     output::check(&args.output, &args.scene, &file)?;
@@ -55,7 +57,9 @@ pub(super) fn run(args: &Args) -> Ended {
     loaded.scene = flatten(&loaded.scene, &exec)?;
     let Scene { name, primitives, .. } = &loaded.scene;
     if !primitives.is_empty() {
-        let what = format!("{name} has triangles or lines; only surfels are divided into groups");
+        let what = format!(
+            "{name} has triangles or lines, but only surfels are divided into groups; remove them"
+        );
         return Err(Error::Invalid(what));
     }
     let start = Instant::now();
@@ -79,14 +83,16 @@ impl Args {
         if chosen.settings.has("most") {
             let extension = chosen.settings.on(GroupChoice::ALONE, "groups").map(|g| g.extension);
             if !matches!(extension, Ok(Extension::Add { .. })) {
-                return Err(Error::Usage("--most is of --extend add".into()));
+                return Err(Error::Usage(
+                    "--most needs --extend add; add that, or remove --most".into(),
+                ));
             }
         }
         chosen.grouping(GroupChoice::ALONE)
     }
 }
 
-/// The row of Table 1, and the groups one by one.
+/// Prints the row of Table 1 in \[ZP06\], and each group.
 fn table(found: &GroupingReport, groups: &Groups, extended: Option<&Extended>) {
     let GroupingReport { groups: k, overlap, edges, max_degree, average_degree, .. } = found;
     report::line("groups", format!("{k} at c = {overlap}"));

@@ -1,4 +1,5 @@
-//! Hierarchies as folders: `splatref surfels SCENE -o folder/`, and what `splatref info` says of one.
+//! Hierarchies in folders: `splatref surfels SCENE -o folder/` makes one, `splatref info` describes
+//! it.
 
 use super::report::{self, line};
 use super::{Ended, Ending, output, progress};
@@ -11,13 +12,14 @@ use splatref::source::hierarchy::{Flaws, Numbers, Settings};
 use std::path::Path;
 use std::time::Instant;
 
-/// Whether an output is a folder: it is one, ends as one, or has no extension.
+/// Whether an output is a folder: it exists as one, its name ends with a slash, or it has no
+/// extension.
 pub(super) fn is_folder(path: &Path) -> bool {
     let slash = path.as_os_str().to_string_lossy().ends_with(std::path::is_separator);
     slash || path.is_dir() || path.extension().is_none()
 }
 
-/// Makes the hierarchy of a scene, or goes on with one.
+/// Makes the hierarchy of a scene, or resumes one.
 pub(super) fn make(scene: &Path, folder: &Path, settings: &Settings, threads: usize) -> Ended {
     output::check_folder(folder)?;
     let file = SceneFile::open(scene)?;
@@ -31,10 +33,11 @@ pub(super) fn make(scene: &Path, folder: &Path, settings: &Settings, threads: us
     for (name, _, flaws) in &geometries {
         told(name, *flaws);
     }
-    let there = if found > 0 { format!(", {found} of them were there") } else { String::new() };
+    let there =
+        if found > 0 { format!(", {found} of them from an earlier run") } else { String::new() };
     line("nodes", format!("{nodes} approximated{there}"));
     if unseen > 0 {
-        line("unseen", format!("{unseen} nodes, of which no pixel sees a triangle"));
+        line("unseen", format!("{unseen} nodes; no pixel sees a triangle of theirs"));
     }
     sizes(&Hierarchy::open(folder)?);
     line("time", format!("{:.2} s", start.elapsed().as_secs_f64()));
@@ -42,7 +45,7 @@ pub(super) fn make(scene: &Path, folder: &Path, settings: &Settings, threads: us
     Ok(Ending::Good)
 }
 
-/// What a folder holds.
+/// Describes a folder.
 pub(super) fn info(folder: &Path) -> Result<()> {
     let hierarchy = Hierarchy::open(folder)?;
     let mut all = Flaws::default();
@@ -53,14 +56,14 @@ pub(super) fn info(folder: &Path) -> Result<()> {
     told("meshes", all);
     if hierarchy.upper() > 0 {
         let root = &hierarchy.nodes()[0];
-        // Boxes of nodes over objects are one f32 wider on each side, which nobody wants to read.
+        // Boxes of nodes over objects are one f32 wider on each side; that is hidden here.
         let (low, high) = (root.low.map(f32::next_up), root.high.map(f32::next_down));
         report::bounds((low + Vec3::ZERO, high + Vec3::ZERO));
     }
     Ok(())
 }
 
-/// How much of everything there is.
+/// Prints how many nodes, objects and surfels there are.
 fn sizes(hierarchy: &Hierarchy) {
     let (nodes, geometries) = (hierarchy.nodes(), hierarchy.geometries());
     let own: u64 = nodes.iter().map(|node| u64::from(node.triangles)).sum();
@@ -71,7 +74,7 @@ fn sizes(hierarchy: &Hierarchy) {
     line("triangles", format!("{shown}, {own} of them unique"));
     let lods: Vec<_> = nodes.iter().filter(|node| node.surfels > 0).collect();
     let upper = lods.iter().filter(|node| node.geometry == NONE).count();
-    line("approximations", format!("{}, {upper} of them of several objects", lods.len()));
+    line("approximations", format!("{}, {upper} of them cover several objects", lods.len()));
     let surfels: u64 = lods.iter().map(|node| u64::from(node.surfels)).sum();
     let Numbers { opacity, properties } = hierarchy.numbers();
     let bytes = (20 + 4 * properties.len() as u64) * surfels;
@@ -83,11 +86,11 @@ fn sizes(hierarchy: &Hierarchy) {
     }
 }
 
-/// What is wrong with meshes, if something is.
+/// Prints the flaws of a mesh, if it has any.
 fn told(name: &str, flaws: Flaws) {
     let Flaws { dropped, degenerate, duplicate, edges_of_many } = flaws;
     let kinds = [
-        (dropped, "triangles dropped, with a corner that is none"),
+        (dropped, "triangles dropped, because a corner is missing or not finite"),
         (degenerate, "without an area"),
         (duplicate, "twice"),
         (edges_of_many, "edges of more than two triangles"),

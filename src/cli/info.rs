@@ -1,4 +1,4 @@
-//! `splatref info`: what a file or a folder of surfels holds.
+//! `splatref info`: describes a file or a folder of surfels.
 
 use super::report::{self, line};
 use super::{Ended, Ending, hierarchy, progress, say};
@@ -18,7 +18,7 @@ Examples:
   splatref info bunny.ply
   splatref info out/cluster.exr")]
 pub(super) struct Args {
-    /// A .ply, an .obj, a scene .toml, an .exr, or a folder of "splatref surfels"
+    /// A .ply, an .obj, a scene .toml, an .exr, or a folder that "splatref surfels" wrote
     file: PathBuf,
 }
 
@@ -58,7 +58,7 @@ fn points(path: &Path) -> Result<()> {
     line("has", if there.is_empty() { "positions only".into() } else { there.join(", ") });
     for name in &cloud.textures {
         let name = name.escape_debug().to_string();
-        line("texture", if name.is_empty() { "none of some polygons" } else { &name });
+        line("texture", if name.is_empty() { "none for some polygons" } else { &name });
     }
 
     let steps = progress::Steps::new("loading");
@@ -67,7 +67,7 @@ fn points(path: &Path) -> Result<()> {
     drop(steps);
     let (surfels, derived) = match found {
         Ok(found) => found,
-        // What lines are drawn of need not do for surfels.
+        // The points of lines need not have enough for surfels.
         Err(error) if edges > 0 => {
             line("surfels", format!("none: {error}"));
             return Ok(());
@@ -118,8 +118,8 @@ fn scene(path: &Path) -> Result<()> {
     let method = file.method.method()?;
     match &loaded.scene.objects {
         None => report::method(&method, &loaded.scene, &camera),
-        // What the settings come to is known of surfels in their places, of which there may be more
-        // than fit.
+        // What the settings come to is known only for surfels in their places, and those may not
+        // fit into memory.
         Some(_) => report::settings(&method),
     }
     Ok(())
@@ -160,7 +160,7 @@ fn picture(path: &Path) -> Result<()> {
     }
     match header.text {
         Some(text) => say(format!("\n{}", text.trim_end())),
-        None => line("text", "none of splatref"),
+        None => line("text", "none from splatref"),
     }
     Ok(())
 }

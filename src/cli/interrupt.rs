@@ -1,8 +1,8 @@
-//! Ctrl-C and its like: what is half written goes before the program does.
+//! Signals such as Ctrl-C: partial files are removed before the program ends.
 
-/// Has partial files removed when a signal ends the program, which then ends as by that signal.
+/// Removes partial files when a signal ends the program, and then ends it by that signal.
 ///
-/// A signal that the program was started to ignore, as by `nohup`, stays ignored.
+/// A signal that the program was started to ignore, as with `nohup`, stays ignored.
 #[cfg(unix)]
 pub(super) fn watch() {
     use signal_hook::consts::{SIGHUP, SIGINT, SIGTERM};
@@ -14,7 +14,7 @@ pub(super) fn watch() {
         let ignored = ignored();
         let signals = [SIGHUP, SIGINT, SIGTERM].into_iter();
         let watched = signals.filter(|signal| ignored >> (signal - 1) & 1 == 0);
-        // Where they cannot be watched, signals do what they do by themselves.
+        // If signals cannot be watched, they keep their default effect.
         let Ok(mut signals) = Signals::new(watched) else { return };
         for signal in signals.forever() {
             let _none_from_now_on = remove_partial_files();
@@ -24,7 +24,7 @@ pub(super) fn watch() {
     let _ = std::thread::Builder::new().name("signals".into()).spawn(wait);
 }
 
-/// The signals that are ignored, signal n as bit n - 1; none where the system does not tell.
+/// The ignored signals, signal n as bit n - 1; 0 if the system does not tell.
 #[cfg(unix)]
 fn ignored() -> u64 {
     let status = std::fs::read_to_string("/proc/self/status").unwrap_or_default();
@@ -32,6 +32,6 @@ fn ignored() -> u64 {
     line.and_then(|mask| u64::from_str_radix(mask.trim(), 16).ok()).unwrap_or(0)
 }
 
-/// Elsewhere partial files stay when the program is ended from outside.
+/// On other systems partial files stay when a signal ends the program.
 #[cfg(not(unix))]
 pub(super) fn watch() {}

@@ -1,10 +1,10 @@
-//! How much memory a command may take.
+//! The memory limit of a command.
 
 use splatref::memory::set_limit;
 use sysinfo::{MemoryRefreshKind, RefreshKind, System};
 
-/// Sets the limit: what was asked for, else three quarters of what the machine, or the container
-/// that the program runs in, has.
+/// Sets the limit: `asked`, or three quarters of the memory of the machine or of the container that
+/// the program runs in.
 pub(super) fn limit(asked: Option<u64>) {
     set_limit(asked.unwrap_or_else(|| match total() {
         0 => u64::MAX, // a system that does not tell
@@ -23,7 +23,7 @@ fn total() -> u64 {
     }
 }
 
-/// `2G`, `500M`: binary multiples of bytes.
+/// Parses `2G` or `500M`, binary multiples of bytes.
 pub(super) fn bytes(text: &str) -> Result<u64, String> {
     let units = [('K', 10), ('M', 20), ('G', 30), ('T', 40)];
     let unit = text.chars().next_back().map(|c| c.to_ascii_uppercase());
@@ -33,7 +33,7 @@ pub(super) fn bytes(text: &str) -> Result<u64, String> {
         .parse()
         .ok()
         .filter(|n: &f64| *n > 0.0 && n.is_finite())
-        .ok_or("give a number of bytes, or of K, M, G or T of them, such as 2G")?;
+        .ok_or("give a number of bytes, with K, M, G or T for their multiples, such as 2G")?;
     Ok((number * (1_u64 << shift.unwrap_or(0)) as f64) as u64)
 }
 

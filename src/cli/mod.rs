@@ -1,8 +1,8 @@
-//! The command line: arguments to library calls to an exit code.
+//! The command line: arguments become library calls, results become an exit code.
 //!
-//! One file a command. What a command prints goes to stdout; an error is one line on stderr, and
-//! the exit code is 2 for wrong usage and 1 for everything else, a picture that differs included.
-//! `verify` has codes of its own.
+//! Each command has a file. Results go to stdout. An error is one line on stderr. The exit code is
+//! 2 for wrong usage, and 1 for everything else, pictures that differ included. `verify` has exit
+//! codes of its own.
 
 mod atlas;
 mod claims;
@@ -49,46 +49,46 @@ use stdout::{printed, say};
 struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// The most memory to take, such as 2G [default: three quarters of the machine's]
+    /// Use at most this much memory, such as 2G [default: three quarters of the machine's]
     #[arg(long, global = true, value_name = "BYTES", value_parser = memory::bytes)]
     memory: Option<u64>,
 }
 
 const EXAMPLES: &str = "\
 Examples:
-  splatref render                              a procedural scene, into out/
-  splatref render bunny.ply --outline raycast  a scan, framed by the camera
-  splatref compare a.exr b.exr                 exit code 0 if every plane is equal
-  splatref verify bunny.ply gpu.exr            whether a right renderer may draw this
-  splatref explain bunny.ply 512 400           why this pixel is what it is
+  splatref render                              render a procedural scene into out/
+  splatref render bunny.ply --outline raycast  render a scan; the camera frames it
+  splatref compare a.exr b.exr                 compare two pictures; exit code 0 if equal
+  splatref verify bunny.ply gpu.exr            check what another renderer drew
+  splatref explain bunny.ply 512 400           print how this pixel got its value
 
-Exit codes: 0 as it should be, 1 different or failed, 2 wrong usage.";
+Exit codes: 0 success, 1 different or failed, 2 wrong usage, 3 undecidable (verify, suite).";
 
 #[derive(Subcommand)]
 enum Command {
     /// Render a scene into an EXR with every plane and a PNG
     Render(render::Args),
-    /// Check that the pictures under golden/ are reproduced bit for bit
+    /// Check that the pictures under golden/ are reproduced, bit for bit
     Golden(golden::Args),
     /// Compare two pictures, plane by plane: EXR, PNG or NPY
     Compare(compare::Args),
-    /// Judge what another renderer drew, stage by stage
+    /// Judge the planes of another renderer, stage by stage
     Verify(verify::Args),
-    /// Say what verdicts on several scenes say together
+    /// Pool the verdicts of several scenes, to find thresholds that are slightly wrong
     Suite(suite::Args),
     /// Print every decision at one pixel
     Explain(explain::Args),
-    /// Divide a scene into groups that do not overlap, into a PLY
+    /// Divide a scene into groups of splats that do not overlap, and write a PLY
     Group(group::Args),
-    /// Put points in an order of which every prefix is spread over all of them, into a PLY; or those of a whole scene into a folder
+    /// Order points so that every prefix covers the surface, for a model or a whole scene
     Surfels(surfels::Args),
-    /// Chart every method and setting, speed against accuracy, for a scene
+    /// Chart the speed and the accuracy of every method and setting for a scene
     Study(study::Args),
-    /// Choose the fastest method and settings within an error, or the best within a time
+    /// Choose the fastest method and settings within an error, or the most accurate within a time
     Plan(plan::Args),
-    /// Say how evenly prefixes of points in order are spread, with a chart
+    /// Measure how evenly the prefixes of ordered points cover the surface, with a chart
     Quality(quality::Args),
-    /// Write the visible splats as records, for a backend to upload
+    /// Write the visible splats as records for a backend to upload
     Project(project::Args),
     /// Describe a PLY, a scene file, an EXR or a folder of surfels
     Info(info::Args),
@@ -128,7 +128,7 @@ pub(crate) fn run() -> ExitCode {
     }
 }
 
-/// Help and version as they are; errors of clap as one line.
+/// Prints help and version unchanged, and an error of clap as one line.
 fn usage(error: &clap::Error) -> ExitCode {
     let text = error.render().to_string();
     if matches!(error.kind(), ErrorKind::DisplayHelp | ErrorKind::DisplayVersion) {
@@ -152,7 +152,7 @@ fn usage(error: &clap::Error) -> ExitCode {
     ExitCode::from(2)
 }
 
-/// The line on stderr.
+/// Prints an error as one line on stderr.
 fn complain(error: impl Display) {
     let _ = writeln!(io::stderr(), "splatref: {}", words::line(&error.to_string()));
 }

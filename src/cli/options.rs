@@ -10,13 +10,13 @@ use splatref::scene::{Camera, Lens};
 use splatref::{Error, Result};
 use std::path::{Path, PathBuf};
 
-/// How a picture is made; cannot change one bit of it.
+/// How a picture is computed; no option here changes a bit of it.
 #[derive(clap::Args)]
 pub(super) struct ExecOptions {
-    /// Threads; 0 takes every core
+    /// Use N threads; 0 uses every core
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
-    /// Side of a tile in pixels: 8, 16, 32 or 64
+    /// Set the side of a tile in pixels: 8, 16, 32 or 64
     #[arg(long, value_name = "N", default_value_t = 32)]
     tile: u32,
 }
@@ -27,31 +27,31 @@ impl ExecOptions {
     }
 }
 
-/// What is pictured; each option replaces what a scene file says.
+/// The scene and its camera; each option replaces the value of a scene file.
 #[derive(clap::Args)]
 pub(super) struct SceneOptions {
-    /// The frame of the sequence, from 0 [default: 0]
+    /// Render this frame of the sequence, from 0 [default: 0]
     #[arg(long, value_name = "N", help_heading = "Camera")]
     frame: Option<u32>,
-    /// What the frame before saw, from render --keep-state; nothing if absent
+    /// Continue from the state after the previous frame, which render --keep-state wrote
     #[arg(long, value_name = "FILE", help_heading = "Camera")]
     state: Option<PathBuf>,
-    /// Size of the picture in pixels [default: 1024x768]
+    /// Set the size of the picture in pixels [default: 1024x768]
     #[arg(long, value_name = "WxH", value_parser = size, help_heading = "Camera")]
     size: Option<[u32; 2]>,
-    /// Where the camera stands
+    /// Put the camera here
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
         help_heading = "Camera")]
     eye: Option<DVec3>,
-    /// What is in the middle of the picture
+    /// Point the camera at this place, the middle of the picture
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
         help_heading = "Camera")]
     target: Option<DVec3>,
-    /// What is up in the picture
+    /// Set the direction that is up in the picture
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
         help_heading = "Camera")]
     up: Option<DVec3>,
-    /// Vertical field of view in degrees
+    /// Set the vertical field of view in degrees
     #[arg(
         long,
         value_name = "DEG",
@@ -60,7 +60,7 @@ pub(super) struct SceneOptions {
         help_heading = "Camera"
     )]
     fov: Option<f64>,
-    /// Focal length in pixels
+    /// Set the focal length in pixels
     #[arg(
         long,
         value_name = "PX",
@@ -69,7 +69,7 @@ pub(super) struct SceneOptions {
         help_heading = "Camera"
     )]
     focal: Option<f64>,
-    /// Orthographic, with this height of the picture in world units
+    /// Use an orthographic camera; the picture is this high in world units
     #[arg(
         long,
         value_name = "HEIGHT",
@@ -79,12 +79,12 @@ pub(super) struct SceneOptions {
     )]
     ortho: Option<f64>,
 
-    /// What surrounds the scene: a latitude-longitude map, or the procedural sky
+    /// Surround the scene with a latitude-longitude map, or with the procedural sky
     #[arg(long, value_name = "FILE.exr|sky", value_parser = environment,
         help_heading = "Environment")]
     environment: Option<EnvironmentChoice>,
 
-    /// The method
+    /// Choose the method
     #[arg(long, value_name = "NAME", value_parser = method, help = methods(),
         help_heading = "Method")]
     method: Option<&'static str>,
@@ -95,35 +95,36 @@ pub(super) struct SceneOptions {
     #[command(flatten)]
     number: RowOptions<OfNumber>,
 
-    /// Opacity of all surfels, 0 to 1
+    /// Set the opacity of all surfels, 0 to 1
     #[arg(long, value_name = "A", allow_hyphen_values = true, help_heading = "Shapes and models")]
     opacity: Option<f32>,
-    /// The first so many points of a file alone: a level of what `splatref surfels` writes
+    /// Use only the first N points of a file: one level of what `splatref surfels` writes
     #[arg(long, value_name = "N", help_heading = "Shapes and models")]
     prefix: Option<usize>,
-    /// Of points in an order, such as `splatref surfels` writes, as many as a view needs: discs of so
-    /// many pixels where the points are nearest
+    /// Draw as many of the ordered points as the view needs, with discs PIXELS wide where the
+    /// points are nearest
     #[arg(long, value_name = "PIXELS", help_heading = "Shapes and models")]
     surfel_size: Option<f32>,
-    /// The same, but no more than N points, the best first [--surfel-size: 2]
+    /// Draw at most N of the ordered points, the best first [--surfel-size: 2]
     #[arg(long, value_name = "N", help_heading = "Shapes and models")]
     surfel_budget: Option<u32>,
-    /// The texture of a file, a .png or an .exr, in the place of its colours
+    /// Replace the colours of a file by this texture, a .png or an .exr
     #[arg(long, value_name = "FILE", help_heading = "Shapes and models")]
     texture: Option<PathBuf>,
-    /// Levels of prefiltered colours a surfel, which deferred draws; 0 drops those of a file
+    /// Prefilter this many mip levels of colours for each surfel (method deferred); 0 drops the
+    /// levels in a file
     #[arg(long, value_name = "LEVELS", help_heading = "Shapes and models")]
     mipmaps: Option<usize>,
-    /// Surfels of a procedural shape, leaves of the tree [default: 200000, 50124]
+    /// Make a procedural shape of about N surfels, or a tree of N leaves [default: 200000, 50124]
     #[arg(long, value_name = "N", help_heading = "Shapes and models")]
     count: Option<usize>,
-    /// Seed of a procedural shape [default: 0]
+    /// Set the random seed of a procedural shape [default: 0]
     #[arg(long, value_name = "N", help_heading = "Shapes and models")]
     seed: Option<u64>,
 }
 
 impl SceneOptions {
-    /// The scene that `name` stands for, a shape or a file, with these options on top.
+    /// The scene that `name` stands for, a shape or a file, with these options applied.
     pub(super) fn scene_file(&self, name: &Path) -> Result<SceneFile> {
         let mut file = named(name, self.count, self.seed)?;
         self.check_hierarchy(&file)?;
@@ -158,7 +159,7 @@ impl SceneOptions {
         Ok(file)
     }
 
-    /// What has no meaning for a hierarchy, which has no models.
+    /// Refuses options of models for a hierarchy, which has no models.
     fn check_hierarchy(&self, file: &SceneFile) -> Result<()> {
         let given = [
             (self.opacity.is_some(), "--opacity"),
@@ -168,20 +169,23 @@ impl SceneOptions {
         ];
         match given.iter().find(|(given, _)| *given) {
             Some((_, option)) if file.hierarchy.is_some() => {
-                let what = format!("{option} is of models, and {} is a hierarchy", file.name);
+                let what = format!(
+                    "{option} applies to models, but {} is a hierarchy; remove {option}",
+                    file.name
+                );
                 Err(Error::Usage(what))
             }
             _ => Ok(()),
         }
     }
 
-    /// What is of every model that is a file: prefix and texture.
+    /// Sets the prefix and the texture of every model; each must be a file.
     fn choose_of_files(&self, file: &mut SceneFile) -> Result<()> {
         self.prefix.map_or(Ok(()), check_prefix)?;
         let what = match (self.prefix, &self.texture) {
             (None, None) => return Ok(()),
-            (Some(_), _) => "--prefix is of points of a file",
-            (None, Some(_)) => "--texture is of a file",
+            (Some(_), _) => "--prefix applies to the points of a file",
+            (None, Some(_)) => "--texture applies to a file",
         };
         for model in file.all_models_mut() {
             match &mut model.source {
@@ -190,14 +194,17 @@ impl SceneOptions {
                     replace(texture, self.texture.clone());
                 }
                 other => {
-                    return Err(Error::Usage(format!("{what}, and {} is none", other.name())));
+                    return Err(Error::Usage(format!(
+                        "{what}, but {} is not one; remove the option",
+                        other.name()
+                    )));
                 }
             }
         }
         Ok(())
     }
 
-    /// Of progressive models; of all if none is.
+    /// Sets the refinement of progressive models. If no model is progressive, all become so.
     fn choose_refinement(&self, file: &mut SceneFile) -> Result<()> {
         if self.surfel_size.is_none() && self.surfel_budget.is_none() {
             return Ok(());
@@ -210,7 +217,8 @@ impl SceneOptions {
             if let Some(geometry) = file.geometries.iter().find(|one| one.detail.is_some()) {
                 let name = &geometry.name;
                 let what = format!(
-                    "--surfel-size and --surfel-budget are of points in an order, and {name} has a tree"
+                    "--surfel-size and --surfel-budget apply to ordered points, but {name} has a \
+                     tree; remove them"
                 );
                 return Err(Error::Usage(what));
             }
@@ -219,12 +227,12 @@ impl SceneOptions {
         Ok(())
     }
 
-    /// The method, if one was chosen.
+    /// The method that the options name, if they do.
     pub(super) fn chosen_method(&self) -> Option<&'static str> {
         self.method
     }
 
-    /// Whether no state is given, to a command that has no use for one, and why.
+    /// Refuses `--state` for a command that cannot use it; `why` goes into the error.
     pub(super) fn refuse_state(&self, why: &str) -> Result<()> {
         match &self.state {
             None => Ok(()),
@@ -232,15 +240,16 @@ impl SceneOptions {
         }
     }
 
-    /// The file that says what the frame before saw.
+    /// The file with the state after the previous frame.
     pub(super) fn state(&self) -> Option<&Path> {
         self.state.as_deref()
     }
 
-    /// The method, its settings and its groups.
+    /// Applies the method, its settings and its groups.
     fn choose_method(&self, file: &mut SceneFile) -> Result<()> {
         if let Some(name) = self.method {
-            // What the file says of its own method does not hold for another.
+            // The file's settings belong to its own method; `replace` keeps those that fit the new
+            // one.
             file.method.replace(name)?;
         }
         file.method.settings.extend(self.settings.chosen.clone());
@@ -250,8 +259,8 @@ impl SceneOptions {
         }
         if !self.groups.chosen.is_empty() && method.grouping().is_none() {
             let what = format!(
-                "the method {} draws no groups, which --overlap, --groups and their like are for; \
-                 give another --method",
+                "the method {} has no groups, so --overlap, --groups and their like have no \
+                 effect; give another --method",
                 method.name()
             );
             return Err(Error::Usage(what));
@@ -261,12 +270,13 @@ impl SceneOptions {
     }
 }
 
-/// The scene that `name` stands for; count and seed are for shapes alone, the count of a tree is
-/// that of its leaves.
+/// The scene that `name` stands for. Only shapes take a count and a seed; the count of a tree is
+/// its leaves.
 pub(super) fn named(name: &Path, count: Option<usize>, seed: Option<u64>) -> Result<SceneFile> {
     let procedural = name.to_str().and_then(Source::procedural);
     if procedural.is_none() && (count.is_some() || seed.is_some()) {
-        let what = "--count and --seed are for procedural shapes; this scene is a file";
+        let what = "--count and --seed apply to procedural shapes, but this scene is a file; \
+                    remove them";
         return Err(Error::Usage(what.into()));
     }
     match procedural {
@@ -283,40 +293,40 @@ pub(super) fn named(name: &Path, count: Option<usize>, seed: Option<u64>) -> Res
     }
 }
 
-/// Replaces what was chosen, if there is something to replace it by.
+/// Replaces a value if there is a new one.
 fn replace<T>(chosen: &mut Option<T>, by: Option<T>) {
     if by.is_some() {
         *chosen = by;
     }
 }
 
-/// `640x480`.
+/// Parses `640x480`.
 fn size(text: &str) -> std::result::Result<[u32; 2], String> {
     let sides = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
-    let size: [u32; 2] = sides.ok_or("give width and height in pixels, such as 640x480")?;
+    let size: [u32; 2] = sides.ok_or("give the width and the height in pixels, such as 640x480")?;
     Camera::check_size(size[0], size[1]).map_err(|error| error.to_string())?;
     Ok(size)
 }
 
-/// `sky` or a file.
+/// Parses `sky` or a file name.
 fn environment(text: &str) -> std::result::Result<EnvironmentChoice, String> {
     Ok(EnvironmentChoice::from_text(text))
 }
 
-/// The name of a method.
+/// Parses the name of a method.
 fn method(text: &str) -> std::result::Result<&'static str, String> {
     Method::by_name(text).map(|method| method.name()).map_err(|error| error.to_string())
 }
 
-/// Every method, a line each.
+/// The help text of `--method`: each method on a line.
 fn methods() -> String {
     let all = Method::all();
     let of = |method: &Method| format!("\n  {:<15} {}", method.name(), method.summary());
     let lines: String = all.iter().map(of).collect();
-    format!("The method [default: {}]{lines}", Method::default().name())
+    format!("Choose the method [default: {}]{lines}", Method::default().name())
 }
 
-/// `1,-2.5,3`.
+/// Parses `1,-2.5,3`.
 fn vector(text: &str) -> std::result::Result<DVec3, String> {
     let numbers: Option<Vec<f64>> = text.split(',').map(|v| v.trim().parse().ok()).collect();
     match numbers.as_deref() {

@@ -1,4 +1,4 @@
-//! `splatref plan`: the cheapest method and settings within a budget.
+//! `splatref plan`: chooses the best method and settings within a budget.
 
 use super::study::loss;
 use super::tried::{Loaded, Tried, truth_in_words};
@@ -16,10 +16,11 @@ use std::time::Instant;
 
 #[derive(clap::Args)]
 #[command(after_help = "\
-Every candidate of `splatref study` is drawn and timed with a quarter of the columns and rows. From the
-fastest on, candidates are drawn at the full size and compared with the true picture, as long as they may be
-the best. What is within the budget is timed by turns. Errors are of the full size alone: holes come and go
-with the size of a picture.
+How the choice is made:
+  1. Draw and time every candidate of `splatref study` in a picture a quarter as wide and high.
+  2. From the fastest on, draw candidates at full size and compare them with the true picture, as
+     long as they can still be the best. Only this error counts, because holes depend on the size.
+  3. Time the candidates within the budget, by turns.
 
 Examples:
   splatref plan bunny.ply --error 0.02
@@ -30,21 +31,21 @@ Examples:
 pub(super) struct Args {
     #[command(flatten)]
     tried: Tried,
-    /// The most error; of SSIM what is missing to 1, of PSNR the RMSE: the fastest is chosen
+    /// Choose the fastest candidate within this error (SSIM: 1 - SSIM, PSNR: RMSE)
     #[arg(long, value_name = "E", value_parser = error, group = "budget")]
     error: Option<f64>,
-    /// The most time of a picture, such as 20ms or 0.5s: the one with the least error is chosen
+    /// Choose the most accurate candidate within this time a picture, such as 20ms or 0.5s
     #[arg(long, value_name = "TIME", value_parser = milliseconds, group = "budget")]
     time: Option<f64>,
-    /// What the error is
+    /// Measure the error with this metric
     #[arg(long, value_name = "NAME", default_value = "rmse", value_parser = still)]
     metric: Loss,
-    /// Writes the scene file that draws what is chosen, and nothing that it does not need
+    /// Write a minimal scene file that renders the chosen candidate
     #[arg(short, long, value_name = "FILE.toml", value_parser = toml)]
     output: Option<PathBuf>,
 }
 
-/// How many that were not chosen are named.
+/// How many of the other candidates are printed.
 const RUNNERS_UP: usize = 3;
 
 pub(super) fn run(args: &Args) -> Ended {
@@ -71,13 +72,16 @@ pub(super) fn run(args: &Args) -> Ended {
     report::line("scene", format!("{}, {} x {}", scene.name, camera.width, camera.height));
     report::line("truth", truth_in_words(&known, &truth));
     let small = rows.iter().filter(|row| !row.is_whole).count();
-    report::line("tried", format!("{} candidates, {small} of them in small alone", rows.len()));
+    report::line(
+        "tried",
+        format!("{} candidates, {small} of them only in the small picture", rows.len()),
+    );
     let ended = print(args, budget, &candidates, &rows);
     report::time("total", vec![start.elapsed()]);
     ended
 }
 
-/// What is chosen, how to draw it, and what comes next.
+/// Prints the choice, the command that renders it, and the next best.
 fn print(args: &Args, budget: Budget, candidates: &[Candidate], rows: &[Row]) -> Ended {
     let in_words = |i: usize| {
         let Row { time, loss, .. } = rows[i];
@@ -94,8 +98,8 @@ fn print(args: &Args, budget: Budget, candidates: &[Candidate], rows: &[Row]) ->
             Budget::Error(most) => (format!("an error of {most}"), by(|row| row.loss)),
             Budget::Time(most) => (format!("{most} ms"), by(|row| row.time)),
         };
-        let nearest = nearest.map_or_else(|| "none has such an error".into(), in_words);
-        say(format!("nothing is within {what}; the nearest is {nearest}"));
+        let nearest = nearest.map_or_else(|| "no candidate has such an error".into(), in_words);
+        say(format!("no candidate is within {what}; the nearest is {nearest}"));
         return Ok(Ending::Different);
     };
     report::line("plan", in_words(best));
@@ -122,11 +126,11 @@ fn print(args: &Args, budget: Budget, candidates: &[Candidate], rows: &[Row]) ->
     Ok(Ending::Good)
 }
 
-/// The options that `render` does not take; each has a value.
+/// The options that `render` does not have; each takes a value.
 const LEFT: [&str; 6] = ["--error", "--time", "--metric", "--truth", "--output", "-o"];
 
-/// The scene and the options of this command that `render` takes with those of a candidate: not what the
-/// candidate says too, nor what means nothing to its method.
+/// The scene and those options of this command that `render` takes too. Options that the candidate
+/// sets, or that its method does not have, are left out.
 fn own_options(chosen: &Candidate) -> String {
     let rows: Vec<_> = MethodChoice::rows().into_iter().chain(GroupChoice::rows()).collect();
     let replaced: Vec<&str> = chosen.options.split([' ', '=']).collect();
@@ -156,7 +160,7 @@ fn own_options(chosen: &Candidate) -> String {
     kept
 }
 
-/// A word as a shell takes it.
+/// Quotes a word for a shell.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_=./,:+@%".contains(c);
     if !word.is_empty() && word.chars().all(plain) {
@@ -166,34 +170,34 @@ fn quoted(word: &str) -> String {
     }
 }
 
-/// The name of a scene file.
+/// Parses the name of a scene file.
 fn toml(text: &str) -> Result<PathBuf, String> {
     match Path::new(text).extension() {
         Some(end) if end == "toml" => Ok(text.into()),
-        _ => Err("a scene file is called .toml, such as best.toml".into()),
+        _ => Err("give a name that ends in .toml, such as best.toml".into()),
     }
 }
 
-/// A number of at least 0.
+/// Parses a number >= 0.
 fn error(text: &str) -> Result<f64, String> {
     let number = text.parse().ok().filter(|v: &f64| *v >= 0.0 && v.is_finite());
-    number.ok_or_else(|| "give a number of at least 0, such as 0.02".into())
+    number.ok_or_else(|| "give a number >= 0, such as 0.02".into())
 }
 
-/// `20ms` or `0.5s`.
+/// Parses `20ms` or `0.5s`.
 fn milliseconds(text: &str) -> Result<f64, String> {
     let number = text.strip_suffix("ms").map(|digits| (digits, 1.0));
     let number = number.or_else(|| text.strip_suffix('s').map(|digits| (digits, 1000.0)));
     let time = number.and_then(|(digits, scale)| Some(digits.parse::<f64>().ok()? * scale));
     time.filter(|time| *time > 0.0 && time.is_finite())
-        .ok_or_else(|| "give a time of a picture, such as 20ms or 0.5s".into())
+        .ok_or_else(|| "give a time for one picture, such as 20ms or 0.5s".into())
 }
 
-/// A loss of one picture.
+/// Parses the name of a metric for one picture.
 fn still(name: &str) -> Result<Loss, String> {
     match loss(name) {
         Ok(loss) if !METRICS.iter().any(|metric| metric.name == name) => {
-            Err(format!("{} is of a sequence; give an error of one picture", loss.figure))
+            Err(format!("{} is measured on sequences; give a metric of one picture", loss.figure))
         }
         other => other,
     }

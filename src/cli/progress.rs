@@ -1,4 +1,4 @@
-//! Progress on stderr, of what takes over a second, where a person is looking.
+//! Progress bars on stderr for work that takes over a second, if stderr is a terminal.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::io::IsTerminal;
@@ -6,21 +6,21 @@ use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread::{self, JoinHandle};
 use std::time::Duration;
 
-/// How long work may take unnoticed.
+/// How long work may take before a bar appears.
 const PATIENCE: Duration = Duration::from_secs(1);
-/// Of a step that cannot tell how far it is, and of one that can.
+/// The style of a step of unknown length, and the style of one of known length.
 const STYLES: [&str; 2] = ["{spinner} {msg}", "{spinner} {msg} [{bar:32}] {percent} %"];
 
-/// The progress of work, step by step: a sign of life from the first second on, and how far a step
-/// is where it can tell.
+/// The progress of work, step by step. A bar appears after a second, and shows how far a step is if
+/// the step can tell.
 pub(super) struct Steps {
     bar: ProgressBar,
-    /// Ends the watcher; none where nobody is looking, or where there are no threads.
+    /// Ends the watcher; `None` if stderr is no terminal, or if no thread can be started.
     watcher: Option<(Sender<()>, JoinHandle<()>)>,
 }
 
 impl Steps {
-    /// Begins with a step that cannot tell how far it is.
+    /// Begins with a step of unknown length.
     pub(super) fn new(what: &str) -> Self {
         let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
         style(&bar, STYLES[0]);
@@ -29,7 +29,7 @@ impl Steps {
         Self { bar, watcher }
     }
 
-    /// Step `what` has done so many of so many; one of one is no measure.
+    /// Shows that step `what` has done `done` of `of` units. One unit is no measure of length.
     pub(super) fn show(&self, what: &str, done: u64, of: u64) {
         if self.bar.message() != what {
             self.bar.set_message(what.to_owned());
@@ -50,7 +50,7 @@ impl Drop for Steps {
     }
 }
 
-/// Does work that cannot tell how far it is.
+/// Does work of unknown length, with progress.
 pub(super) fn during<T>(what: &str, work: impl FnOnce() -> T) -> T {
     let _steps = Steps::new(what);
     work()
@@ -62,7 +62,7 @@ fn style(bar: &ProgressBar, template: &str) {
     }
 }
 
-/// Lets the bar be seen, and move, when the work has taken long enough.
+/// Starts a thread that shows the bar once the work has taken long enough.
 fn watch(bar: ProgressBar) -> Option<(Sender<()>, JoinHandle<()>)> {
     let (end, ended) = mpsc::channel::<()>();
     let watch = move || {

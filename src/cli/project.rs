@@ -1,4 +1,4 @@
-//! `splatref project`: the visible splats of a scene, as records for a backend to upload.
+//! `splatref project`: writes the visible splats of a scene as records for a backend to upload.
 
 use super::options::{ExecOptions, SceneOptions};
 use super::{Ended, Ending, draw, output, progress, report};
@@ -11,9 +11,9 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 #[command(after_help = "\
-The file has no header: one record of 96 bytes a visible splat, in ascending surfel index, each a few
-little-endian 32-bit floats and integers. The program prints how many there are and where the fields
-lie; the documentation of splatref::splat::record::SplatRecord says what they mean.
+The file has no header. Each visible splat is a record of 96 bytes, in ascending surfel index. A record
+holds little-endian 32-bit floats and integers. The program prints the number of records and the offset
+of each field; the documentation of splatref::splat::record::SplatRecord says what they mean.
 
 Examples:
   splatref project bunny.ply -o records.bin
@@ -21,7 +21,7 @@ Examples:
 pub(super) struct Args {
     /// The scene, as for render
     scene: PathBuf,
-    /// Where the records go
+    /// Write the records into this file
     #[arg(short, long, value_name = "FILE.bin")]
     output: PathBuf,
     #[command(flatten)]
@@ -61,10 +61,10 @@ pub(super) fn run(args: &Args) -> Ended {
     Ok(Ending::Good)
 }
 
-/// What is refused before anything is loaded.
+/// Refuses wrong options before anything is loaded.
 fn check(args: &Args, splats: bool, number: Number) -> Result<()> {
     if !splats {
-        let what = "this method draws no splats; project them for another one by --method";
+        let what = "this method draws no splats; give another --method";
         return Err(Error::Usage(what.into()));
     }
     if number != Number::F32 {
@@ -72,7 +72,9 @@ fn check(args: &Args, splats: bool, number: Number) -> Result<()> {
     }
     if args.output.extension().is_none_or(|extension| extension != "bin") {
         let path = args.output.display();
-        return Err(Error::Usage(format!("{path}: records are bytes; give a name in .bin")));
+        return Err(Error::Usage(format!(
+            "{path}: records are raw bytes; give a name that ends in .bin"
+        )));
     }
     Ok(())
 }

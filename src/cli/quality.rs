@@ -1,4 +1,4 @@
-//! `splatref quality`: how evenly prefixes of points in order are spread.
+//! `splatref quality`: measures how evenly the prefixes of ordered points cover the surface.
 
 use super::{Ended, Ending, output, progress, report, say};
 use splatref::frame::Exec;
@@ -12,31 +12,34 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 #[command(after_help = "\
-Of each prefix: how far points are from the nearest other, and the covering radius, the largest
-distance of any point to the prefix. The unit of what is relative is the largest least distance
-of the files at that prefix: of an exact greedy order 1.
+Two figures are printed for each prefix:
+  - the distance of each point to its nearest neighbour
+  - the covering radius: the largest distance of any point to the prefix
+Relative figures are divided by the largest least distance among the files at that prefix, so an exact
+greedy order has 1.
 
 Examples:
   splatref surfels bunny.ply -o greedy.ply
   splatref surfels bunny.ply -o random.ply --sampler random
   splatref quality greedy.ply random.ply --prefix 1000,5000,10000 -o violins.svg --spectrum")]
 pub(super) struct Args {
-    /// Points in their order: .ply or .obj, one file an order
+    /// Points in their order: a .ply or .obj for each order
     #[arg(required = true)]
     files: Vec<PathBuf>,
-    /// How many of the first points [default: all that every file has]
+    /// Measure the first N points; several numbers measure several prefixes [default: all that
+    /// every file has]
     #[arg(long, value_name = "N,N", value_delimiter = ',')]
     prefix: Vec<usize>,
-    /// The points that a prefix is to cover [default: those of its file]
+    /// Measure how well a prefix covers the points of this file [default: its own file]
     #[arg(long, value_name = "FILE")]
     of: Option<PathBuf>,
-    /// A chart: violins, and spectra if there are some
+    /// Write a chart: violins, and spectra with --spectrum
     #[arg(short, long, value_name = "FILE.svg|png")]
     output: Option<PathBuf>,
-    /// Radial power spectra, too; of 256 points at least
+    /// Measure radial power spectra too; needs at least 256 points
     #[arg(long)]
     spectrum: bool,
-    /// Threads; 0 takes every core
+    /// Use N threads; 0 uses every core
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
 }
@@ -74,12 +77,12 @@ pub(super) fn run(args: &Args) -> Ended {
 }
 
 impl Args {
-    /// What is refused before anything is read.
+    /// Refuses wrong options before anything is read.
     fn check(&self) -> Result<()> {
         let refused = |path: &Path, what| Err(Error::Usage(format!("{}: {what}", path.display())));
         for path in self.files.iter().chain(&self.of) {
             if !matches!(FileKind::from_extension(path), Ok(FileKind::Ply | FileKind::Obj)) {
-                return refused(path, "points are read from a .ply or an .obj");
+                return refused(path, "points are read from a .ply or an .obj; give one");
             }
         }
         if let Some(few) = self.prefix.iter().find(|prefix| **prefix < 2) {
@@ -88,11 +91,11 @@ impl Args {
         }
         let Some(output) = &self.output else { return Ok(()) };
         if kind(output).is_none() {
-            return refused(output, "charts are .svg or .png; give such a name");
+            return refused(output, "charts are written as .svg or .png; give such a name");
         }
         if self.files.len() > MOST_ORDERS || self.prefix.len() > MOST_PREFIXES {
             return Err(Error::Usage(format!(
-                "a chart has room for {MOST_ORDERS} files and {MOST_PREFIXES} prefixes: give fewer"
+                "a chart has room for {MOST_ORDERS} files and {MOST_PREFIXES} prefixes; give fewer"
             )));
         }
         output::check_folder(output)?;
@@ -116,11 +119,11 @@ fn write(path: &Path, chart: &splatref::study::chart::Drawing) -> Result<()> {
     if let Some(Chart::Svg) = kind(path) {
         return write_atomically(path, |file| file.write_all(chart.svg().as_bytes()));
     }
-    let picture = chart.picture().ok_or_else(|| Error::Invalid("a chart without area".into()))?;
+    let picture = chart.picture().ok_or_else(|| Error::Invalid("the chart has no area".into()))?;
     png::write_codes(path, [picture.width, picture.height], &picture.pixels)
 }
 
-/// The stems of files; where two are equal the files as they were given.
+/// The stems of the files; a file whose stem is not unique keeps its whole name.
 fn names(files: &[PathBuf]) -> Vec<String> {
     let stem = |path: &PathBuf| path.file_stem().map(|stem| stem.to_string_lossy().into_owned());
     let stems: Vec<_> = files.iter().map(stem).collect();
@@ -131,22 +134,22 @@ fn names(files: &[PathBuf]) -> Vec<String> {
     files.iter().zip(&stems).map(one).collect()
 }
 
-/// The points of a file that has nothing else to draw.
+/// The points of a file that holds only points.
 fn points(path: &Path, exec: &Exec) -> Result<Vec<glam::Vec3>> {
     let cloud = read_model(path, exec)?;
     if !cloud.triangles.is_empty() || !cloud.edges.is_empty() {
-        let what = "the file has triangles or lines, but points in an order are asked for; \
-                    `splatref surfels` makes some of a mesh";
+        let what = "the file has triangles or lines, but ordered points are needed; `splatref \
+                    surfels` samples a mesh";
         return Err(Error::format(path, what));
     }
     if let Some(at) = cloud.position.iter().position(|point| !point.is_finite()) {
-        let what = format!("point {at} is not finite and has no distance to others");
+        let what = format!("point {at} is not finite, so it has no distance to others; remove it");
         return Err(Error::format(path, what));
     }
     Ok(cloud.position)
 }
 
-/// In world units, then in those of each prefix.
+/// Prints distances in world units, then relative to each prefix.
 fn table(found: &[AtPrefix]) {
     let width = found.iter().flat_map(|at| &at.spreads).map(|s| s.name.chars().count()).max();
     let width = width.unwrap_or(0).max(5);
@@ -176,14 +179,15 @@ fn table(found: &[AtPrefix]) {
     }
 }
 
-/// What the spectra say, where there are some.
+/// Prints the figures of the spectra, if there are any.
 fn spectra(
     found: &[AtPrefix],
     row: &dyn Fn(&str, &str, String),
     cells: &dyn Fn(&[String]) -> String,
 ) {
     say(
-        "spectra: the least distance of the densest packing's, the power below, the peak and where:",
+        "spectra: least distance relative to the densest packing, power below the peak, the peak, \
+         and its frequency:",
     );
     row("", "", cells(&["packing", "below", "peak", "at"].map(str::to_owned)));
     for AtPrefix { prefix, spreads, .. } in found {

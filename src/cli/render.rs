@@ -1,4 +1,4 @@
-//! `splatref render`: a scene into an EXR and a PNG.
+//! `splatref render`: renders a scene into an EXR and a PNG.
 
 use super::destination::{Destination, write};
 use super::options::{ExecOptions, SceneOptions};
@@ -28,7 +28,7 @@ pub(super) struct Args {
     /// or tree (with --method pyramid)
     #[arg(default_value = "cluster", hide_default_value = false)]
     scene: PathBuf,
-    /// Where the EXR goes, the PNG beside it [default: out/NAME.exr]
+    /// Write the EXR here, and the PNG beside it [default: out/NAME.exr]
     #[arg(short, long, value_name = "FILE.exr")]
     output: Option<PathBuf>,
     #[command(flatten)]
@@ -37,12 +37,12 @@ pub(super) struct Args {
     #[arg(long, value_name = "N", default_value_t = 1,
         value_parser = clap::value_parser!(u32).range(1..))]
     repeat: u32,
-    /// Frames of the sequence, B not among them, each into an EXR and a PNG of its own: out/walk.exr
-    /// becomes out/walk.0000.exr and so on
+    /// Render frames A to B - 1 of the sequence, each into an EXR and a PNG of its own:
+    /// out/walk.exr becomes out/walk.0000.exr and so on
     #[arg(long, value_name = "A..B", value_parser = sequence::frames,
         conflicts_with_all = ["repeat", "frame"])]
     frames: Option<Range<u32>>,
-    /// Where what the last frame saw goes, for --state (method deferred)
+    /// Write the state after the last frame, for --state (method deferred)
     #[arg(long, value_name = "FILE")]
     keep_state: Option<PathBuf>,
     #[command(flatten)]
@@ -75,7 +75,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let loading = start.elapsed();
     let Ready { loaded, camera, method, .. } = &ready;
     let scene = &loaded.scene;
-    // The picture may lie in the session.
+    // Cloned, because the picture may borrow from the session.
     let groups = session.groups().cloned();
 
     let mut times = Vec::new();
@@ -83,7 +83,7 @@ pub(super) fn run(args: &Args) -> Ended {
         let before = session.seen().cloned();
         for _ in 1..args.repeat {
             timed(&mut times, || file.output.draw(&mut session, camera))?;
-            // The same frame again, not the next.
+            // Repeat the same frame, not the next one.
             session.resume(before.clone());
         }
         timed(&mut times, || file.output.draw(&mut session, camera))
@@ -113,10 +113,10 @@ pub(super) fn run(args: &Args) -> Ended {
     Ok(Ending::Good)
 }
 
-/// Each stage, and last the whole, of each repetition.
+/// The times of each repetition: each stage, and last the whole picture.
 type Times = Vec<Vec<(&'static str, Duration)>>;
 
-/// Draws once and notes how long it took.
+/// Draws once and records the times.
 fn timed<'s>(
     times: &mut Times,
     render: impl FnOnce() -> Result<Cow<'s, Picture<f32>>>,

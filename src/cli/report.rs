@@ -1,4 +1,4 @@
-//! Scenes, cameras, settings and times in words.
+//! Reports of scenes, cameras, settings and times in words.
 
 use super::say;
 use glam::Vec3;
@@ -16,12 +16,12 @@ use splatref::source::derive::Origin;
 use splatref::splat::Tally;
 use std::time::Duration;
 
-/// A line with its label.
+/// Prints a line with its label.
 pub(super) fn line(label: &str, text: impl std::fmt::Display) {
     say(format!("{label:<10} {text}"));
 }
 
-/// The models, what was derived for them, and what was dropped.
+/// Prints the models, what was derived for them, and what was dropped.
 pub(super) fn scene(loaded: &Loaded) {
     let scene = &loaded.scene;
     if let Some(objects) = &scene.objects {
@@ -43,10 +43,10 @@ pub(super) fn scene(loaded: &Loaded) {
     radius(&scene.surfels);
 }
 
-/// The most geometries that get a line: the nodes of a hierarchy may be thousands.
+/// How many geometries get a line; a hierarchy may have thousands of nodes.
 const MOST_LINES: usize = 32;
 
-/// A scene of objects, whether its surfels are in their places or not.
+/// Prints a scene of objects, whether its surfels are already in their places or not.
 fn objects_of(loaded: &Loaded, objects: &Objects) {
     let ids = objects.ids();
     let mut used = vec![0_usize; loaded.models.len()];
@@ -76,7 +76,7 @@ fn objects_of(loaded: &Loaded, objects: &Objects) {
             }
             Some(Detail::Prefix(prefix)) => {
                 let Estimate { count, distance } = prefix.estimate();
-                format!(", in an order of which {count} are {} apart", short(distance.into()))
+                format!(", ordered: {count} are {} apart", short(distance.into()))
             }
         };
         line("  geometry", format!("{}: {all}{detail}, {of}; used by {used} objects", model.name));
@@ -90,7 +90,7 @@ fn objects_of(loaded: &Loaded, objects: &Objects) {
             && let Some(disc) = objects.disc(0)
         {
             let (radius, side) = (short(disc.radius.into()), short(disc.side.into()));
-            line("  discs", format!("of radius {radius}, {side} px where they are nearest"));
+            line("  discs", format!("of radius {radius}, {side} px at the nearest place"));
         }
     }
     line("  dropped", dropped(&loaded.dropped, loaded.dropped_primitives));
@@ -102,20 +102,22 @@ fn objects_of(loaded: &Loaded, objects: &Objects) {
     }
 }
 
-/// Which bits of an id are the object's.
+/// Which bits of an id belong to the object.
 fn split(split: Split) -> String {
     match split {
-        Split::Even => "12 bits of the object and 20 of the surfel".into(),
-        Split::Two => "1 bit, then 11 and 20 of object and surfel, or 14 and 17".into(),
-        Split::Single(n) => format!("{} bits of the object and {n} of the surfel", 32 - n),
+        Split::Even => "12 bits for the object and 20 for the surfel".into(),
+        Split::Two => "1 bit, then 11 for the object and 20 for the surfel, or 14 and 17".into(),
+        Split::Single(n) => format!("{} bits for the object and {n} for the surfel", 32 - n),
         Split::Stencil(n) => {
             let object = 40 - n;
-            format!("{object} bits of the object, 8 of them beside the 32, and {n} of the surfel")
+            format!(
+                "{object} bits for the object, 8 of them in the stencil, and {n} for the surfel"
+            )
         }
     }
 }
 
-/// What a scene or a model has, in words.
+/// The content of a scene or a model in words.
 fn content(surfels: u64, primitives: Counts) -> String {
     let Counts { triangles, ribbons, tubes } = primitives;
     let parts = [
@@ -129,7 +131,7 @@ fn content(surfels: u64, primitives: Counts) -> String {
     parts.join(", ")
 }
 
-/// Where a model's normals or tangents and its radii come from.
+/// The origin of a model's normals or tangents and of its radii.
 fn origin(model: &ModelReport) -> String {
     let Some(derived) = &model.derived else { return "procedural".into() };
     let direction = if model.primitives.tubes > 0 { "tangents" } else { "normals" };
@@ -140,13 +142,13 @@ fn origin(model: &ModelReport) -> String {
     }
 }
 
-/// Where everything is.
+/// Prints the bounding box.
 pub(super) fn bounds((low, high): (Vec3, Vec3)) {
     let [low, high] = [low, high].map(|corner| point(corner.to_array().map(f64::from)));
     line("  bounds", format!("{low} to {high}"));
 }
 
-/// How large surfels are, if there are any.
+/// Prints the median radius, if there are surfels.
 pub(super) fn radius(surfels: &Surfels) {
     if !surfels.is_empty() {
         median(surfels.median_radius());
@@ -154,10 +156,10 @@ pub(super) fn radius(surfels: &Surfels) {
 }
 
 fn median(radius: f32) {
-    line("  radius", format!("{} in the median", short(f64::from(radius))));
+    line("  radius", format!("{}, the median", short(f64::from(radius))));
 }
 
-const FACETS: &str = "of ellipses, a triangle each";
+const FACETS: &str = "from ellipses, one for each triangle";
 
 pub(super) fn normals(origin: Origin) -> &'static str {
     match origin {
@@ -174,7 +176,7 @@ pub(super) fn normals(origin: Origin) -> &'static str {
 pub(super) fn radii(origin: Origin) -> &'static str {
     match origin {
         Origin::File => "from the file",
-        Origin::Given => "as the scene says",
+        Origin::Given => "from the scene file",
         Origin::Tangents => "derived from the tangents",
         Origin::Facets => FACETS,
         Origin::Triangles | Origin::Edges => "derived from the edges",
@@ -187,8 +189,8 @@ pub(super) fn radii(origin: Origin) -> &'static str {
 pub(super) fn dropped(dropped: &Dropped, primitives: u64) -> String {
     let reasons = [
         (dropped.position, "not finite"),
-        (dropped.normal, "without a normal"),
-        (dropped.radius, "without a radius"),
+        (dropped.normal, "without normal"),
+        (dropped.radius, "without radius"),
         (dropped.attribute, "with a bad colour, opacity or tangent"),
     ];
     let reasons = reasons.iter().filter(|(count, _)| *count > 0);
@@ -218,7 +220,7 @@ pub(super) fn camera(camera: &Camera) {
     line("camera", format!("{kind}, at {eye} looking along {towards}"));
 }
 
-/// The method, its settings, and what these come to in a scene.
+/// Prints the method, its settings, and the values that they give in a scene.
 pub(super) fn method(method: &Method, scene: &Scene, camera: &Camera) {
     settings(method);
     for (name, value) in method.settings_in_scene(scene, camera) {
@@ -226,14 +228,14 @@ pub(super) fn method(method: &Method, scene: &Scene, camera: &Camera) {
     }
 }
 
-/// The method and its settings.
+/// Prints the method and its settings.
 pub(super) fn settings(method: &Method) {
     let values = method.values().into_iter().map(|(name, value)| (name, value.text()));
     let settings: Vec<String> = values.map(|(name, value)| format!("{name} = {value}")).collect();
     line("method", format!("{}, {}", method.name(), settings.join(", ")));
 }
 
-/// The groups, and how they were made.
+/// Prints the groups, and how they were made.
 pub(super) fn groups(groups: Option<&Groups>, made: Option<&Made>) {
     let Some(groups) = groups else { return };
     let Some((report, extended)) = made else {
@@ -242,7 +244,7 @@ pub(super) fn groups(groups: Option<&Groups>, made: Option<&Made>) {
     line(
         "groups",
         format!(
-            "{} at c = {}, degree {} at most and {:.1} on the average",
+            "{} at c = {}, degree {} at most and {:.1} on average",
             report.groups, report.overlap, report.max_degree, report.average_degree
         ),
     );
@@ -253,7 +255,8 @@ pub(super) fn groups(groups: Option<&Groups>, made: Option<&Made>) {
         line(
             "",
             format!(
-                "each covers {:.0} % of the surface, extended {:.0} %; {:.0} % surfels added",
+                "each covers {:.0} % of the surface, {:.0} % after extension; {:.0} % surfels \
+                 added",
                 100.0 * mean(|group| group.before),
                 100.0 * mean(|group| group.after),
                 extended.percent
@@ -274,7 +277,7 @@ pub(super) fn picture(camera: &Camera, output: OutputSettings) {
     line("picture", format!("{width} x {height} pixels, {number}{stored}{stages}"));
 }
 
-/// What a method selected of the surfels that a view leaves, if it did.
+/// Prints how many of the surfels in view a method selected, if it selects.
 pub(super) fn selection(scene: &Scene, seen: Option<&Seen>) {
     let Some(seen) = seen else { return };
     let of = |counts: &[u32]| counts.iter().map(|&count| u64::from(count)).sum::<u64>();
@@ -285,7 +288,7 @@ pub(super) fn selection(scene: &Scene, seen: Option<&Seen>) {
     line("selected", format!("{selected} of {all} surfels, {culled:.1} % culled"));
 }
 
-/// What became of the surfels.
+/// Prints how many surfels were drawn, and why the others were not.
 pub(super) fn tally(tally: &Tally) {
     line(
         "surfels",
@@ -296,7 +299,7 @@ pub(super) fn tally(tally: &Tally) {
     );
 }
 
-/// How many threads there are, in words.
+/// The number of threads in words.
 pub(super) fn threads(exec: &Exec) -> String {
     match exec.threads() {
         1 => "1 thread".into(),
@@ -304,7 +307,7 @@ pub(super) fn threads(exec: &Exec) -> String {
     }
 }
 
-/// One time, or the minimum and the lower median of several.
+/// Prints one time, or the minimum and the lower median of several.
 pub(super) fn time(what: &str, mut times: Vec<Duration>) {
     times.sort();
     let show = |time: Duration| format!("{:>10.2} ms", time.as_secs_f64() * 1e3);
@@ -322,11 +325,11 @@ fn point(v: [f64; 3]) -> String {
     format!("({})", v.map(short).join(", "))
 }
 
-/// Five digits of a number; with a power of ten where it has more than a few zeros.
+/// Rounds a number to five digits; small numbers have a power of ten.
 pub(super) fn short(value: f64) -> String {
     let rounded = format!("{value:.4e}").parse().unwrap_or(value);
     match rounded {
-        // -0 is 0 to a reader.
+        // -0 is printed as 0.
         0.0 => "0".into(),
         small if small.abs() < 1e-4 => format!("{small:e}"),
         other => format!("{other}"),

@@ -1,4 +1,4 @@
-//! Options that follow from rows of settings.
+//! Command-line options made from rows of settings.
 
 use clap::{Arg, ArgMatches, Command};
 use splatref::io::scene_file::{Choice, GroupChoice, MethodChoice, OutputSettings};
@@ -10,28 +10,28 @@ use std::marker::PhantomData;
 pub(super) trait Rows {
     /// The settings, each with its owners.
     fn rows() -> Vec<Setting>;
-    /// Under which heading a setting stands.
+    /// The help heading of a setting.
     fn heading(row: &Setting) -> String;
-    /// The value that a text stands for; none if no setting has this name.
+    /// Parses a text; `None` if no setting has this name.
     fn read(name: &str, text: &str) -> Option<Result<Value, String>>;
 }
 
 /// The settings of every method.
 pub(super) struct OfMethods;
 
-/// The settings of groups, on top of what a method has.
+/// The settings of groups, for methods that draw groups.
 pub(super) struct OfGroups;
 
-/// The settings of groups that are not made for a method.
+/// The settings of groups without a method.
 pub(super) struct OfGroupsAlone;
 
-/// The arithmetic of a picture.
+/// The arithmetic and the buffer formats of a picture.
 pub(super) struct OfNumber;
 
-/// What the files of a picture hold, and how.
+/// What the files of a picture hold, and their compression.
 pub(super) struct OfFiles;
 
-/// What was chosen by the options of some rows.
+/// The values that the options of some rows chose.
 pub(super) struct RowOptions<R> {
     pub(super) chosen: Choice,
     rows: PhantomData<R>,
@@ -117,7 +117,7 @@ fn is_of_picture(name: &str) -> bool {
     ["number", "storage", "depth_storage"].contains(&name)
 }
 
-/// The option of a row.
+/// The command-line option of a row.
 fn option<R: Rows>(row: &Setting) -> Arg {
     let name = row.name;
     let default = match row.default_text(Value::text) {
@@ -133,7 +133,7 @@ fn option<R: Rows>(row: &Setting) -> Arg {
         .help_heading(R::heading(row))
         .value_parser(move |text: &str| R::read(name, text).unwrap_or_else(|| Err(name.into())));
     if row.is_switch() {
-        // The bare option turns it on.
+        // The option without a value turns the setting on.
         option.num_args(0..=1).require_equals(true).default_missing_value("on")
     } else {
         option.allow_hyphen_values(true)

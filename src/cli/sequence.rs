@@ -1,4 +1,4 @@
-//! `splatref render --frames`: a picture for each frame of a sequence.
+//! `splatref render --frames`: renders each frame of a sequence.
 
 use super::destination::{Destination, write};
 use super::{Ended, Ending, draw, progress, report};
@@ -13,20 +13,20 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// `0..60`.
+/// Parses `0..60`.
 pub(super) fn frames(text: &str) -> std::result::Result<Range<u32>, String> {
     let ends = text.split_once("..").and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
     match ends {
         Some((start, end)) if start < end => Ok(start..end),
         Some((start, end)) => Err(format!(
-            "no frame is in {start}..{end}; the end is not included: give the first and one after the \
-             last"
+            "{start}..{end} holds no frame, because the end is not included; give the first frame \
+             and one after the last"
         )),
         None => Err("give the first frame and one after the last, such as 0..60".into()),
     }
 }
 
-/// Renders the frames of a scene file, which stands in the first of them.
+/// Renders the frames of a scene file, whose own frame is the first of them.
 pub(super) fn render(
     to: &Destination<'_>,
     file: &SceneFile,
@@ -78,7 +78,7 @@ pub(super) fn render(
     Ok(Ending::Good)
 }
 
-/// Draws and writes one frame; what it saw.
+/// Draws and writes one frame, and returns the state after it.
 fn one(
     session: &mut Session<'_>,
     camera: &Camera,
@@ -95,7 +95,7 @@ fn one(
     Ok(drawing.seen.clone())
 }
 
-/// The first and the last of the files.
+/// Prints the first and the last of the files.
 fn files(places: &[PathBuf]) {
     let [Some(first), Some(last)] = [places.first(), places.last()] else { return };
     for (label, end) in [("files", "exr"), ("", "png")] {
@@ -106,7 +106,7 @@ fn files(places: &[PathBuf]) {
     }
 }
 
-/// How long each step took in all frames, in the order in which steps came first.
+/// How long each step took in all frames, in the order in which the steps first ran.
 #[derive(Default)]
 struct Times(Vec<(&'static str, Duration)>);
 

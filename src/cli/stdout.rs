@@ -1,4 +1,4 @@
-//! What a command prints, and whether it arrived.
+//! Prints on stdout, and records whether it worked.
 
 use super::words;
 use splatref::{Error, Result};
@@ -9,8 +9,8 @@ use std::sync::OnceLock;
 /// The first failure.
 static FAILURE: OnceLock<io::Error> = OnceLock::new();
 
-// Before `main` Rust opens /dev/null in the place of a closed stdout: what is printed would be lost and
-// nothing would fail. A constructor looks earlier.
+// Rust opens /dev/null before `main` if stdout is closed, so prints would be lost without an error.
+// A constructor runs earlier and looks.
 #[cfg(unix)]
 ctor::declarative::ctor! {
     #[ctor(unsafe)]
@@ -21,15 +21,15 @@ ctor::declarative::ctor! {
     }
 }
 
-/// A line on stdout. A full disk or a reader that has gone, such as `head`, is no reason to stop:
-/// files are still to be written. It is a failure in the end.
+/// Prints a line on stdout. A full disk, or a reader such as `head` that has gone, does not stop
+/// the command, because files are still to be written. The command fails at its end.
 pub(super) fn say(text: impl Display) {
     if let Err(error) = writeln!(io::stdout(), "{}", words::visible(&text.to_string())) {
         let _ = FAILURE.set(error);
     }
 }
 
-/// What is printed has arrived, or why not.
+/// Returns the first failure to print, if any.
 pub(super) fn printed() -> Result<()> {
     if let Err(error) = io::stdout().flush() {
         let _ = FAILURE.set(error);

@@ -1,4 +1,4 @@
-//! `splatref study`: every method and setting against the true picture and the clock.
+//! `splatref study`: measures every method and setting against the true picture and the clock.
 
 use super::tried::{Loaded, Tried, truth_in_words};
 use super::{Ended, Ending, atlas, claims, output, progress, report, say};
@@ -21,8 +21,8 @@ use std::time::{Duration, Instant};
 
 #[derive(clap::Args)]
 #[command(after_help = "\
-Writes study.csv, study.json, chart.svg, chart.png, index.html and the pictures. What is found is kept as
-it goes: a study that was stopped goes on with --resume.
+Writes study.csv, study.json, chart.svg, chart.png, index.html and the pictures. Results are saved as
+they come; rerun the command with --resume to resume a study that was stopped.
 
 Examples:
   splatref study bunny.ply
@@ -37,29 +37,29 @@ pub(super) struct Args {
     what: Option<What>,
     #[command(flatten)]
     tried: Tried,
-    /// Where the files go; made if it is not there
+    /// Write the files into this folder; it is made if it does not exist
     #[arg(short, long, value_name = "DIR", default_value = "out/study")]
     output: PathBuf,
-    /// What is up in the chart
+    /// Plot this metric
     #[arg(long, value_name = "NAME", default_value = "rmse", value_parser = loss)]
     metric: Loss,
-    /// The most time, such as 60s or 5m: as many candidates as fit, then their times
+    /// Stop after this time, such as 60s or 5m: measure as many candidates as fit, then time them
     #[arg(long, value_name = "TIME", value_parser = span)]
     time: Option<Duration>,
-    /// Go on with the study that is in the folder
+    /// Resume the study in the folder
     #[arg(long)]
     resume: bool,
 }
 
 #[derive(clap::Subcommand)]
 enum What {
-    /// The atlas: where each method breaks, and what cures it, into a page
+    /// Write the atlas of failures: where each method breaks, and what cures it
     Failures(atlas::Args),
-    /// What the papers claim, measured, into a page
+    /// Measure what the papers claim, and write a page
     Claims(claims::Args),
 }
 
-/// The share of the time that errors may take; the rest is for times.
+/// The fraction of the time that errors may take; the rest is for times.
 const MEASURING: f64 = 0.7;
 
 pub(super) fn run(args: &Args) -> Ended {
@@ -117,7 +117,8 @@ struct Job<'a> {
 }
 
 impl Job<'_> {
-    /// The errors of all candidates that have none yet, as far as there is time; of one at least.
+    /// Measures the error of each candidate that has none, while there is time, and of the first in
+    /// any case.
     fn measure(
         &self,
         bench: &mut Bench<'_>,
@@ -143,7 +144,7 @@ impl Job<'_> {
         Ok(())
     }
 
-    /// Times of all that was measured, round by round.
+    /// Times all measured candidates, round by round.
     fn time(
         &self,
         bench: &mut Bench<'_>,
@@ -173,7 +174,7 @@ impl Job<'_> {
 struct Folder(PathBuf);
 
 impl Folder {
-    /// Makes the folder, which must hold nothing that the study reads.
+    /// Makes the folder, and refuses it if the study would overwrite one of its inputs.
     fn make(args: &Args, scene: &SceneFile) -> Result<Self> {
         let folder = Self(args.output.clone());
         for name in FILES {
@@ -188,7 +189,7 @@ impl Folder {
         Ok(folder)
     }
 
-    /// A study that has nothing yet, or what was kept of it.
+    /// An empty study, or with `resume` the study in the folder.
     fn begin(
         &self,
         of: Subject,
@@ -209,11 +210,11 @@ impl Folder {
         let path = self.0.join(STATE);
         let bytes = fs::read(&path).map_err(|source| Error::io(&path, source))?;
         let before = serde_json::from_slice(&bytes)
-            .map_err(|error| Error::format(&path, format!("no study: {error}")))?;
+            .map_err(|error| Error::format(&path, format!("not a study: {error}")))?;
         study.resumed(before).map_err(|error| Error::format(&path, error.to_string()))
     }
 
-    /// Keeps what is known.
+    /// Saves the results so far.
     fn keep(&self, study: &Study) -> Result<()> {
         let path = self.0.join(STATE);
         let text = serde_json::to_string_pretty(study)
@@ -241,7 +242,7 @@ impl Folder {
         png::write_frame(&self.truth(), frame)
     }
 
-    /// Writes the table, the charts and the page; where they are.
+    /// Writes the table, the charts and the page, and returns their paths.
     fn publish(&self, study: &Study, loss: &Loss) -> Result<Vec<PathBuf>> {
         self.keep(study)?;
         let figures: Vec<&str> = losses().iter().map(|loss| loss.figure).collect();
@@ -254,7 +255,7 @@ impl Folder {
         let drawing = chart(study, loss);
         text(svg, &drawing.svg())?;
         let picture =
-            drawing.picture().ok_or_else(|| Error::Invalid("a chart without area".into()))?;
+            drawing.picture().ok_or_else(|| Error::Invalid("the chart has no area".into()))?;
         png::write_codes(png, [picture.width, picture.height], &picture.pixels)?;
         let read = |path: PathBuf| fs::read(&path).map_err(|source| Error::io(&path, source));
         let pictures = study.candidates.iter().map(|record| match record.measured {
@@ -268,12 +269,12 @@ impl Folder {
     }
 }
 
-/// What is known so far; the last of the files.
+/// The results so far; the last of the files.
 const STATE: &str = "study.json";
 const FILES: [&str; 5] = ["index.html", "chart.svg", "chart.png", "study.csv", STATE];
 const PICTURES: &str = "pictures";
 
-/// `60s`, `5m` or `1h`.
+/// Parses `60s`, `5m` or `1h`.
 fn span(text: &str) -> std::result::Result<Duration, String> {
     let unit = text.char_indices().next_back().and_then(|(at, unit)| {
         let seconds =
@@ -284,7 +285,7 @@ fn span(text: &str) -> std::result::Result<Duration, String> {
     unit.filter(|span| !span.is_zero()).ok_or_else(|| "give a time such as 60s, 5m or 1h".into())
 }
 
-/// A loss by the name of its figure.
+/// Finds a metric by its name.
 pub(super) fn loss(name: &str) -> std::result::Result<Loss, String> {
     let all = losses();
     all.iter().find(|loss| loss.figure == name).cloned().ok_or_else(|| {
@@ -293,7 +294,7 @@ pub(super) fn loss(name: &str) -> std::result::Result<Loss, String> {
     })
 }
 
-/// The table on stdout: the fastest first.
+/// Prints the table on stdout, the fastest first.
 fn print(study: &Study, loss: &Loss, total: Duration) {
     let [width, height] = study.of.size;
     report::line("scene", format!("{}, {width} x {height}", study.of.scene));
@@ -323,9 +324,9 @@ fn print(study: &Study, loss: &Loss, total: Duration) {
     if left > 0 {
         report::line(
             "not tried",
-            format!("{left} candidates, for which there was no time; --resume goes on"),
+            format!("{left} candidates, because the time was up; resume with --resume"),
         );
     }
-    report::line("front", "* nothing else is both faster and nearer to the truth");
+    report::line("front", "* no other candidate is both faster and more accurate");
     report::time("total", vec![total]);
 }

@@ -1,4 +1,4 @@
-//! `splatref suite`: what the verdicts on several scenes say together.
+//! `splatref suite`: pools the verdicts of several scenes.
 
 use super::verify::report::{JsonShift, leaning};
 use super::{Ended, Ending, say};
@@ -12,16 +12,16 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 #[command(after_help = "\
-Decisions beside a limit are undecided in each picture. Over several scenes they show a limit that is a
-little off: rounding turns about as many to either side. A verdict that is named twice, or of which there
-is a copy, counts once.
+A decision close to a threshold is undecided in a single picture. Pooling the verdicts of several scenes
+exposes a slightly wrong threshold, because it biases the undecided decisions one way; rounding turns
+about as many to either side. The same verdict, named twice or copied, counts once.
 
 Examples:
   splatref verify a.toml a.exr --promise ieee --json a.json
   splatref verify b.toml b.exr --promise ieee --json b.json
   splatref suite a.json b.json
 
-Exit codes: 0 all right, 1 any wrong, or all of them leaning to one side; 2 wrong usage; 3 any
+Exit codes: 0 all right, 1 any wrong, or their decisions biased to one side, 2 wrong usage, 3 any
 undecidable.")]
 pub(super) struct Args {
     /// Verdicts that `verify --json` wrote
@@ -29,7 +29,7 @@ pub(super) struct Args {
     verdicts: Vec<PathBuf>,
 }
 
-/// What is read of a verdict.
+/// The fields that are read from a verdict.
 #[derive(Deserialize)]
 struct Verdict {
     outcome: String,
@@ -38,8 +38,8 @@ struct Verdict {
 }
 
 pub(super) fn run(args: &Args) -> Ended {
-    // One verdict added to itself would lean more than its picture does. Two pictures have the same text
-    // only where nothing leans.
+    // A verdict added twice would show twice the bias of its picture. Two pictures have the same
+    // text only where neither is biased.
     let mut seen: BTreeMap<String, &Path> = BTreeMap::new();
     let mut verdicts = Vec::new();
     for path in &args.verdicts {
@@ -52,19 +52,19 @@ pub(super) fn run(args: &Args) -> Ended {
         } else {
             let (path, first) = (path.display(), first.display());
             say(format!(
-                "{:<12} {promise:<5} {path}: the verdict of {first}, counted once",
+                "{:<12} {promise:<5} {path}: the same verdict as {first}, counted once",
                 "again"
             ));
         }
     }
     let any = |word: &str| verdicts.iter().any(|verdict| verdict.outcome == word);
     let mut leans = false;
-    // What one promise calls undecided is certain by the other.
+    // A decision that is undecided under one promise may be certain under the other.
     for promise in ["ieee", "gpu"] {
         let own = verdicts.iter().filter(|verdict| verdict.promise == promise);
         let all = together(own.flat_map(|verdict| &verdict.shifts));
         for (limit, shift) in LIMITS.iter().zip(&all).filter(|(_, shift)| shift.decisions > 0) {
-            // An inexact operation may lean, if it does so lawfully.
+            // An operation that is inexact within its promise may be biased.
             let alarms = promise == "ieee" && shift.alarms();
             leans |= alarms;
             let word = if alarms { "WRONG" } else { "" };
@@ -80,19 +80,20 @@ pub(super) fn run(args: &Args) -> Ended {
     })
 }
 
-/// A verdict, and its text.
+/// Reads a verdict, and returns its text too.
 fn verdict(path: &Path) -> Result<(String, Verdict)> {
     let mut text = String::new();
-    // A verdict has some kilobytes: of anything longer the part that is read is no JSON.
+    // A verdict has a few kilobytes; a longer file is cut here, and is then no JSON.
     let file = File::open(path).map(|file| file.take(1 << 24));
     file.and_then(|mut file| file.read_to_string(&mut text))
         .map_err(|source| Error::io(path, source))?;
-    let verdict = serde_json::from_str(&text)
-        .map_err(|error| Error::format(path, format!("no verdict of `verify --json`: {error}")))?;
+    let verdict = serde_json::from_str(&text).map_err(|error| {
+        Error::format(path, format!("not a verdict of `verify --json`: {error}"))
+    })?;
     Ok((text, verdict))
 }
 
-/// What pictures say together.
+/// Adds up the shifts of several pictures.
 fn together<'a>(leans: impl Iterator<Item = &'a JsonShift>) -> Shifts {
     let mut all = [Shift::default(); LIMITS.len()];
     for lean in leans {

@@ -1,4 +1,5 @@
-//! `splatref surfels`: points, or what is seen of a mesh or a scene, in a progressive order, into a PLY; of a whole scene into a folder.
+//! `splatref surfels`: samples a mesh or a scene, or orders points, so that every prefix covers the
+//! surface. A model becomes a PLY, a scene a folder.
 
 mod given;
 
@@ -22,18 +23,21 @@ use std::time::Instant;
 
 #[derive(clap::Args)]
 #[command(after_help = "\
-Every prefix of the points that are written is spread over all of them. Of a mesh the points
-are what is seen from outside, a pixel each, with normals, and with the colours, opacities and
---properties of the vertices around it. The samplers:
-  greedy                  each point is the one farthest from all before it, ties to the lower
-                          index; exact
-  progressive             each point is the farthest of some by chance, as the paper has it
-  progressive-as-shipped  the same by the schedule of the authors' program
-  random                  by chance alone
+Sample a mesh into points, or order the points of a file; every prefix covers the surface evenly. The
+points of a mesh are the pixels that see it from outside. Each has a normal, and the colour, opacity
+and --properties of the vertices around it.
 
-A name without an extension is a folder. It takes the hierarchy of a mesh or of a scene: the
-triangles of each part, and surfels of every part of 1000 triangles or more, half as many and
-200000 at most, or --count; surfels keep opacities and --properties. Stopped in the middle, the same command goes on.
+Samplers:
+  greedy                  take the point farthest from all points before; ties go to the lower
+                          index; exact
+  progressive             take the farthest of some random points, as in the paper
+  progressive-as-shipped  the same, with the schedule of the authors' program
+  random                  take a random point
+
+An output name without extension is a folder: sample every part of a scene; rerun the command to
+resume. The folder holds the triangles of each part, and the surfels of every part that has 1000
+triangles or more: half as many surfels as triangles, at most 200000 or --count. Surfels keep
+opacities and --properties.
 
 Examples:
   splatref surfels city.toml -o city
@@ -42,57 +46,61 @@ Examples:
   splatref surfels car.ply -o blue.ply --properties roughness,metallic
   splatref surfels scan.ply -o blue.ply --sampler greedy --start 3 --count 10000")]
 pub(super) struct Args {
-    /// A .ply or .obj of points or of a mesh, or a scene .toml of meshes
+    /// A .ply or .obj with points or a mesh, or a scene .toml of meshes
     points: PathBuf,
-    /// Where the points go in their order, with all that the file has of them; or a hierarchy
+    /// Write the ordered points, with all that the file says of them, into a PLY; or the hierarchy
+    /// into a folder
     #[arg(short, long, value_name = "FILE.ply|FOLDER")]
     output: PathBuf,
-    /// What puts the points in order
+    /// Order the points with this sampler
     #[arg(long, value_enum, default_value = "greedy")]
     sampler: Sampler,
-    /// The index of the first point; else --seed chooses it
+    /// Begin with the point of this index; without it, --seed chooses one
     #[arg(long, value_name = "N")]
     start: Option<u32>,
-    /// What chance is
+    /// Set the random seed
     #[arg(long, value_name = "N", default_value_t = 0)]
     seed: u64,
-    /// How many points at most [default: all; of a mesh 100000]
+    /// Write at most N points [default: all; for a mesh 100000]
     #[arg(long, value_name = "N")]
     count: Option<usize>,
-    /// How far points are: straight, or along the surface, which takes normals and --sampler greedy
+    /// Measure distances straight, or along the surface (needs normals and --sampler greedy)
     #[arg(long, value_enum, default_value = "straight")]
     distance: Distance,
-    /// Along the surface: how far neighbours are at most, in world units [default: of a mesh, two pixels]
+    /// Connect neighbours up to this far apart for distances along the surface, in world units
+    /// [default: for a mesh, two pixels]
     #[arg(long, value_name = "LENGTH")]
     reach: Option<f32>,
-    /// Colours of the first N points: means over what is nearest to them; all else stays their own
+    /// Average the colours of the first N points over the points nearest to each; nothing else
+    /// changes
     #[arg(long, value_name = "N")]
     average_colors: Option<usize>,
-    /// Of a mesh: the side of the picture of each direction, in pixels [default: 1024]
+    /// Sample a mesh with pictures of this side in pixels, one for each direction [default: 1024]
     #[arg(long, value_name = "N")]
     side: Option<u32>,
-    /// Of a mesh: from which corners it is looked at [default: cube]
+    /// Look at a mesh from these corners [default: cube]
     #[arg(long, value_enum)]
     directions: Option<Corners>,
-    /// Of a mesh: its texture, a .png or an .exr, in the place of its colours [default: that of the file]
+    /// Replace the colours of a mesh by this texture, a .png or an .exr [default: the texture in
+    /// the file]
     #[arg(long, value_name = "FILE")]
     texture: Option<PathBuf>,
-    /// Further numbers of the vertices of a PLY that the points keep, by name, as roughness,metallic
+    /// Keep these further vertex properties of a PLY, such as roughness,metallic
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     properties: Vec<String>,
-    /// Of a folder: what parts are approximated of [default: bottom-up]
+    /// Choose what the parts in a folder are sampled from [default: bottom-up]
     #[arg(long, value_enum)]
     traversal: Option<Way>,
-    /// Threads; 0 takes every core
+    /// Use N threads; 0 uses every core
     #[arg(long, value_name = "N", default_value_t = 0)]
     threads: usize,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Way {
-    /// Of all triangles of the part, which must fit into memory together
+    /// From all triangles of the part, which must fit into memory together
     TopDown,
-    /// Of the surfels of smaller parts, where they have some
+    /// From the surfels of smaller parts, if they have any
     BottomUp,
 }
 
@@ -112,21 +120,21 @@ impl Sampler {
 
 #[derive(Clone, Copy, PartialEq, ValueEnum)]
 enum Distance {
-    /// Of a line through the air
+    /// Along a straight line
     Straight,
-    /// Of a path along neighbours that face alike: around thin walls
+    /// Along a path of neighbours that face alike, which goes around thin walls
     Geodesic,
 }
 
 #[derive(Clone, Copy, ValueEnum)]
 enum Corners {
-    /// Of a cube around the mesh
+    /// The corners of a cube around the mesh
     Cube,
-    /// Of the box around the mesh
+    /// The corners of the bounding box of the mesh
     Box,
 }
 
-/// Points that a mesh becomes, unless somebody asks for another number.
+/// The default number of points for a mesh.
 const OF_A_MESH: usize = 100_000;
 
 pub(super) fn run(args: &Args) -> Ended {
@@ -161,7 +169,10 @@ pub(super) fn run(args: &Args) -> Ended {
     report::line(if mesh { "candidates" } else { "points" }, all);
     args.told(&order, graph.as_ref());
     if let Some(new) = colors {
-        report::line("colours", format!("means over cells, of the first {}", new.len()));
+        report::line(
+            "colours",
+            format!("means over the nearest points, for the first {}", new.len()),
+        );
     }
     report::line("time", format!("{:.2} s", time.as_secs_f64()));
     progress::during("writing", || ply::write(&args.output, &cloud))?;
@@ -170,7 +181,7 @@ pub(super) fn run(args: &Args) -> Ended {
 }
 
 impl Args {
-    /// What a hierarchy is made with.
+    /// The settings of a hierarchy.
     fn settings(&self) -> Result<Settings> {
         let refused = [
             (self.start.is_some(), "--start"),
@@ -180,7 +191,9 @@ impl Args {
             (self.texture.is_some(), "--texture"),
         ];
         if let Some((_, option)) = refused.iter().find(|(given, _)| *given) {
-            let what = format!("{option} is not for a folder; remove it, or give a name in .ply");
+            let what = format!(
+                "{option} does not apply to a folder; remove it, or give a name that ends in .ply"
+            );
             return Err(Error::Usage(what));
         }
         self.check_numbers()?;
@@ -213,7 +226,7 @@ impl Args {
         }
     }
 
-    /// What is refused of any output.
+    /// Refuses wrong numbers, for any kind of output.
     fn check_numbers(&self) -> Result<()> {
         if self.count == Some(0) {
             return Err(Error::Usage("--count 0 leaves no point; give at least 1".into()));
@@ -223,14 +236,14 @@ impl Args {
             .map_err(|error| Error::Usage(format!("--side {side}: {error}")))
     }
 
-    /// Says what the order is.
+    /// Prints the order.
     fn told(&self, order: &Order, graph: Option<&Graph>) {
         let (name, picked) = (self.sampler.name(), order.index.len());
         let first =
             order.index.first().map_or(String::new(), |first| format!(", from point {first}"));
         report::line("order", format!("{name}, {picked} of them{first}"));
         if let Some(graph) = graph {
-            report::line("parts", format!("{}, which no path connects", graph.parts()));
+            report::line("parts", format!("{}, not connected by a path", graph.parts()));
         }
         if let [_, .., last] = order.distance[..]
             && self.sampler == Sampler::Greedy
@@ -238,15 +251,15 @@ impl Args {
         {
             let apart = report::short(f64::from(last).sqrt());
             let along = if graph.is_some() { " along the surface" } else { "" };
-            report::line("apart", format!("{apart} at least{along}, in world units"));
+            report::line("apart", format!("at least {apart}{along}, in world units"));
         }
     }
 
-    /// What is refused before anything is read.
+    /// Refuses wrong options before anything is read.
     fn check(&self) -> Result<()> {
         self.check_numbers()?;
         if self.traversal.is_some() {
-            let what = "--traversal is for a folder; remove it, or give a name without .ply";
+            let what = "--traversal applies to a folder; remove it, or give a name without .ply";
             return Err(Error::Usage(what.into()));
         }
         if let Some(averaged) = self.average_colors
@@ -257,59 +270,67 @@ impl Args {
         }
         let along = self.distance == Distance::Geodesic;
         if along && self.sampler != Sampler::Greedy {
-            let what = "--distance geodesic is of --sampler greedy: remove one of them";
+            let what = "--distance geodesic needs --sampler greedy; remove one of them";
             return Err(Error::Usage(what.into()));
         }
         if let Some(reach) = self.reach {
             if !along {
-                return Err(Error::Usage("--reach is of --distance geodesic: add that".into()));
+                return Err(Error::Usage("--reach needs --distance geodesic; add that".into()));
             }
             if !(reach > 0.0 && reach.is_finite()) {
                 return Err(Error::Usage(format!("--reach {reach}: give a length above 0")));
             }
         }
         if self.sampler == Sampler::Random && self.start.is_some() {
-            return Err(Error::Usage("--sampler random has no --start: remove one of them".into()));
+            return Err(Error::Usage("--sampler random has no --start; remove one of them".into()));
         }
         let refused = |path: &Path, what| Err(Error::Usage(format!("{}: {what}", path.display())));
         let scene = matches!(FileKind::from_extension(&self.points), Ok(FileKind::Toml));
         if !(scene
             || matches!(FileKind::from_extension(&self.points), Ok(FileKind::Ply | FileKind::Obj)))
         {
-            let what = "points or a mesh are read from a .ply or an .obj, a scene from a .toml";
+            let what = "give points or a mesh as a .ply or an .obj, or a scene as a .toml";
             return refused(&self.points, what);
         }
         if scene && self.texture.is_some() {
-            return refused(&self.points, "--texture is of one mesh; a scene names its textures");
+            return refused(
+                &self.points,
+                "--texture applies to one mesh; name textures in the scene file",
+            );
         }
         if !matches!(FileKind::from_extension(&self.output), Ok(FileKind::Ply)) {
-            return refused(&self.output, "points go into a PLY; give a name in .ply");
+            return refused(
+                &self.output,
+                "points are written as a PLY; give a name that ends in .ply",
+            );
         }
         if !self.properties.is_empty()
             && matches!(FileKind::from_extension(&self.points), Ok(FileKind::Obj))
         {
-            return refused(&self.points, "--properties are of a .ply; remove them");
+            return refused(&self.points, "--properties needs a .ply; remove it");
         }
         output::check_folder(&self.output)?;
         output::check_other(&self.output, &self.points)
     }
 
-    /// Whether the points have what the options need.
+    /// Checks that the points have what the options need.
     fn lacks(&self, cloud: &Cloud, mesh: bool) -> Result<()> {
         let along = self.distance == Distance::Geodesic;
         let what = if self.average_colors.is_some() && cloud.color.is_none() {
             "the file has no colours; remove --average-colors"
         } else if along && cloud.normal.is_none() {
-            "the file has no normals, which --distance geodesic needs"
+            "the file has no normals, but --distance geodesic needs them; add nx, ny and nz, or \
+             remove the option"
         } else if along && self.reach.is_none() && !mesh {
-            "of points --distance geodesic needs a --reach; give about two distances of neighbours"
+            "points need a --reach with --distance geodesic; give about twice the distance of \
+             neighbours"
         } else {
             return Ok(());
         };
         Err(Error::format(&self.points, what))
     }
 
-    /// The neighbours along the surface, if distances are to go that way.
+    /// The neighbour graph along the surface, if distances follow it.
     fn graph(
         &self,
         cloud: &Cloud,
@@ -324,7 +345,7 @@ impl Args {
         Graph::new(&cloud.position, normal, reach, exec, show).map(Some)
     }
 
-    /// The means of the first points, if somebody asks for them.
+    /// The average colours of the first points, if `--average-colors` asks for them.
     fn colors(
         &self,
         cloud: &Cloud,

@@ -1,4 +1,4 @@
-//! What `study` and `plan` share: a scene, what is tried of it, and its truth.
+//! What `study` and `plan` share: a scene, its candidates, and its true picture.
 
 use super::options::{ExecOptions, SceneOptions};
 use super::progress;
@@ -15,10 +15,11 @@ use std::path::{Path, PathBuf};
 #[derive(clap::Args)]
 pub(super) struct Tried {
     /// A .ply, an .obj, a scene .toml, a folder of surfels, or a shape
-    // Required but where a subcommand stands in its place.
+    // Required, except before a subcommand.
     #[arg(required = true)]
     scene: Option<PathBuf>,
-    /// A scene whose surface is the truth, such as the mesh that points were sampled from
+    /// Use the surface of this scene as the truth, such as the mesh that the points were sampled
+    /// from
     #[arg(long, value_name = "SCENE")]
     truth: Option<PathBuf>,
     #[command(flatten)]
@@ -27,7 +28,7 @@ pub(super) struct Tried {
     options: SceneOptions,
 }
 
-/// All that is loaded before anything is measured.
+/// Everything that is loaded before anything is measured.
 pub(super) struct Loaded<'e> {
     pub(super) bench: Bench<'e>,
     pub(super) candidates: Vec<Candidate>,
@@ -37,18 +38,18 @@ pub(super) struct Loaded<'e> {
 }
 
 impl Tried {
-    /// Where the scene is.
+    /// The path of the scene.
     pub(super) fn path(&self) -> Result<&Path> {
         self.scene.as_deref().ok_or_else(|| Error::Usage("give a scene".into()))
     }
 
-    /// The scene, with the options on top.
+    /// The scene, with the options applied.
     pub(super) fn scene_file(&self) -> Result<SceneFile> {
-        self.options.refuse_state("what is tried begins with nothing seen")?;
+        self.options.refuse_state("every candidate starts without a state; remove the option")?;
         self.options.scene_file(self.path()?)
     }
 
-    /// The scene that is the truth, if it is another.
+    /// The scene of the truth, if it is another one.
     pub(super) fn truth(&self) -> Option<&Path> {
         self.truth.as_deref()
     }
@@ -57,7 +58,7 @@ impl Tried {
         self.exec.exec()
     }
 
-    /// Loads what is tried of the scene.
+    /// Loads the scene and its candidates.
     pub(super) fn load<'e>(
         &self,
         scene: &SceneFile,
@@ -76,7 +77,7 @@ impl Tried {
     }
 }
 
-/// What the truth is, and why it is no better.
+/// How the truth is computed, and why it is no better.
 pub(super) fn truth_in_words(known: &Known, truth: &Truth) -> String {
     known.unknown().map_or_else(|| truth.how.to_string(), |why| format!("{} ({why})", truth.how))
 }

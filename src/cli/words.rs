@@ -1,10 +1,10 @@
-//! Text of files, names and arguments as a terminal may have it.
+//! Makes text of files, names and arguments safe for a terminal.
 
-/// How long a line of complaint may be.
+/// The longest error, in characters.
 const LONGEST: usize = 1000;
 
-/// Text in which what is no printable character is escaped, but for the ends of lines: a name from a
-/// file must not steer a terminal, nor turn the direction of reading around.
+/// Escapes every character that is not printable, except line ends: a name from a file must not
+/// control the terminal, nor change the reading direction.
 pub(super) fn visible(text: &str) -> String {
     let hidden = |c: char| {
         c.is_control() && c != '\n'
@@ -17,8 +17,8 @@ pub(super) fn visible(text: &str) -> String {
     shown
 }
 
-/// Text as one visible line of at most about [`LONGEST`] characters: of a longer one the start and
-/// the end, which say where and what.
+/// Puts text on one visible line of at most about [`LONGEST`] characters. A longer text keeps its
+/// start and its end, because these say where and what.
 pub(super) fn line(text: &str) -> String {
     let text = visible(&text.replace('\n', " "));
     let count = text.chars().count();

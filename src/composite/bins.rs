@@ -66,8 +66,8 @@ impl Range {
             Ok(Self { nearest, farthest, count })
         } else {
             Err(Error::Invalid(format!(
-                "an epsilon of {epsilon} takes {count} depth bins from {nearest} to {farthest}; give \
-                 a greater epsilon, or at most {MAX_BINS} bins"
+                "epsilon {epsilon} needs {count} depth bins from {nearest} to {farthest}; give a \
+                 larger epsilon, or at most {MAX_BINS} bins"
             )))
         }
     }

@@ -148,7 +148,7 @@ impl<R> Frame<R> {
         let ((width, height), size) = (samples.size(), (self.width, self.height));
         if (width, height) != size {
             return Err(Error::Invalid(format!(
-                "plane `{name}`: {width} x {height} pixels in a frame of {} x {}",
+                "plane `{name}` has {width} x {height} pixels, but the frame has {} x {}",
                 size.0, size.1
             )));
         }
@@ -156,7 +156,7 @@ impl<R> Frame<R> {
         // Only the channels of a colour have names of their own: R, G and B.
         if name.is_empty() && !is_color {
             let kind = samples.kind();
-            let what = format!("a {kind} plane without a name; only the colour may have none");
+            let what = format!("a {kind} plane has no name; only the colour may have none");
             return Err(Error::Invalid(what));
         }
         for channel in samples.channel_names(name) {
@@ -169,7 +169,9 @@ impl<R> Frame<R> {
             // Two planes may share a channel: a vector `a` and a scalar `a.X`.
             let mut others = self.planes.iter().map(|p| p.samples.channel_names(&p.name));
             if others.any(|names| names.contains(&channel)) {
-                return Err(Error::Invalid(format!("two channels are called `{channel}`")));
+                return Err(Error::Invalid(format!(
+                    "two channels are called `{channel}`; rename one"
+                )));
             }
         }
         self.planes.push(NamedPlane { name: name.to_owned(), samples });
@@ -261,7 +263,7 @@ impl<R> Frame<R> {
         let there = self.planes.iter().map(|p| format!("`{}` ({})", p.name, p.samples.kind()));
         let there: Vec<String> = there.collect();
         let there = if there.is_empty() { "none".into() } else { there.join(", ") };
-        Error::Invalid(format!("no {kind} plane is called `{name}`; the frame's planes: {there}"))
+        Error::Invalid(format!("no {kind} plane is called `{name}`; the frame has: {there}"))
     }
 }
 
@@ -356,11 +358,11 @@ mod tests {
         assert_eq!(names, ["B", "G", "R", "Z", "count", "id", "normal.X", "normal.Y", "normal.Z"]);
         assert_eq!(
             frame.scalar("id").unwrap_err().to_string(),
-            "no scalar plane is called `id`; the frame's planes: `` (color), `Z` (scalar), \
-             `normal` (vector), `id` (index), `count` (count)"
+            "no scalar plane is called `id`; the frame has: `` (color), `Z` (scalar), `normal` \
+             (vector), `id` (index), `count` (count)"
         );
         let none = Frame::<f32>::new(1, 1).count("z").unwrap_err().to_string();
-        assert_eq!(none, "no count plane is called `z`; the frame's planes: none");
+        assert_eq!(none, "no count plane is called `z`; the frame has: none");
     }
 
     #[test]
@@ -372,9 +374,9 @@ mod tests {
         for ((name, samples), why) in [
             (
                 ("weight".to_owned(), scalar(2, 3)),
-                "plane `weight`: 2 x 3 pixels in a frame of 3 x 2",
+                "plane `weight` has 2 x 3 pixels, but the frame has 3 x 2",
             ),
-            (("Z".to_owned(), scalar(3, 2)), "two channels are called `Z`"),
+            (("Z".to_owned(), scalar(3, 2)), "two channels are called `Z`; rename one"),
             ((String::new(), scalar(3, 2)), "only the colour may have none"),
             (vector(""), "only the colour may have none"),
             (("a\nb".to_owned(), scalar(3, 2)), "no control characters"),
@@ -388,6 +390,6 @@ mod tests {
         let (name, samples) = color("");
         frame.push(&name, samples).unwrap();
         let line = frame.push("R", scalar(3, 2)).unwrap_err().to_string();
-        assert_eq!(line, "two channels are called `R`", "a channel of the colour");
+        assert_eq!(line, "two channels are called `R`; rename one", "a channel of the colour");
     }
 }

@@ -65,9 +65,9 @@ impl Exec {
         jobs: Vec<J>,
         run: impl Fn(J) -> T + Sync + Send,
     ) -> Vec<T> {
-        let Some(pool) = &self.pool else { return jobs.into_iter().map(run).collect() };
         let slots: Vec<_> = jobs.into_iter().map(|job| Mutex::new(Slot::Job(job))).collect();
-        each(pool, slots.len(), &|i| {
+        // One thread goes through the same closure, because a second call of `run` would be compiled again.
+        self.each(slots.len(), &|i| {
             let slot = || slots[i].lock().unwrap_or_else(PoisonError::into_inner);
             // A statement of its own, so that the lock is not held while the job runs.
             let job = mem::replace(&mut *slot(), Slot::Empty);
@@ -83,6 +83,22 @@ impl Exec {
             Slot::Job(_) | Slot::Empty => None,
         })
         .collect()
+    }
+
+    /// Runs `run` for each index below `count`, in parallel. `run` is not a type parameter, because a
+    /// parallel loop compiled for each of the crate's loops was a fifth of the program.
+    ///
+    /// An idle thread cannot take over a run of indices that another thread has begun: runs are short.
+    fn each(&self, count: usize, run: &(dyn Fn(usize) + Sync)) {
+        /// Runs for each thread, or one for each index.
+        const RUNS: usize = 64;
+        match &self.pool {
+            None => (0..count).for_each(run),
+            Some(pool) => {
+                let most = count.div_ceil(RUNS * pool.current_num_threads()).max(1);
+                pool.install(|| (0..count).into_par_iter().with_max_len(most).for_each(run));
+            }
+        }
     }
 
     /// Runs two jobs, in parallel, and returns the results of both.
@@ -148,19 +164,6 @@ enum Slot<J, T> {
     Job(J),
     Empty,
     Result(T),
-}
-
-/// Calls `run` for each index below `count`, in parallel. The type of `run` is not a type
-/// parameter, because a parallel loop compiled for each of the crate's loops was a fifth of the
-/// program.
-///
-/// An idle thread cannot take over a run of indices that another thread has begun, so runs are
-/// short.
-fn each(pool: &rayon::ThreadPool, count: usize, run: &(dyn Fn(usize) + Sync)) {
-    /// How many runs each thread gets, unless there are fewer indices.
-    const RUNS: usize = 64;
-    let most = count.div_ceil(RUNS * pool.current_num_threads()).max(1);
-    pool.install(|| (0..count).into_par_iter().with_max_len(most).for_each(run));
 }
 
 /// The division of a picture into tiles; the tiles at the right and lower edge may be cut.

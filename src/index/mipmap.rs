@@ -114,7 +114,7 @@ pub fn build(
 
 fn colors(surfels: &Surfels) -> Result<&[Vec3]> {
     surfels.color().ok_or_else(|| {
-        Error::Invalid("the points have no colours, of which mipmaps could be made".into())
+        Error::Invalid("mipmaps need colours, but the points have none; remove the mipmaps".into())
     })
 }
 

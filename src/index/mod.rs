@@ -109,5 +109,7 @@ impl Index {
 }
 
 fn missing(what: &str) -> Error {
-    Error::Invalid(format!("the scene was prepared for another method, without {what}"))
+    Error::Invalid(format!(
+        "the scene was prepared for another method, without {what}; prepare it for this method"
+    ))
 }

@@ -72,7 +72,9 @@ impl BackToFront {
         if ordered == there {
             Ok(())
         } else {
-            Err(Error::Invalid(format!("an order of {ordered} surfels for a scene of {there}")))
+            Err(Error::Invalid(format!(
+                "the order has {ordered} surfels, but the scene has {there}"
+            )))
         }
     }
 

@@ -173,12 +173,19 @@ impl Seen {
         if self.group != group {
             let (found, wanted) = (self.group, group);
             return Err(Error::Invalid(format!(
-                "the state has groups of {found} surfels, the method {wanted}: set --flags {found}"
+                "the state has flags of {found} surfels, but the method has {wanted}; set --flags \
+                 {found}"
             )));
         }
         let same = self.counts.len() == ids.order().len()
             && (0..).zip(&self.counts).all(|(object, &count)| ids.all(object) == count);
-        if same { Ok(()) } else { Err(Error::Invalid("the state is of another scene".into())) }
+        if same {
+            Ok(())
+        } else {
+            Err(Error::Invalid(
+                "the state belongs to another scene; give the scene that it was made with".into(),
+            ))
+        }
     }
 }
 

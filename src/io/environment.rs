@@ -38,11 +38,11 @@ pub(super) fn rgb(
         match found.map(|(_, values)| values) {
             Some(Values::Float(values)) => Ok(std::mem::take(values)),
             Some(Values::Index(_)) => {
-                let what = format!("channel {name} holds integers; {what} has floats");
+                let what = format!("channel {name} holds integers, but {what} needs floats");
                 Err(Error::format(path, what))
             }
             None => {
-                let what = format!("no channel {name}; {what} has R, G and B");
+                let what = format!("no channel {name}; {what} needs R, G and B");
                 Err(Error::format(path, what))
             }
         }

@@ -63,9 +63,9 @@ pub(super) fn rest(file: File, length: u64) -> io::Result<Vec<u8>> {
 pub(super) fn no_file(path: &Path) -> Option<&'static str> {
     match fs::metadata(path) {
         Ok(found) if found.is_dir() => Some("this is a directory; give a file"),
-        Ok(found) if !found.is_file() => {
-            Some("this is a pipe or a device; its length must be known: write it to a file first")
-        }
+        Ok(found) if !found.is_file() => Some(
+            "this is a pipe or a device, but its length must be known; write it to a file first",
+        ),
         _ => None,
     }
 }

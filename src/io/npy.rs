@@ -60,7 +60,8 @@ pub fn read(path: &Path, name: &str) -> Result<Image> {
 
 /// Reads the dictionary at the start of a file; the array follows.
 fn header_text(file: &mut Take<File>) -> Reason<String> {
-    let early = |_| "byte 0: not an NPY file, or cut; write it again with numpy.save".to_owned();
+    let early =
+        |_| "byte 0: not an NPY file, or truncated; write it again with numpy.save".to_owned();
     let mut start = [0; 8];
     file.read_exact(&mut start).map_err(early)?;
     if start[..6] != *b"\x93NUMPY" {
@@ -77,7 +78,7 @@ fn header_text(file: &mut Take<File>) -> Reason<String> {
             file.read_exact(&mut length).map_err(early)?;
             u64::from(u32::from_le_bytes(length))
         }
-        other => return Err(format!("byte 6: NPY version {other}; 1 to 3 are known")),
+        other => return Err(format!("byte 6: NPY version {other}; versions 1 to 3 are read")),
     };
     if length > LONGEST_HEADER.min(file.limit()) {
         return Err(format!("byte 8: a header of {length} bytes; write it again with numpy.save"));
@@ -113,7 +114,7 @@ impl Array {
     /// the keys in any order.
     fn parse(text: &str) -> Reason<Self> {
         let dictionary = text.trim().strip_prefix('{').and_then(|t| t.strip_suffix('}'));
-        let dictionary = dictionary.ok_or("header: no dictionary; write it with numpy.save")?;
+        let dictionary = dictionary.ok_or("header: not a dictionary; write it with numpy.save")?;
         let descr = value(dictionary, "descr")?;
         let element = match descr.trim_matches(['\'', '"']) {
             "<f4" => Dtype::F32,
@@ -168,8 +169,8 @@ impl Array {
             return Ok(());
         }
         Err(format!(
-            "header: promises {width} x {height} pixels in {bytes} bytes, and {rest} follow; write it \
-             again"
+            "header: declares {width} x {height} pixels in {bytes} bytes, but {rest} follow; write \
+             it again"
         ))
     }
 
@@ -325,14 +326,14 @@ mod tests {
         let mut binary = npy("<f4", "(2, 3)", &data);
         binary[12] = 0xFF;
         for (bytes, why) in [
-            (b"".to_vec(), "not an NPY file, or cut"),
-            (b"\x93NUMP".to_vec(), "not an NPY file, or cut"),
+            (b"".to_vec(), "not an NPY file, or truncated"),
+            (b"\x93NUMP".to_vec(), "not an NPY file, or truncated"),
             (b"PK\x03\x04 an archive of arrays".to_vec(), "not an NPY file; give one"),
             (b"\x93NUMPY\x09\0\0\0".to_vec(), "version 9"),
             (b"\x93NUMPY\x01\0\x10\0{".to_vec(), "a header of 16 bytes"),
             (long, "a header of 4294967295 bytes"),
             (binary, "not text"),
-            (with_header("[]", &data), "no dictionary"),
+            (with_header("[]", &data), "not a dictionary"),
             (with_header("{'descr': '<f4', 'fortran_order': False}", &data), "no `shape`"),
             (with_header(fortran, &data), "Fortran order"),
             (npy(">f4", "(2, 3)", &data), "elements `>f4`"),
@@ -344,12 +345,12 @@ mod tests {
             (npy("<f4", "(1, 3, 2)", &data), "the shape (1, 3, 2)"),
             (npy("<f4", "(0, 3)", b""), "at least one pixel"),
             (npy("<f4", "(-2, -3)", &data), "the shape (-2, -3)"),
-            (npy("<f4", "(2, 3)", &data[1..]), "24 bytes, and 23 follow"),
-            (npy("<f4", "(2, 2)", &data), "16 bytes, and 24 follow"),
+            (npy("<f4", "(2, 3)", &data[1..]), "24 bytes, but 23 follow"),
+            (npy("<f4", "(2, 2)", &data), "16 bytes, but 24 follow"),
             // A few bytes that ask for more than any memory.
-            (npy("<f8", "(4294967295, 4294967295, 3)", b""), "and 0 follow"),
+            (npy("<f8", "(4294967295, 4294967295, 3)", b""), "but 0 follow"),
             (npy("<f4", "(4294967296, 1)", b""), "the shape (4294967296, 1)"),
-            (npy("<f4", "(60000, 60000)", &data), "14400000000 bytes, and 24 follow"),
+            (npy("<f4", "(60000, 60000)", &data), "14400000000 bytes, but 24 follow"),
         ] {
             let error = read_bytes(&bytes, "a").unwrap_err();
             let line = error.to_string();

@@ -55,17 +55,17 @@ impl Pending {
         let refuse = |what| Err(io::Error::new(io::ErrorKind::InvalidInput, what));
         let place = place(path)?;
         let Some(folder) = place.parent().filter(|_| place.file_name().is_some()) else {
-            return refuse("this names no file; give the name of the file to write");
+            return refuse("not a file name; give the name of the file to write");
         };
         let replaced = fs::metadata(&place).ok();
         // A rename would replace a device such as /dev/null by a file.
         if replaced.as_ref().is_some_and(|at| !at.is_file()) {
-            return refuse("this is there and is no regular file; give another name");
+            return refuse("exists, but is not a regular file; give another name");
         }
         // WASI has no permissions and reports every file as read-only.
         let permissions = replaced.map(|at| at.permissions()).filter(|_| cfg!(any(unix, windows)));
         if permissions.as_ref().is_some_and(Permissions::readonly) {
-            return refuse("this is there and may only be read; give another name");
+            return refuse("exists, but is read-only; give another name");
         }
         let (partial, file) = Partial::new(folder)?;
         let mut out = BufWriter::new(file);

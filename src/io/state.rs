@@ -69,20 +69,28 @@ pub fn read(path: &Path, scene: &str, ids: &Ids) -> Result<State> {
 }
 
 fn parse(bytes: &[u8], scene: &str, ids: &Ids) -> std::result::Result<State, String> {
-    let rest = bytes.strip_prefix(MAGIC).ok_or("this is no state of splatref")?;
+    let rest = bytes
+        .strip_prefix(MAGIC)
+        .ok_or("not a state of splatref; give one that render --keep-state wrote")?;
     let mut rest = Numbers(rest);
     if rest.take::<DIGITS>()? != scene.as_bytes() {
-        return Err("the state is of another scene".into());
+        return Err(
+            "the state belongs to another scene; give the scene that it was made with".into()
+        );
     }
     let [frame, group] = [rest.word()?, rest.word()?];
     let objects = u64::from_le_bytes(rest.take()?);
     if group == 0 || objects != ids.order().len() as u64 {
-        return Err("the state is of another scene".into());
+        return Err(
+            "the state belongs to another scene; give the scene that it was made with".into()
+        );
     }
     let (mut selected, mut lengths) = (Vec::new(), Vec::new());
     for object in 0..ids.order().len() as u32 {
         if rest.word()? != ids.all(object) {
-            return Err("the state is of another scene".into());
+            return Err(
+                "the state belongs to another scene; give the scene that it was made with".into()
+            );
         }
         selected.push(rest.word()?);
         lengths.push(rest.word()? as usize);
@@ -92,7 +100,7 @@ fn parse(bytes: &[u8], scene: &str, ids: &Ids) -> std::result::Result<State, Str
         words.push(u64::from_le_bytes(rest.take()?));
     }
     let seen = Seen::restored(ids, group, selected, &lengths, words);
-    let seen = seen.ok_or("the state is damaged")?;
+    let seen = seen.ok_or("the state is damaged; write it again")?;
     Ok(State { frame, seen })
 }
 
@@ -101,7 +109,8 @@ struct Numbers<'a>(&'a [u8]);
 
 impl Numbers<'_> {
     fn take<const N: usize>(&mut self) -> std::result::Result<[u8; N], String> {
-        let (first, rest) = self.0.split_first_chunk::<N>().ok_or("the state ends too early")?;
+        let (first, rest) =
+            self.0.split_first_chunk::<N>().ok_or("the state is truncated; write it again")?;
         self.0 = rest;
         Ok(*first)
     }
@@ -142,23 +151,35 @@ mod tests {
             parse(bytes, scene, &ids(counts)).unwrap_err()
         };
         let other = SCENE.replace('0', "1");
-        assert_eq!(words(&bytes, &other, &counts), "the state is of another scene");
+        assert_eq!(
+            words(&bytes, &other, &counts),
+            "the state belongs to another scene; give the scene that it was made with"
+        );
         for counts in [&counts[..3], &[1000, 3, 1, 65], &[999, 3, 0, 65]] {
-            assert_eq!(words(&bytes, SCENE, counts), "the state is of another scene");
+            assert_eq!(
+                words(&bytes, SCENE, counts),
+                "the state belongs to another scene; give the scene that it was made with"
+            );
         }
-        assert_eq!(words(b"splatref state 1\n", SCENE, &counts), "this is no state of splatref");
+        assert_eq!(
+            words(b"splatref state 1\n", SCENE, &counts),
+            "not a state of splatref; give one that render --keep-state wrote"
+        );
         for end in 0..bytes.len() {
             parse(&bytes[..end], SCENE, &ids(&counts)).unwrap_err();
         }
-        assert_eq!(words(&[&bytes[..], &[0; 8]].concat(), SCENE, &counts), "the state is damaged");
+        assert_eq!(
+            words(&[&bytes[..], &[0; 8]].concat(), SCENE, &counts),
+            "the state is damaged; write it again"
+        );
         // A flag of a group that does not exist.
         let mut high = bytes.clone();
         *high.last_mut().unwrap() |= 0x80;
-        assert_eq!(words(&high, SCENE, &counts), "the state is damaged");
+        assert_eq!(words(&high, SCENE, &counts), "the state is damaged; write it again");
         // More surfels selected than there are.
         let mut many = bytes;
         many[MAGIC.len() + DIGITS + 16 + 12 + 4] = 200;
-        assert_eq!(words(&many, SCENE, &counts), "the state is damaged");
+        assert_eq!(words(&many, SCENE, &counts), "the state is damaged; write it again");
     }
 
     proptest! {

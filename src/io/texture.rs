@@ -34,7 +34,7 @@ pub fn read(path: &Path, exec: &Exec) -> Result<Texture> {
     let texels = match extension(path).as_deref() {
         Some("exr") => rgb(path, exec, "a texture", Texture::check_size)?,
         Some("png") => png(path)?,
-        _ => return Err(Error::format(path, "no texture; give a .png or an .exr")),
+        _ => return Err(Error::format(path, "not a texture; give a .png or an .exr")),
     };
     Texture::new(texels).map_err(|error| Error::format(path, error.to_string()))
 }
@@ -64,8 +64,10 @@ pub fn paint(
 ) -> Result<()> {
     let Some(coordinates) = &cloud.coordinates else {
         let Some(chosen) = chosen else { return Ok(()) };
-        let what =
-            format!("no texture coordinates, without which {} cannot be drawn", chosen.display());
+        let what = format!(
+            "no texture coordinates, so {} cannot be drawn; remove the texture",
+            chosen.display()
+        );
         return Err(Error::format(model, what));
     };
     let texture = match (chosen, cloud.textures.as_slice()) {
@@ -78,7 +80,8 @@ pub fn paint(
             };
             let (first, second) = (called(first), called(second));
             let what = format!(
-                "polygons of several textures, such as {first} and {second}; choose one `texture` for all"
+                "the polygons have several textures, such as {first} and {second}; choose one \
+                 `texture` for all"
             );
             return Err(Error::format(model, what));
         }
@@ -95,7 +98,7 @@ fn named(model: &Path, name: &str, exec: &Exec) -> Result<Texture> {
             let name = name.escape_debug();
             Error::format(
                 model,
-                format!("its texture {name}: {source}; put it there, or choose a `texture`"),
+                format!("its texture {name}: {source}; add the file, or choose a `texture`"),
             )
         }
         other => other,
@@ -172,7 +175,7 @@ mod tests {
                 .contains("several textures, such as a.png and none; choose")
         );
         let line = refused(&mut Cloud::default(), &model, Some(Path::new("x/b.exr")));
-        assert!(line.contains("a.ply: no texture coordinates, without which x/b.exr"), "{line}");
+        assert!(line.contains("a.ply: no texture coordinates, so x/b.exr"), "{line}");
         assert!(
             refused(&mut cloud(&[]), &model, Some(Path::new("b.jpg")))
                 .starts_with("b.jpg: no texture; give a .png")
@@ -190,7 +193,7 @@ mod tests {
         exr::write(&bad, &depth, "").unwrap();
         assert!(
             refused(&mut cloud(&[]), &model, Some(&bad))
-                .contains("no channel R; a texture has R, G and B")
+                .contains("no channel R; a texture needs R, G and B")
         );
         fs::write(&bad, "ply").unwrap();
         assert!(refused(&mut cloud(&[]), &model, Some(&bad)).contains("not an EXR"));
@@ -228,7 +231,7 @@ mod tests {
         let bytes = fs::read(&path).unwrap();
         for (side, what) in [
             (100_000_u32, "a.png: a texture of 100000 x 100000 pixels; give sides of 1 to 65536"),
-            (65_536, "a.png: header: promises 65536 x 65536 pixels, more than a file of"),
+            (65_536, "a.png: header: declares 65536 x 65536 pixels, more than a file of"),
             (0, "a.png: "),
         ] {
             let mut huge = bytes.clone();

@@ -2,6 +2,7 @@
 
 use super::buffer_formats::{Buffers, DepthKey};
 use super::input_planes::InputPlanes;
+use super::stage::{Conditions, Keep};
 use super::{Picture, Stage};
 use crate::error::Result;
 use crate::frame::{Exec, Frame, Grid, NamedPlane, Pool, Rect};
@@ -58,6 +59,11 @@ impl<'a> Job<'a> {
     /// All pixels of the picture.
     pub(crate) fn picture(&self) -> Rect {
         Rect { x0: 0, y0: 0, x1: self.camera.width, y1: self.camera.height }
+    }
+
+    /// What decides which planes a frame of the scene has.
+    pub(crate) fn there(&self, keep: Keep) -> Conditions {
+        Conditions::new(self.scene, keep)
     }
 
     /// Planes of the picture as a frame.

@@ -6,7 +6,7 @@
 //! [stage](super::Stage) leaves, before the next one reads it:
 //!
 //! - [`Buffers`] rounds planes of colours, vectors and numbers but depths, indices and counts.
-//! - [`DepthBuffer`] rounds planes of depths, those called `Z` or `.Z` after another name.
+//! - [`DepthBuffer`] rounds planes of depths, see [`super::Holds::Depth`].
 //! - A stage that works level by level runs once for each, so that a level is rounded before the next is made
 //!   of it.
 //! - Where fragments are *tested* against a depth buffer, what the buffer holds of them is compared: of fragments whose
@@ -51,7 +51,7 @@
 //!   step of the buffer is more than epsilon a fragment may be in no layer or in several.
 //! - What `deferred` carries to the next frame is what a frame in `f32` saw.
 
-use super::Stage;
+use super::stage::{Holds, PlaneRow, Stage};
 use crate::composite::bins::DepthBins;
 use crate::composite::over::Blend;
 use crate::composite::under::Under;
@@ -122,20 +122,17 @@ impl Formats {
     /// Rounds what a stage leaves.
     pub(crate) fn store(self, stage: &Stage, left: &mut Frame<f32>, range: &DepthRange) {
         for NamedPlane { name, samples } in &mut left.planes {
-            let row = stage.leaves.iter().find(|row| row.is_called(name));
-            let has_unit = row.is_some_and(|row| !row.unit.is_empty() && row.unit != "linear RGB");
-            let buffers = if has_unit && self.buffers == Buffers::Unorm8 {
-                Buffers::F32
-            } else {
-                self.buffers
-            };
+            let Some(PlaneRow { holds, unit, .. }) = stage.row(name) else { continue };
+            let keeps = !unit.is_empty() && self.buffers == Buffers::Unorm8;
+            let buffers = if keeps { Buffers::F32 } else { self.buffers };
             match samples {
-                Samples::Scalar(plane) if name == "Z" || name.ends_with(".Z") => {
+                _ if *holds == Holds::Diagnostic => {}
+                Samples::Scalar(plane) if *holds == Holds::Depth => {
                     store_each(plane.values_mut(), |t| range.store(t, self.depth));
                 }
-                Samples::Scalar(_) if name == "margin" || name.ends_with(".voronoi") => {}
                 Samples::Scalar(plane) => store_each(plane.values_mut(), |v| buffers.number(v)),
                 Samples::Color(plane) => {
+                    let buffers = self.buffers;
                     store_each(plane.values_mut().as_flattened_mut(), |v| buffers.number(v));
                 }
                 Samples::Vector(plane) => {

@@ -1,11 +1,13 @@
 //! Somebody's planes, as the stages of every method read them.
 
 use super::algorithm::Job;
-use super::stage::{Holds, PlaneRow};
+use super::projection::{PixelSample, SampleKind};
+use super::record::{Field, Part, wide_id};
+use super::stage::{Conditions, Holds, Keep, PlaneRow};
 use super::tiled::{Tiled, pixels};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, NO_ID, Plane, Samples};
-use crate::number::Exact;
+use crate::number::{Exact, Vector3};
 
 /// Somebody's planes, each found by its row, its type and its size.
 ///
@@ -28,7 +30,7 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
         }
         let size = |[width, height]: [u32; 2]| format!("{width} x {height}");
         Err(Error::Invalid(format!(
-            "planes of {} pixels, but the camera's picture has {}",
+            "the planes have {} pixels, but the camera's picture has {}",
             size(found),
             size(picture)
         )))
@@ -55,25 +57,12 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
     /// # Errors
     /// As [`InputPlanes::scalar`].
     pub(crate) fn triple(&self, row: &PlaneRow, number: usize) -> Result<&'a Plane<[R; 3]>> {
-        match (row.holds, self.samples(row, number)?) {
+        match (row.holds.plain(), self.samples(row, number)?) {
             (Holds::Color, Samples::Color(plane)) | (Holds::Vector, Samples::Vector(plane)) => {
                 self.sized(row, number, plane)
             }
             _ => Err(of_another_type(row, number)),
         }
-    }
-
-    /// Colours or vectors, if the scene has these.
-    ///
-    /// # Errors
-    /// As [`InputPlanes::scalar`].
-    pub(crate) fn triple_if(
-        &self,
-        has: bool,
-        row: &PlaneRow,
-        number: usize,
-    ) -> Result<Option<&'a Plane<[R; 3]>>> {
-        has.then(|| self.triple(row, number)).transpose()
     }
 
     /// Small counts.
@@ -114,6 +103,80 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
         self.sized(row, number, plane)
     }
 
+    /// Puts the values of planes into records, if the scene has such planes. Records that are fewer
+    /// than the pixels lie in the upper left corner.
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if a plane is missing, or of another type or size, or if it has an id or a
+    /// kind that there is not.
+    pub(crate) fn records<T>(
+        &self,
+        fields: &[Field<T, R>],
+        number: usize,
+        mut records: Plane<T>,
+    ) -> Result<Plane<T>> {
+        let there = Conditions::new(self.job.scene, Keep::Alone);
+        for Field { row, part } in fields.iter().filter(|field| there.hold(&field.row)) {
+            let to = &mut records;
+            match part {
+                Part::Number(part) => put(to, self.scalar(row, number)?, |to, v| *part(to) = v),
+                Part::Triple(part) => put(to, self.triple(row, number)?, |to, v| *part(to) = v),
+                Part::Direction(part) => {
+                    let vector = |[x, y, z]: [R; 3]| Vector3::new(x, y, z);
+                    put(to, self.triple(row, number)?, |to, v| *part(to) = vector(v));
+                }
+                Part::Id(part) => put(to, self.ids(row, number)?, |to, v| *part(to) = v),
+                Part::LowId(part) => {
+                    put(to, self.ids(row, number)?, |to, v| *part(to) = wide_id(v, 0));
+                }
+                Part::HighId(part) => put(to, self.count(row, number)?, |to, v| {
+                    let id = part(to);
+                    *id = wide_id(*id as u32, v);
+                }),
+                Part::Count(part) => put(to, self.count(row, number)?, |to, v| *part(to) = v),
+                Part::Kind(part) => put(to, &self.kinds(row, number)?, |to, v| *part(to) = v),
+            }
+        }
+        Ok(records)
+    }
+
+    /// The samples of the projection.
+    ///
+    /// # Errors
+    /// As [`InputPlanes::records`].
+    pub(crate) fn projection(&self) -> Result<Plane<PixelSample<R>>> {
+        let [width, height] = self.job.camera.size();
+        self.records(&PixelSample::PLANES, 0, Plane::filled(width, height, PixelSample::empty()))
+    }
+
+    /// What each pixel shows.
+    fn kinds(&self, row: &PlaneRow, number: usize) -> Result<Plane<SampleKind>> {
+        let counts = self.count(row, number)?;
+        let last = SampleKind::ALL.len() - 1;
+        if let Some(i) = counts.values().iter().position(|&value| usize::from(value) > last) {
+            let (name, value, width) = (row.numbered(number), counts.values()[i], counts.width());
+            let (x, y) = (i % width as usize, i / width as usize);
+            let what = format!("the plane `{name}` has {value} at ({x}, {y}); at most {last}");
+            return Err(Error::Invalid(what));
+        }
+        Ok(counts.map(|&value| SampleKind::ALL[usize::from(value)]))
+    }
+
+    /// The same of one record for every pixel, as passes hold them; without planes a record is `empty`.
+    ///
+    /// # Errors
+    /// As [`InputPlanes::records`].
+    pub(crate) fn pixels<T: Copy + Send + Sync>(
+        &self,
+        fields: &[Field<T, R>],
+        number: usize,
+        empty: T,
+    ) -> Result<Tiled<T>> {
+        let [width, height] = self.job.camera.size();
+        let records = self.records(fields, number, Plane::filled(width, height, empty))?;
+        Ok(self.tiled(|x, y| *records.at(x, y)))
+    }
+
     /// A record for each pixel, made of the values of planes there.
     pub(crate) fn tiled<T: Send>(&self, record: impl Fn(u32, u32) -> T + Sync + Send) -> Tiled<T> {
         Tiled::new(self.job, |_, rect| pixels(rect).map(|(x, y)| record(x, y)).collect())
@@ -131,7 +194,7 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
             return Ok(plane);
         }
         Err(Error::Invalid(format!(
-            "the plane `{}` is {} x {}, the picture {} x {}",
+            "the plane `{}` is {} x {}, but the picture is {} x {}",
             row.numbered(number),
             found[0],
             found[1],
@@ -141,7 +204,15 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
     }
 }
 
+/// Puts each value into the record of its pixel, as far as there are records.
+fn put<T, V: Copy>(records: &mut Plane<T>, values: &Plane<V>, set: impl Fn(&mut T, V)) {
+    let rows = values.values().chunks(values.width().max(1) as usize);
+    for (records, values) in records.rows_mut().zip(rows) {
+        records.iter_mut().zip(values).for_each(|(record, value)| set(record, *value));
+    }
+}
+
 fn of_another_type(row: &PlaneRow, number: usize) -> Error {
     let (name, holds) = (row.numbered(number), row.holds.words());
-    Error::Invalid(format!("the plane `{name}` is of another type; give {holds}"))
+    Error::Invalid(format!("the plane `{name}` has another type; give {holds}"))
 }

@@ -26,7 +26,7 @@
 //! | `mod.rs` | the specification, and the row of the table: [`Algorithm`] for the settings |
 //! | `settings.rs` | what is computed, a row a setting ([`crate::setting`]) |
 //! | one a published pass | the definition, over any exact number |
-//! | `planes.rs` | the planes of every [`Stage`], out and in |
+//! | `planes.rs` | the planes of every [`Stage`], one row a plane, beside the records that hold their values |
 //! | `picture.rs` | all stages in one call |
 //! | `explain.rs` | the decisions at one pixel |
 //! | `fast/` | the bits of the definition for `f32`, from another layout |
@@ -71,6 +71,7 @@ pub mod planes;
 pub(crate) mod prepare;
 pub mod projection;
 pub mod pyramid;
+pub(crate) mod record;
 pub mod session;
 pub mod single_pass;
 pub mod stage;

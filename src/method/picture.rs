@@ -1,8 +1,9 @@
 //! What every method leaves: named planes, counts and times.
 
 use super::algorithm::Job;
+use super::surface::{ALPHA, DEPTH, ID, NORMAL, SHADED, WEIGHT};
 use crate::composite::over::Blend;
-use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Pool, Samples, Wanted};
+use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Pool, Wanted};
 use crate::index::seen::Seen;
 use crate::number::{Exact, Real, Truth};
 use crate::scene::{Camera, Scene};
@@ -37,12 +38,9 @@ pub(crate) fn finish<R: Exact>(
     clock.restart();
     let (color, alpha) = shaded(job, &depth, normal.as_ref(), &weight, color);
     clock.lap("shading");
-    planes.push(named("", Samples::Color(color)));
-    planes.push(named("A", Samples::Scalar(alpha)));
-    planes.push(named("Z", Samples::Scalar(depth)));
-    planes.extend(normal.map(|p| named("normal", Samples::Vector(p))));
-    planes.push(named("weight", Samples::Scalar(weight)));
-    planes.push(named("id", Samples::Index(id)));
+    planes.extend([SHADED.triple(0, color), ALPHA.scalar(0, alpha), DEPTH.scalar(0, depth)]);
+    planes.extend(normal.map(|normal| NORMAL.triple(0, normal)));
+    planes.extend([WEIGHT.scalar(0, weight), ID.index(0, id)]);
     Picture {
         frame: Frame { width, height, planes },
         tally,
@@ -114,10 +112,6 @@ pub(crate) fn framebuffer(camera: &Camera, wanted: Wanted, pool: &mut Pool) -> F
         stencil: None,
         margin: None,
     }
-}
-
-pub(crate) fn named<R>(name: &str, samples: Samples<R>) -> NamedPlane<R> {
-    NamedPlane { name: name.to_owned(), samples }
 }
 
 /// Stages, in order, and the wall time of each.

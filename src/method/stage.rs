@@ -1,8 +1,10 @@
 //! Stages as values: the passes of a method, what each reads, and the planes that each leaves.
 
+use super::projection::Has;
 use crate::error::Error;
 use crate::frame::named::{COLOR, VECTOR, component};
 use crate::frame::{Frame, NamedPlane, Plane, Samples};
+use crate::scene::Scene;
 
 /// A pass of a method.
 ///
@@ -18,13 +20,15 @@ pub struct Stage {
     pub leaves: &'static [PlaneRow],
 }
 
-/// A plane that a stage leaves.
+/// A plane that a stage leaves: everything that is said of it, once.
+///
+/// A plane of a record is one row of the table of its record's planes, see [`mod@super::record`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlaneRow {
     /// The name, see [`crate::frame::NamedPlane`]; each run of `#` stands for a number of as many
     /// digits: `group##.Z`.
     pub name: &'static str,
-    /// The type of the values.
+    /// What a value is.
     pub holds: Holds,
     /// The unit of the values: `px`, `world units`; empty for what has none.
     pub unit: &'static str,
@@ -34,17 +38,25 @@ pub struct PlaneRow {
     pub when: When,
 }
 
-/// The type of a plane's values, see [`Samples`].
+/// What a plane holds; several kinds have one type of [`Samples`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Holds {
     /// One number a pixel.
     Scalar,
+    /// Depth t, one number a pixel; +inf where a pixel is empty.
+    Depth,
+    /// One number a pixel that describes the picture, and that no buffer of a renderer holds.
+    Diagnostic,
     /// Linear RGB.
     Color,
     /// Three components.
     Vector,
-    /// Indices.
+    /// Unit normals; the null vector where a pixel is empty.
+    Normal,
+    /// Indices: the lowest 32 bits of the ids of what is drawn.
     Index,
+    /// The highest 8 bits of the ids whose [`Holds::Index`] the same stage leaves.
+    HighIndex,
     /// Small counts.
     Count,
 }
@@ -75,26 +87,94 @@ pub enum When {
     Alone,
 }
 
+/// Which planes of its stages a frame keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Keep {
+    /// None: a picture as every frame has it.
+    Picture,
+    /// Those of a picture with the planes of the stages.
+    Stages,
+    /// Those of a stage that runs alone.
+    Alone,
+}
+
+/// What decides which planes are there.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Conditions {
+    keep: Keep,
+    has: Has,
+    lit: bool,
+    wide: bool,
+    settings: bool,
+}
+
+impl Conditions {
+    /// In a frame of this scene; none of the settings asks for a plane.
+    pub(crate) fn new(scene: &Scene, keep: Keep) -> Self {
+        let (mut has, mut wide) = (Has::of(scene), false);
+        if let Some(objects) = &scene.objects {
+            (has.color, wide) = (has.color || objects.have_colors(), objects.ids().is_wide());
+        }
+        let lit = !scene.lights.is_empty();
+        Self { keep, has, lit, wide, settings: false }
+    }
+
+    /// The same where the settings may ask for planes of [`When::Settings`].
+    pub(crate) fn with_settings(self, settings: bool) -> Self {
+        Self { settings, ..self }
+    }
+
+    /// Whether a plane of a row is there.
+    pub(crate) fn hold(&self, row: &PlaneRow) -> bool {
+        let stages = self.keep != Keep::Picture;
+        match row.when {
+            When::Always => true,
+            When::Lit => stages || self.lit,
+            When::Tubes => self.has.tangent,
+            When::Stages => stages,
+            When::Colored => stages && self.has.color,
+            When::StagesOfTubes => stages && self.has.tangent,
+            When::Wide => stages && self.wide,
+            When::Settings => stages && self.settings,
+            When::Whole => self.keep == Keep::Stages,
+            When::Alone => self.keep == Keep::Alone,
+        }
+    }
+}
+
 impl Holds {
+    /// The same without what the values mean: the type of [`Samples`] alone.
+    #[must_use]
+    pub fn plain(self) -> Self {
+        match self {
+            Self::Scalar | Self::Depth | Self::Diagnostic => Self::Scalar,
+            Self::Color => Self::Color,
+            Self::Vector | Self::Normal => Self::Vector,
+            Self::Index => Self::Index,
+            Self::HighIndex | Self::Count => Self::Count,
+        }
+    }
+
     /// The names that the channels of a plane called `name` have in a file.
     #[must_use]
     pub fn channels(self, name: &str) -> Vec<String> {
-        match self {
-            Self::Color => COLOR.map(|letter| component(name, letter)).to_vec(),
-            Self::Vector => VECTOR.map(|letter| component(name, letter)).to_vec(),
-            Self::Scalar | Self::Index | Self::Count => vec![name.to_owned()],
-        }
+        let letters = match self.plain() {
+            Self::Color => COLOR,
+            Self::Vector => VECTOR,
+            _ => return vec![name.to_owned()],
+        };
+        letters.map(|letter| component(name, letter)).to_vec()
     }
 
     /// The type in words.
     #[must_use]
     pub fn words(self) -> &'static str {
-        match self {
-            Self::Scalar => "one number a pixel",
+        match self.plain() {
             Self::Color => "colours",
             Self::Vector => "vectors",
             Self::Index => "indices of 32 bits",
             Self::Count => "counts of 8 bits",
+            _ => "one number a pixel",
         }
     }
 }
@@ -119,16 +199,33 @@ impl When {
 }
 
 impl PlaneRow {
-    /// A row.
+    /// A row of a plane that is there with the planes of the stages.
     #[must_use]
-    pub const fn new(
-        name: &'static str,
-        holds: Holds,
-        unit: &'static str,
-        meaning: &'static str,
-        when: When,
-    ) -> Self {
-        Self { name, holds, unit, meaning, when }
+    pub const fn new(name: &'static str, holds: Holds, meaning: &'static str) -> Self {
+        let unit = match holds {
+            Holds::Depth => "world units",
+            Holds::Color => "linear RGB",
+            _ => "",
+        };
+        Self { name, holds, unit, meaning, when: When::Stages }
+    }
+
+    /// The row with another unit.
+    #[must_use]
+    pub const fn unit(self, unit: &'static str) -> Self {
+        Self { unit, ..self }
+    }
+
+    /// The row of a plane that is there at other times.
+    #[must_use]
+    pub const fn when(self, when: When) -> Self {
+        Self { when, ..self }
+    }
+
+    /// The row with another meaning.
+    #[must_use]
+    pub const fn says(self, meaning: &'static str) -> Self {
+        Self { meaning, ..self }
     }
 
     /// The name, with a number in place of `#`.
@@ -150,7 +247,7 @@ impl PlaneRow {
 
     /// A plane of this row, of three numbers a pixel.
     pub(crate) fn triple<R>(&self, number: usize, plane: Plane<[R; 3]>) -> NamedPlane<R> {
-        match self.holds {
+        match self.holds.plain() {
             Holds::Vector => self.plane(number, Samples::Vector(plane)),
             _ => self.plane(number, Samples::Color(plane)),
         }
@@ -183,7 +280,7 @@ impl PlaneRow {
             Samples::Index(_) => Holds::Index,
             Samples::Count(_) => Holds::Count,
         };
-        self.holds == holds
+        self.holds.plain() == holds
     }
 }
 

@@ -4,7 +4,11 @@
 use super::algorithm::Job;
 use super::input_planes::InputPlanes;
 use super::picture::shaded;
-use super::stage::{Holds, PlaneRow, Stage, When};
+use super::record::Field;
+use super::record::Part::{Id, Number, Triple};
+use super::stage::Holds::{Color, Depth, Index, Normal, Scalar};
+use super::stage::When::{Always, Colored, Lit};
+use super::stage::{Keep, PlaneRow, Stage};
 use super::tiled::Tiled;
 use crate::error::Result;
 use crate::frame::{Framebuffer, NO_ID, NamedPlane, Wanted};
@@ -38,83 +42,68 @@ impl<R: Exact> SurfacePixel<R> {
 
 pub(crate) const COLOR: PlaneRow = PlaneRow::new(
     "resolved",
-    Holds::Color,
-    "linear RGB",
+    Color,
     "average colour of the visible fragments, before shading; 0 where there is none",
-    When::Colored,
-);
-pub(crate) const DEPTH: PlaneRow = PlaneRow::new(
-    "Z",
-    Holds::Scalar,
-    "world units",
-    "depth of the nearest fragment; +inf where there is none",
-    When::Always,
-);
+)
+.when(Colored);
+pub(crate) const DEPTH: PlaneRow =
+    PlaneRow::new("Z", Depth, "depth of the nearest fragment; +inf where there is none")
+        .when(Always);
 pub(crate) const NORMAL: PlaneRow = PlaneRow::new(
     "normal",
-    Holds::Vector,
-    "",
+    Normal,
     "direction of the average normal of the visible fragments, in world space, of length 1; the \
      null vector where there is none",
-    When::Lit,
-);
+)
+.when(Lit);
 pub(crate) const WEIGHT: PlaneRow = PlaneRow::new(
     "weight",
-    Holds::Scalar,
-    "",
+    Scalar,
     "sum of the weights of the visible fragments; 0 where there is none",
-    When::Always,
-);
-pub(crate) const ID: PlaneRow = PlaneRow::new(
-    "id",
-    Holds::Index,
-    "surfel",
-    "surfel of the nearest fragment; 0xFFFF_FFFF where there is none",
-    When::Always,
-);
+)
+.when(Always);
+pub(crate) const ID: PlaneRow =
+    PlaneRow::new("id", Index, "surfel of the nearest fragment; 0xFFFF_FFFF where there is none")
+        .unit("surfel")
+        .when(Always);
 /// The colour of a picture.
 pub(crate) const SHADED: PlaneRow = PlaneRow::new(
     "",
-    Holds::Color,
-    "linear RGB",
+    Color,
     "the picture: shaded, multiplied by A where several layers are seen, before the environment; \
      black where nothing is seen",
-    When::Always,
-);
+)
+.when(Always);
 /// The opacity of a picture.
 pub(crate) const ALPHA: PlaneRow = PlaneRow::new(
     "A",
-    Holds::Scalar,
-    "",
+    Scalar,
     "opacity of the picture in [0, 1]; 1 where the environment is seen, 0 where nothing is",
-    When::Always,
-);
+)
+.when(Always);
+
+impl<R> SurfacePixel<R> {
+    /// The planes of the averages.
+    pub(crate) const PLANES: [Field<Self, R>; 5] = [
+        COLOR.at(Triple(|pixel| &mut pixel.color)),
+        DEPTH.at(Number(|pixel| &mut pixel.depth)),
+        NORMAL.at(Triple(|pixel| &mut pixel.normal)),
+        WEIGHT.at(Number(|pixel| &mut pixel.weight)),
+        ID.at(Id(|pixel| &mut pixel.id)),
+    ];
+}
 
 /// Deferred shading, as a stage after the one called `normalized`.
 pub(crate) const fn shading(normalized: &'static [&'static str]) -> Stage {
     Stage { name: "shading", reads: normalized, leaves: &[SHADED, ALPHA] }
 }
 
-/// All planes of the averages.
-pub(crate) fn planes<R: Exact>(
-    job: &Job<'_>,
-    pixels: &Tiled<SurfacePixel<R>>,
-) -> Vec<NamedPlane<R>> {
-    let mut planes: Vec<_> = colors(job, pixels).into_iter().collect();
-    planes.push(DEPTH.scalar(0, pixels.plane(|pixel| pixel.depth)));
-    planes.push(NORMAL.triple(0, pixels.plane(|pixel| pixel.normal)));
-    planes.push(WEIGHT.scalar(0, pixels.plane(|pixel| pixel.weight)));
-    planes.push(ID.index(0, pixels.plane(|pixel| pixel.id)));
-    planes
-}
-
-/// The average colours, if the scene has colours.
+/// The average colours, if the scene has colours: what no picture without stages keeps.
 pub(crate) fn colors<R: Exact>(
     job: &Job<'_>,
     pixels: &Tiled<SurfacePixel<R>>,
-) -> Option<NamedPlane<R>> {
-    let colored = job.scene.surfels.color().is_some();
-    colored.then(|| COLOR.triple(0, pixels.plane(|pixel| pixel.color)))
+) -> Vec<NamedPlane<R>> {
+    pixels.planes(&SurfacePixel::PLANES[..1], 0, &job.there(Keep::Stages))
 }
 
 /// The averages as a framebuffer that can be shaded.

@@ -232,7 +232,7 @@ impl Method {
         let flat = !scene.surfels.is_empty() || !scene.primitives.is_empty();
         if scene.objects.is_some() && !flat && !self.draws_objects() {
             return Err(Error::Invalid(format!(
-                "{} is of objects, which the method {} does not draw: make it flat first",
+                "{} has objects, but the method {} does not draw them; flatten the scene first",
                 scene.name,
                 self.name()
             )));
@@ -255,7 +255,7 @@ impl Method {
         let able = Self::all().into_iter().filter(draws);
         let able: Vec<_> = able.map(|method| format!("--method {}", method.name())).collect();
         Err(Error::Invalid(format!(
-            "{} has triangles or lines, which the method {} does not draw; use {}",
+            "{} has triangles or lines, but the method {} does not draw them; use {}",
             scene.name,
             self.name(),
             able.join(" or ")

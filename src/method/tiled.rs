@@ -1,7 +1,10 @@
 //! Pictures between their passes: a record a pixel, tile by tile.
 
 use super::algorithm::Job;
-use crate::frame::{Grid, Plane, Rect};
+use super::record::{self, Field};
+use super::stage::Conditions;
+use crate::frame::{Grid, NamedPlane, Plane, Rect};
+use crate::number::Real;
 
 /// A record for each pixel of a picture; the pixels of a tile are together, row by row.
 #[derive(Clone, Debug)]
@@ -73,6 +76,19 @@ impl<T> Tiled<T> {
         let tiles = self.tiles.iter().zip(&other.tiles);
         let both = tiles.map(|(a, b)| a.iter().zip(b).map(|(a, b)| of(a, b)).collect());
         Tiled { grid: self.grid, tiles: both.collect() }
+    }
+
+    /// The planes of the records, if they are there; `number` stands for the rows' `#`.
+    pub(crate) fn planes<R: Real>(
+        &self,
+        fields: &[Field<T, R>],
+        number: usize,
+        there: &Conditions,
+    ) -> Vec<NamedPlane<R>>
+    where
+        T: Copy,
+    {
+        record::planes(fields, number, (self.grid.size(), &|x, y| *self.at(x, y)), there)
     }
 
     /// One value of each record.

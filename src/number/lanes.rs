@@ -44,6 +44,16 @@ macro_rules! vectorized {
 }
 pub(crate) use vectorized;
 
+/// [`vectorized`] for AVX2 with FMA and for what every target has: for kernels in `f64` that are long to compile
+/// and that AVX-512 makes no faster.
+macro_rules! vectorized_avx2 {
+    ($($item:tt)+) => {
+        #[multiversion::multiversion(targets("x86_64+avx2+fma"))]
+        $($item)+
+    };
+}
+pub(crate) use vectorized_avx2;
+
 /// Makes a value for each lane.
 #[inline(always)]
 pub(crate) fn each<T: Copy + Default>(value: impl Fn(usize) -> T) -> [T; LANES] {

@@ -293,7 +293,7 @@ fn axes(pose: Pose) -> Result<(DMat3, f64)> {
     // The square of a longer distance is beyond f64, and such a position is beyond f32.
     if distance > MAX_DISTANCE || eye.abs().max_element() > MAX_DISTANCE {
         let what = format!("eye or target is farther away than {MAX_DISTANCE:e}");
-        return invalid(&format!("{what}, about the most that f32 holds"));
+        return invalid(&format!("{what}, about the limit of f32; move it closer"));
     }
     let back = (eye - target) / distance;
     // Only the direction of up counts, and the square of its length must fit in f64.

@@ -78,7 +78,7 @@ impl Groups {
         };
         if let Some((surfel, group)) = all.chain(further).find(|member| !exists(member)) {
             return Err(Error::Invalid(format!(
-                "surfel {surfel} in group {group}: there are {} surfels and {groups} groups",
+                "surfel {surfel} is in group {group}, but there are {} surfels and {groups} groups",
                 own.len()
             )));
         }

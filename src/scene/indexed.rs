@@ -89,7 +89,7 @@ impl<const N: usize> Indexed<N> {
             )));
         }
         if let Some(corner) = corners.iter().flatten().find(|&&corner| corner as usize >= n) {
-            return Err(Error::Invalid(format!("there is no vertex {corner}, only {n}")));
+            return Err(Error::Invalid(format!("vertex {corner} does not exist; there are {n}")));
         }
         let drawable: Vec<bool> = (0..n)
             .map(|i| {
@@ -271,7 +271,7 @@ mod tests {
     #[test]
     fn what_does_not_fit_together_is_refused() {
         let error = Triangles::new(vertices(3), vec![[0, 1, 3]]).unwrap_err();
-        assert_eq!(error.to_string(), "there is no vertex 3, only 3");
+        assert_eq!(error.to_string(), "vertex 3 does not exist; there are 3");
         let few = Vertices { radius: vec![1.0; 2], ..vertices(3) };
         let error = Triangles::new(few, vec![]).unwrap_err();
         assert_eq!(error.to_string(), "3 vertices, but 2 radii");

@@ -54,7 +54,8 @@ impl Light {
         let color = match *self {
             Self::Directional { towards, color } | Self::Headlight { towards, color } => {
                 if !towards.length_squared().is_normal() {
-                    let what = "light: towards must be finite, neither 0 nor without measure";
+                    let what = "light: towards must be a finite vector whose length is neither 0 \
+                                nor infinite";
                     return Err(Error::Invalid(what.into()));
                 }
                 color

@@ -118,7 +118,8 @@ fn of_all<const N: usize>(parts: &[Indexed<N>]) -> Result<Vec<Property>> {
     let first = parts.first().map(names).unwrap_or_default();
     if let Some(other) = parts.iter().map(names).find(|names| *names != first) {
         let [a, b] = [first, other].map(|names| names.join(", "));
-        let what = format!("vertices have the properties [{a}] here and [{b}] there");
+        let what =
+            format!("models have different vertex properties, [{a}] and [{b}]; give all the same");
         return Err(Error::Invalid(what));
     }
     Ok(first.into_iter().map(|name| Property { name, values: Vec::new() }).collect())
@@ -247,7 +248,7 @@ mod tests {
         assert_eq!(all.properties.iter().map(|one| one.values.len()).collect::<Vec<_>>(), [4, 4]);
         for other in [&["b", "a"][..], &["a"], &[]] {
             let line = join(vec![part(None, &["a", "b"]), part(None, other)], Vec3::Y).unwrap_err();
-            let what = format!("[a, b] here and [{}] there", other.join(", "));
+            let what = format!("[a, b] and [{}]; give all the same", other.join(", "));
             assert!(line.to_string().ends_with(&what), "{line}");
         }
     }

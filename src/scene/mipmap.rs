@@ -30,7 +30,7 @@ impl Mipmap {
         check_levels(levels)?;
         if !colors.len().is_multiple_of(levels) {
             let count = colors.len();
-            let what = format!("{count} prefiltered colours are not {levels} for each surfel");
+            let what = format!("{count} prefiltered colours cannot be {levels} for each surfel");
             return Err(Error::Invalid(what));
         }
         Ok(Self { levels, colors })
@@ -146,6 +146,6 @@ mod tests {
     fn uneven_ones_are_refused() {
         assert!(Mipmap::new(0, vec![]).is_err() && Mipmap::new(17, vec![]).is_err());
         let error = Mipmap::new(3, vec![Vec3::ZERO; 7]).unwrap_err().to_string();
-        assert_eq!(error, "7 prefiltered colours are not 3 for each surfel");
+        assert_eq!(error, "7 prefiltered colours cannot be 3 for each surfel");
     }
 }

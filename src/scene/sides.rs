@@ -21,12 +21,16 @@ impl Sides {
     pub fn new(runs: Vec<(u32, Option<f32>)>) -> Result<Self> {
         let ascend = runs.is_sorted_by(|a, b| a.0 < b.0);
         if runs.first().is_none_or(|run| run.0 != 0) || !ascend {
-            return Err(Error::Invalid("the sides of surfels are not in runs from 0 on".into()));
+            return Err(Error::Invalid(
+                "the sides of surfels must be in ascending runs that begin with surfel 0".into(),
+            ));
         }
         let sides = runs.iter().filter_map(|run| run.1);
         match sides.into_iter().find(|side| !(*side > 0.0 && side.is_finite())) {
             None => Ok(Self { runs }),
-            Some(side) => Err(Error::Invalid(format!("{side} is no side of a square of pixels"))),
+            Some(side) => Err(Error::Invalid(format!(
+                "a square of pixels cannot have the side {side}; give a finite number > 0"
+            ))),
         }
     }
 

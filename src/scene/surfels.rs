@@ -280,7 +280,10 @@ impl Surfels {
         let colors = mipmap.iter_mut().flat_map(|mipmap| mipmap.colors_mut());
         for color in colors {
             if !is_color(*color) {
-                return Err(Error::Invalid(format!("a prefiltered colour of {color}")));
+                return Err(Error::Invalid(format!(
+                    "a prefiltered colour is {color}; give numbers in [0, {}]",
+                    crate::scene::light::MAX_RADIANCE
+                )));
             }
             *color += Vec3::ZERO;
         }
@@ -405,7 +408,7 @@ pub(crate) fn check_mipmap(n: usize, colored: bool, mipmap: &Option<Mipmap>) -> 
     let Some(mipmap) = mipmap else { return Ok(()) };
     if mipmap.len() != n {
         let of = mipmap.len();
-        return Err(Error::Invalid(format!("{n} positions, but prefiltered colours of {of}")));
+        return Err(Error::Invalid(format!("{n} positions, but prefiltered colours for {of}")));
     }
     if colored {
         return Ok(());
@@ -431,7 +434,9 @@ impl Groups {
         if grouped == there {
             Ok(())
         } else {
-            Err(Error::Invalid(format!("groups of {grouped} surfels for a scene of {there}")))
+            Err(Error::Invalid(format!(
+                "the groups have {grouped} surfels, but the scene has {there}"
+            )))
         }
     }
 }

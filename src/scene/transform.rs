@@ -50,7 +50,7 @@ impl Similarity {
         let off = (product - DMat3::IDENTITY).to_cols_array();
         if !(off.iter().all(|v| v.abs() <= 1e-6) && self.rotation.determinant() > 0.0) {
             return invalid(
-                "the matrix is no rotation: its rows must be perpendicular, of length 1 and \
+                "the matrix is not a rotation: its rows must be perpendicular, of length 1 and \
                  right-handed",
             );
         }

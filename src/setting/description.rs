@@ -1,13 +1,13 @@
-//! Settings in words, for help texts and the reference of the scene format.
+//! Descriptions of settings, for help texts and the reference of the scene format.
 
 use super::{Fields, Refused, Value};
 
-/// A setting of one or several owners, as its row describes it.
+/// A setting as its row describes it, with its owners.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Setting {
     /// See [`super::Field::name`].
     pub name: &'static str,
-    /// The name on the command line, without dashes before it.
+    /// The name on the command line, without the leading dashes.
     pub option: String,
     /// See [`super::Field::unit`].
     pub unit: &'static str,
@@ -19,13 +19,13 @@ pub struct Setting {
     pub form: String,
     /// See [`super::Slot::words`].
     pub words: Vec<&'static str>,
-    /// Who has the setting, and the default there; presets have none.
+    /// Each owner of the setting, and the default there; presets have no default.
     pub owners: Vec<(&'static str, Option<Value>)>,
 }
 
 impl Setting {
-    /// The settings of several owners, by their names and defaults: each setting once, in the
-    /// order in which it comes up.
+    /// Collects the settings of several owners from their names and defaults. Each setting is
+    /// listed once, in the order in which the owners list it.
     #[must_use]
     pub fn of<F: Fields>(owners: impl IntoIterator<Item = (&'static str, F)>) -> Vec<Self> {
         let mut all: Vec<Self> = Vec::new();
@@ -51,13 +51,13 @@ impl Setting {
         all
     }
 
-    /// Whether the setting is on or off.
+    /// Whether the setting is a switch, on or off.
     #[must_use]
     pub fn is_switch(&self) -> bool {
         self.owners.iter().all(|(_, default)| matches!(default, Some(Value::Switch(_))))
     }
 
-    /// What the setting says, its unit and its range.
+    /// The help text, the unit and the range.
     #[must_use]
     pub fn description(&self) -> String {
         let unit = if self.unit.is_empty() { String::new() } else { format!(", in {}", self.unit) };
@@ -66,7 +66,8 @@ impl Setting {
         format!("{}{unit}{range}", self.help)
     }
 
-    /// The default, written by `show`, and where it is another; empty of a preset.
+    /// The default, written by `show`, followed by each different default and its owners; empty for
+    /// a preset.
     #[must_use]
     pub fn default_text(&self, show: impl Fn(&Value) -> String) -> String {
         let mut defaults: Vec<(&Value, Vec<&str>)> = Vec::new();
@@ -85,8 +86,8 @@ impl Setting {
     }
 }
 
-/// Whether a value is of the type of the setting, in whichever of the owners has such a setting;
-/// ranges are not checked.
+/// Checks that a value has the type that the setting has in one of the owners. The range is not
+/// checked.
 ///
 /// # Errors
 /// One line that says what to give.

@@ -1,9 +1,11 @@
-//! One row a setting.
+//! Settings: one row for each.
+//!
+//! You can set, read and describe every setting of a method by its name.
 //!
 //! A type of settings implements [`Fields`]: it lists a [`Field`] for each of its settings, with
-//! name, unit, range, help and typed access. Scene files, the command line, the text in a picture,
-//! reports and the reference of the scene format all follow from these rows; a default is what the
-//! default of the type holds, and a method has a setting if its settings list the row.
+//! name, unit, range, help and typed access. These rows feed scene files, the command line, the
+//! text in a picture, reports and the reference of the scene format. The default of a setting is
+//! the value in the `Default` of the type. A method has a setting if its settings list the row.
 //!
 //! ```
 //! use splatref::method::Method;
@@ -25,48 +27,49 @@ pub use description::Setting;
 pub(crate) use description::check_type;
 pub use slot::{Slot, Value, Word, Words};
 
-/// A setting: its row, and access to its value.
+/// One setting: its description, and access to its value.
 #[derive(Debug)]
 pub struct Field<'a> {
-    /// The key in scene files; with `-` for `_` the name on the command line.
+    /// The key in scene files. On the command line each `_` becomes `-`.
     pub name: &'static str,
-    /// The name on the command line where that is another.
+    /// The name on the command line, if it is not the key.
     pub option: Option<&'static str>,
-    /// The unit of the value; empty for what has none.
+    /// The unit of the value; empty if it has none.
     pub unit: &'static str,
-    /// The values that are allowed: `0 to 16`, `above 0 to 4` or `3, 5 or 7`; empty if all that the
-    /// slot can hold are.
+    /// The allowed values: `0 to 16`, `above 0 to 4` or `3, 5 or 7`; empty if every value of the
+    /// slot is allowed.
     pub range: &'static str,
-    /// What the setting says, beginning in lower case, without a full stop.
+    /// What the setting does: begins with a verb in lower case, and has no full stop.
     pub help: &'static str,
-    /// Why the setting means nothing as the other settings stand, such as `without a refraction`.
+    /// Why the setting has no effect beside the other settings, such as `without a refraction`.
     pub idle: Option<&'static str>,
     /// The value.
     pub slot: Slot<'a>,
 }
 
-/// What is told of each field.
+/// A function that is called with each field.
 pub type Visit<'v> = dyn FnMut(Field<'_>) + 'v;
 
-/// Why a value was not taken.
+/// Why a value was refused.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum Refused {
-    /// There is no setting of this name.
+    /// No setting has this name.
     Unknown,
-    /// The setting means nothing as the others stand, and why.
+    /// The setting has no effect beside the other settings, and why.
     Idle(&'static str),
-    /// The value is of another type, or a word that is none: one line that says what to give.
+    /// The value has the wrong type, or is an unknown word: one line that says what to give.
     Wrong(String),
 }
 
-/// Settings that list their rows.
+/// A type of settings that lists its rows.
 pub trait Fields: Copy {
-    /// Calls `each` for every setting, in an order in which settings can be set one after another:
-    /// a preset before its parts, and what makes another setting meaningful before the other.
+    /// Calls `each` for every setting, in an order in which the settings can be set one after
+    /// another: a preset before its parts, and a setting before those that only have an effect
+    /// beside it.
     fn fields(&mut self, each: &mut Visit<'_>);
 
-    /// Names and values, in the order of the rows; what means nothing as things stand is left out,
-    /// and so are presets, whose parts have rows.
+    /// Names and values, in the order of the rows. Settings without effect are left out. Presets
+    /// are left out too, because their parts have rows.
     #[must_use]
     fn values(mut self) -> Vec<(&'static str, Value)> {
         let mut values = Vec::new();
@@ -77,11 +80,11 @@ pub trait Fields: Copy {
         values
     }
 
-    /// Sets one setting. Whether the value is in range is not checked.
+    /// Sets one setting. The range is not checked.
     ///
     /// # Errors
-    /// [`Refused`] if there is no such setting, if the setting means nothing as the others stand,
-    /// or if the value is of another type.
+    /// [`Refused`] if no setting has this name, if the setting has no effect beside the others, or
+    /// if the value has the wrong type.
     fn set(&mut self, name: &str, value: &Value) -> Result<(), Refused> {
         let mut found = Err(Refused::Unknown);
         self.fields(&mut |mut field| {
@@ -95,7 +98,7 @@ pub trait Fields: Copy {
         found
     }
 
-    /// The value that a text stands for on the command line; none if no setting has this name.
+    /// Parses a text of the command line; `None` if no setting has this name.
     ///
     /// # Errors
     /// One line that says what to give.
@@ -111,31 +114,31 @@ pub trait Fields: Copy {
 }
 
 impl<'a> Field<'a> {
-    /// A row without unit and range.
+    /// A row without unit or range.
     #[must_use]
     pub fn new(name: &'static str, help: &'static str, slot: Slot<'a>) -> Self {
         Self { name, option: None, unit: "", range: "", help, idle: None, slot }
     }
 
-    /// The row with another name on the command line.
+    /// Gives the row another name on the command line.
     #[must_use]
     pub fn option(self, option: &'static str) -> Self {
         Self { option: Some(option), ..self }
     }
 
-    /// The row with a unit.
+    /// Gives the row a unit.
     #[must_use]
     pub fn unit(self, unit: &'static str) -> Self {
         Self { unit, ..self }
     }
 
-    /// The row with a range.
+    /// Gives the row a range.
     #[must_use]
     pub fn range(self, range: &'static str) -> Self {
         Self { range, ..self }
     }
 
-    /// The row of a setting that means nothing as things stand.
+    /// Marks the setting as having no effect beside the other settings, and says why.
     #[must_use]
     pub fn idle(self, why: &'static str) -> Self {
         Self { idle: Some(why), ..self }

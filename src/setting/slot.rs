@@ -1,11 +1,11 @@
-//! Typed access to the value of a setting, and values by themselves.
+//! Typed access to the value of a setting, and values without a setting.
 
 use std::fmt;
 use std::mem::discriminant;
 
-/// A value of a setting, by itself.
+/// A value of a setting.
 ///
-/// As TOML it is what [`fmt::Display`] writes; on the command line it is [`Value::text`].
+/// [`fmt::Display`] writes it as TOML, [`Value::text`] as on the command line.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Value {
     /// A whole number.
@@ -14,33 +14,34 @@ pub enum Value {
     Number(f32),
     /// True or false; on or off.
     Switch(bool),
-    /// A word, or a number with its unit.
+    /// A word, or a number with a unit.
     Text(String),
     /// Several numbers.
     Numbers(Vec<f32>),
-    /// Several numbers with their names.
+    /// Several named numbers.
     Parts(Vec<(String, f32)>),
 }
 
-/// Words that stand for values: the choices of an enum, or the presets of a type.
+/// A type whose values have names: the choices of an enum, or the presets of a type.
 pub trait Words: Copy + 'static {
     /// Every word with its value.
     const WORDS: &'static [(&'static str, Self)];
 
-    /// Whether two values have the same word; of enums, whatever their fields hold.
+    /// Whether two values have the same word. By default only the variants of an enum count, not
+    /// their fields.
     fn is(&self, other: &Self) -> bool {
         discriminant(self) == discriminant(other)
     }
 }
 
-/// A value that is one of several words: any type with [`Words`].
+/// Object-safe access to a value that is one of several words; every type with [`Words`] has it.
 pub trait Word {
-    /// The words there are.
+    /// All the words.
     fn words(&self) -> Vec<&'static str>;
-    /// The word of the value; empty if the value has none.
+    /// The word of the value; empty if it has none.
     fn word(&self) -> &'static str;
-    /// Takes the value of a word, and tells whether there is such a word. A value that has the
-    /// word already stays as it is.
+    /// Sets the value that the word names, and returns whether there is such a word. A value that
+    /// already has the word is not changed.
     fn choose(&mut self, word: &str) -> bool;
 }
 
@@ -62,33 +63,33 @@ impl<T: Words> Word for T {
     }
 }
 
-/// Access to the value of a setting, by its type.
+/// Typed access to the value of a setting.
 pub enum Slot<'a> {
     /// A number.
     Number(&'a mut f32),
-    /// A whole number from 0.
+    /// A whole number >= 0.
     Count(&'a mut u32),
-    /// A whole number from 0, or a word in its place.
+    /// A whole number >= 0, or a word instead.
     CountOr(&'a mut Option<u32>, &'static str),
-    /// Yes or no.
+    /// On or off.
     Switch(&'a mut bool),
     /// One of several words.
     Word(&'a mut dyn Word),
-    /// A word that sets several other settings, by which it is printed.
+    /// A word that sets several other settings. Those are printed, not the word.
     Preset(&'a mut dyn Word),
-    /// A depth: the number, and whether it counts median radii instead of world units.
+    /// A depth: the number, and whether its unit is the median radius instead of the world unit.
     Depth(&'a mut f32, &'a mut bool),
-    /// Three numbers, or one for all three, or `none`.
+    /// Three numbers, one number for all three, or `none`.
     Ratios(&'a mut Option<[f32; 3]>),
-    /// Three numbers that have names, or `none`.
+    /// Three named numbers, or `none`.
     Parts(&'a mut Option<[f32; 3]>, [&'static str; 3]),
 }
 
-/// The word for the absence of what is optional.
+/// The word for an optional value that is absent.
 const NONE: &str = "none";
 
 impl Slot<'_> {
-    /// The value; none of a preset.
+    /// The value; `None` for a preset.
     #[must_use]
     pub fn get(&self) -> Option<Value> {
         let none = || Value::Text(NONE.into());
@@ -109,7 +110,7 @@ impl Slot<'_> {
         })
     }
 
-    /// Takes a value for the setting `name`.
+    /// Sets the value; `name` is the setting's name, for the error.
     ///
     /// # Errors
     /// One line that says what to give.
@@ -144,7 +145,7 @@ impl Slot<'_> {
         if taken { Ok(()) } else { Err(self.wanted(name, &value.text())) }
     }
 
-    /// The value that a text stands for on the command line; see [`Value::text`].
+    /// Parses a text of the command line; see [`Value::text`].
     ///
     /// # Errors
     /// One line that says what to give.
@@ -167,7 +168,7 @@ impl Slot<'_> {
         self.set(name, &value).map(|()| value)
     }
 
-    /// How a value is written on the command line: words, or the name of a number.
+    /// How help writes the value on the command line: its words, or a letter for a number.
     #[must_use]
     pub fn form(&self) -> String {
         match self {
@@ -182,7 +183,7 @@ impl Slot<'_> {
         }
     }
 
-    /// The words that a value can be.
+    /// The words that the value can be.
     #[must_use]
     pub fn words(&self) -> Vec<&'static str> {
         match self {
@@ -193,21 +194,23 @@ impl Slot<'_> {
         }
     }
 
-    /// The line that refuses a text.
+    /// The error for a text that is not a value.
     fn wanted(&self, name: &str, text: &str) -> String {
         let wanted = match self {
             Self::Number(_) => "a number".into(),
             Self::Count(_) => "a whole number from 0".into(),
             Self::CountOr(_, word) => format!("a whole number from 0, or {word}"),
-            Self::Switch(_) => "true or false, on the command line on or off".into(),
+            Self::Switch(_) => "true or false (on the command line: on or off)".into(),
             Self::Word(word) | Self::Preset(word) => format!("one of {}", word.words().join(", ")),
             Self::Depth(..) => "world units such as 0.25, median radii such as 1.5r, or inf".into(),
             Self::Ratios(_) => {
-                format!("three numbers, on the command line 0.66,0.67,0.68 or one, or {NONE}")
+                format!(
+                    "three numbers (on the command line: 0.66,0.67,0.68, or one for all), or {NONE}"
+                )
             }
             Self::Parts(_, [a, b, c]) => {
                 format!(
-                    "{a}, {b} and {c}, on the command line three numbers in this order, or {NONE}"
+                    "{a}, {b} and {c} (on the command line: three numbers in this order), or {NONE}"
                 )
             }
         };
@@ -221,13 +224,13 @@ impl fmt::Debug for Slot<'_> {
     }
 }
 
-/// Stores what was found, and tells whether something was.
+/// Stores `found`, and returns whether there was something.
 fn put<T>(to: &mut T, found: Option<T>) -> bool {
     found.map(|value| *to = value).is_some()
 }
 
-/// A depth, and whether it is in median radii: `0.25` is in world units, `1.5r` in median radii;
-/// `inf` and `infr` are numbers too.
+/// Parses a depth, and whether it is in median radii: `0.25` is in world units, `1.5r` in median
+/// radii. `inf` and `infr` are numbers too.
 fn depth(value: &Value) -> Option<(f32, bool)> {
     match value {
         Value::Whole(number) => Some((*number as f32, false)),
@@ -243,7 +246,7 @@ fn depth(value: &Value) -> Option<(f32, bool)> {
     }
 }
 
-/// The numbers of three names, each given once.
+/// The numbers of three names, if each name is given once.
 fn three(names: &[&'static str; 3], parts: &[(String, f32)]) -> Option<[f32; 3]> {
     let of = |name: &str| parts.iter().find(|(given, _)| given == name).map(|(_, value)| *value);
     let [a, b, c] = names.map(of);
@@ -251,7 +254,7 @@ fn three(names: &[&'static str; 3], parts: &[(String, f32)]) -> Option<[f32; 3]>
 }
 
 impl Value {
-    /// The value as it is written on the command line.
+    /// The value as you write it on the command line.
     #[must_use]
     pub fn text(&self) -> String {
         let joined = |numbers: &mut dyn Iterator<Item = f32>| {
@@ -269,7 +272,7 @@ impl Value {
 }
 
 impl fmt::Display for Value {
-    /// As TOML; floats are the shortest decimals that give the same `f32`.
+    /// Writes TOML; floats are the shortest decimals that give the same `f32`.
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self {
             Self::Whole(number) => write!(f, "{number}"),

@@ -17,7 +17,7 @@ pub fn flatten(scene: &Scene, exec: &Exec) -> Result<Scene> {
     let Some(objects) = &scene.objects else { return Ok(scene.clone()) };
     let total = objects.drawn_total();
     if total >= u64::from(u32::MAX) {
-        let what = "surfels of all objects, too many to be drawn one by one: use --method deferred";
+        let what = "surfels of all objects, too many to be drawn one by one; use --method deferred";
         return Err(Error::Invalid(format!("{total} {what}")));
     }
     memory::ask(total * OF_A_SURFEL, || format!("{total} surfels of all objects"))?;

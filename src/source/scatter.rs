@@ -51,7 +51,7 @@ impl Scatter {
             return invalid("scale must be two finite numbers > 0, the lower first");
         }
         if axis.is_some_and(|axis| !transform::is_axis(axis)) {
-            return invalid("the axis must not be 0, nor any number infinite");
+            return invalid("the axis must be finite and not 0");
         }
         Ok(())
     }

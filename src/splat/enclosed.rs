@@ -5,7 +5,8 @@
 //! bit. About any other surfel they say nothing.
 //!
 //! A projection in balls is 80 kB of code for each vector width. So the code that uses a splat is
-//! called, and not compiled into each version.
+//! called, and not compiled into each version. One width is compiled, AVX2, because AVX-512 was no
+//! faster. Without AVX2 the lanes decide nothing, because two lanes gain less than they cost to compile.
 
 #![expect(
     clippy::needless_range_loop,
@@ -16,9 +17,10 @@ use super::disc_lanes::DiscLanes;
 use super::{FOOTPRINT, Footprint, Projector, Reasons, Splat};
 use crate::frame::Rect;
 use crate::number::ball::{BallLanes, Common, Profile, Three};
-use crate::number::lanes::{LANES, vectorized};
+use crate::number::lanes::{LANES, vectorized_avx2};
 use crate::number::{Ball, Truth};
 use crate::scene::Surfels;
+use multiversion::target::target_cfg_f;
 use std::ops::Range;
 
 /// What is known of a surfel: it is certainly not drawn, or certainly drawn as this splat, or
@@ -42,13 +44,16 @@ pub(crate) fn affine_surfels<P: Profile>(
     }
 }
 
-vectorized!(
+vectorized_avx2!(
     fn in_lanes<const TANGENTS: bool, P: Profile>(
         projector: &Projector<Ball<Common<P>>>,
         surfels: &Surfels,
         range: Range<usize>,
         draw: &mut dyn FnMut(usize, Option<Splat<Ball<P>>>),
     ) {
+        if !target_cfg_f!(target_feature = "avx2") {
+            return range.for_each(|surfel| draw(surfel, None));
+        }
         let projector = *projector;
         let picture = [projector.view.width, projector.view.height].map(|n| n.middle as u32);
         for some in seen::<TANGENTS, P>(&projector, surfels, range).chunks(LANES) {

@@ -137,6 +137,7 @@ pub fn project<R: Exact>(
 
 /// [`project`] where `crosses` says whether the surfel reaches the near plane. A number that cannot
 /// decide [`Projector::crosses`] calls this twice.
+#[inline(never)]
 #[must_use]
 pub fn project_as<R: Real>(
     projector: &Projector<R>,

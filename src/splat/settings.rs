@@ -52,15 +52,23 @@ impl Default for SplatSettings {
 impl Fields for SplatSettings {
     fn fields(&mut self, each: &mut Visit<'_>) {
         let Self { kernel, epsilon, cull } = self;
-        let preset = "preset of outline, cut-off and low-pass filter";
+        let preset = "choose a preset of outline, cut-off and low-pass filter";
         each(Field::new("kernel", preset, Slot::Preset(kernel)));
-        each(Field::new("outline", "shape of a splat", Slot::Word(&mut kernel.outline)));
+        each(Field::new(
+            "outline",
+            "choose how the shape of a splat is projected",
+            Slot::Word(&mut kernel.outline),
+        ));
         each(
-            Field::new("cutoff", "where the kernel is cut", Slot::Number(&mut kernel.cutoff))
-                .unit("standard deviations")
-                .range("0.25 to 4"),
+            Field::new(
+                "cutoff",
+                "cut the kernel off at this radius",
+                Slot::Number(&mut kernel.cutoff),
+            )
+            .unit("standard deviations")
+            .range("0.25 to 4"),
         );
-        let variance = "variance of the low-pass filter";
+        let variance = "set the variance of the low-pass filter";
         each(
             Field::new("low_pass", variance, Slot::Number(&mut kernel.low_pass))
                 .unit("px^2")
@@ -73,7 +81,7 @@ impl Fields for SplatSettings {
         each(
             Field::new(
                 "epsilon",
-                "depth of the visible band",
+                "treat fragments within this depth of the nearest one as the same surface",
                 Slot::Depth(&mut depth, &mut in_radii),
             )
             .unit("world units, or in median radii as in 1.5r")
@@ -86,7 +94,11 @@ impl Fields for SplatSettings {
 
 /// The row of culling, which methods without splats have too.
 pub(crate) fn culling(cull: &mut bool) -> Field<'_> {
-    Field::new("cull", "whether what is seen from behind is dropped", Slot::Switch(cull))
+    Field::new(
+        "cull",
+        "drop surfels and triangles that face away from the camera",
+        Slot::Switch(cull),
+    )
 }
 
 impl Words for Outline {

@@ -1,9 +1,10 @@
-//! The Pareto front: what nothing else is both faster and nearer to the truth than.
+//! The Pareto front: candidates that no other candidate beats in both time and accuracy.
 
-/// Those of some candidates, each a time and an error, that no other beats, by ascending time.
+/// The candidates on the front, by ascending time; each candidate is a time and an error.
 ///
-/// One beats another if neither its time nor its error is greater and one of them is less; of two
-/// with the same time and error the one with the lower index stays. What has a NaN is on no front.
+/// A candidate beats another if neither its time nor its error is greater and one of them is less.
+/// Of two with the same time and error, the lower index stays. A candidate with a NaN is on no
+/// front.
 #[must_use]
 pub fn front(points: &[[f64; 2]]) -> Vec<usize> {
     let mut order: Vec<usize> =

@@ -1,14 +1,14 @@
-//! What is measured: of samplers, and of methods, speed against accuracy.
+//! Measurements: how even samplers are, and the speed and accuracy of methods.
 //!
 //! - [`mod@atlas`]: where each method breaks.
-//! - [`chart`]: drawings that are written as SVG and as PNG, the same picture in both.
-//! - [`mod@claims`]: what the papers claim, measured.
-//! - [`mod@front`]: what nothing else is both faster and nearer to the truth than.
-//! - [`plan`]: the cheapest within a budget.
-//! - [`mod@report`]: a study as files.
-//! - [`mod@run`]: candidates measured and timed.
-//! - [`spread`]: how evenly prefixes of several orders are spread \[BJFM19, Fig. 3\].
-//! - [`sweep`]: what a study of a scene tries.
+//! - [`chart`]: drawings, written as SVG and as PNG with the same content.
+//! - [`mod@claims`]: the claims of the papers, measured.
+//! - [`mod@front`]: the candidates that no other beats in both time and accuracy.
+//! - [`plan`]: the best candidate within a budget.
+//! - [`mod@report`]: the files of a study.
+//! - [`mod@run`]: measures and times candidates.
+//! - [`spread`]: how evenly the prefixes of several orders cover a surface \[BJFM19, Fig. 3\].
+//! - [`sweep`]: the candidates of a study.
 //! - [`mod@truth`]: the true picture of a scene.
 
 pub mod atlas;

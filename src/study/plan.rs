@@ -1,15 +1,15 @@
-//! The cheapest method and settings within a budget, of candidates that were measured.
+//! Chooses the best method and settings within a budget, from measured candidates.
 //!
-//! [`choose`] goes on in three steps:
+//! [`choose`] takes three steps:
 //!
-//! 1. **Small**: every candidate is drawn with a quarter of the columns and of the rows, and timed. No error is taken:
-//!    holes come and go with the size of a picture, so that errors of a small one are those of another.
-//! 2. **Whole**: from the fastest small picture to the slowest, candidates are drawn at the full size, timed and
-//!    compared with the truth. A picture takes no less time than a quarter of its columns and rows does. So one is left
-//!    out if its small picture takes more than [`HOPELESS`] times the limit of a time, or the time of the fastest
-//!    whole picture that is within an error so far.
-//! 3. **Timed**: those within the budget are timed by turns, but for those whose whole picture took more than
-//!    [`HOPELESS`] times that of the fastest, or the limit.
+//! 1. **Small**: draw and time every candidate in a picture with a quarter of the columns and rows.
+//!    No error is taken, because holes depend on the size of a picture.
+//! 2. **Whole**: from the fastest small picture to the slowest, draw candidates at full size, time
+//!    them and compare them with the truth. A full picture takes at least as long as the small one.
+//!    A candidate is therefore left out if its small picture takes more than [`HOPELESS`] times the
+//!    time limit, or more than that multiple of the fastest whole picture within the error so far.
+//! 3. **Timed**: time the candidates within the budget by turns. Candidates whose whole picture
+//!    took more than [`HOPELESS`] times the fastest, or the limit, are left out.
 
 use super::run::measure::{picture_error, second};
 use super::run::{Bench, Loss, Record, time};
@@ -22,20 +22,21 @@ use crate::progress::Progress;
 use crate::scene::Camera;
 use std::time::{Duration, Instant};
 
-/// A first time may be too long by so much. It is never too short by so much.
+/// The factor by which a first time may be too long. It is never too short by that factor.
 pub const HOPELESS: f64 = 2.0;
-/// How many times fewer columns, and rows, a small picture has.
+/// The factor by which a small picture has fewer columns, and fewer rows.
 const SMALLER: u32 = 4;
-/// There are more rounds than [`time::ROUNDS`] while all took less than this: the times of fast pictures differ
-/// most from turn to turn,
+/// More rounds than [`time::ROUNDS`] are run while they took less than this in all, because the
+/// times of fast pictures vary most from turn to turn,
 const ENOUGH: Duration = Duration::from_secs(3);
-/// and at most so many.
+/// and at most this many.
 pub const MOST_ROUNDS: u64 = 25;
 
-/// Measures candidates against the true picture, and times those that may be the best within a budget.
+/// Measures candidates against the true picture, and times those that may be the best within a
+/// budget.
 ///
 /// # Errors
-/// As [`Bench::visit`] and of the drawing.
+/// As [`Bench::visit`] and as drawing.
 pub fn choose(
     bench: &mut Bench<'_>,
     candidates: &[Candidate],
@@ -58,7 +59,8 @@ pub fn choose(
     let mut limit = budget.first_limit();
     for (done, i) in by_time(&known).into_iter().enumerate() {
         progress("measuring", done as u64, count);
-        // The first is drawn in any case, so that there is a nearest if nothing is within the budget.
+        // The first is always drawn, so that there is a nearest candidate if none is within the
+        // budget.
         if done > 0 && known[i].time > HOPELESS * limit {
             break;
         }
@@ -72,7 +74,7 @@ pub fn choose(
     Ok(known)
 }
 
-/// Times some of the candidates by turns, and replaces what was known of their times by the medians.
+/// Times some of the candidates by turns, and replaces their known times by the medians.
 ///
 /// # Errors
 /// As [`time::turn`].
@@ -103,7 +105,7 @@ pub fn timed(
     Ok(())
 }
 
-/// The same view in a quarter of the columns and rows, both rounded up.
+/// The same view with a quarter of the columns and rows, both rounded up.
 fn small(camera: &Camera) -> Camera {
     let by = SMALLER as f32;
     Camera {
@@ -117,37 +119,37 @@ fn small(camera: &Camera) -> Camera {
     }
 }
 
-/// From the fastest to the slowest; ties to the lower index.
+/// The candidates from the fastest to the slowest; ties go to the lower index.
 fn by_time(known: &[Known]) -> Vec<usize> {
     let mut order: Vec<usize> = (0..known.len()).collect();
     order.sort_by(|&a, &b| known[a].time.total_cmp(&known[b].time).then(a.cmp(&b)));
     order
 }
 
-/// What may not be exceeded.
+/// The limit that a candidate must not exceed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Budget {
-    /// A loss: the fastest candidate whose loss is at most this is chosen.
+    /// An error: choose the fastest candidate whose loss is at most this.
     Error(f64),
-    /// A time of a picture in ms: the candidate with the least loss whose median time is at most
-    /// this is chosen.
+    /// A time of a picture in ms: choose the candidate with the least loss among those whose median
+    /// time is at most this.
     Time(f64),
 }
 
-/// What is known of a candidate.
+/// The measurements of a candidate.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Known {
-    /// The median time of a picture in ms; of what was drawn small alone, that of the small picture.
+    /// The median time of a picture in ms; of the small picture, if only that was drawn.
     pub time: f64,
-    /// How far it is from the truth: the less, the better. NaN of what was drawn small alone, and where there is no such
-    /// error.
+    /// The loss against the truth; smaller is better. It is NaN if only the small picture was
+    /// drawn, or if the metric is undefined.
     pub loss: f64,
-    /// Whether it was drawn at the full size.
+    /// Whether the picture was drawn at full size.
     pub is_whole: bool,
 }
 
 impl Budget {
-    /// Whether a candidate is within the budget; with a NaN it is not.
+    /// Whether a candidate is within the budget; NaN never is.
     #[must_use]
     pub fn allows(&self, known: &Known) -> bool {
         match *self {
@@ -156,7 +158,7 @@ impl Budget {
         }
     }
 
-    /// How long a picture may take, before any is known to be within the budget.
+    /// How long a picture may take while no candidate is known to be within the budget.
     const fn first_limit(&self) -> f64 {
         match *self {
             Self::Error(_) => f64::INFINITY,
@@ -164,7 +166,7 @@ impl Budget {
         }
     }
 
-    /// Those that may be the best, by first times.
+    /// The candidates that may be the best, judged by their first times.
     #[must_use]
     pub fn hopeful(&self, all: &[Known]) -> Vec<usize> {
         let may = |known: &Known| match *self {
@@ -178,8 +180,8 @@ impl Budget {
         (0..all.len()).filter(|&i| may(&all[i]) && !far(&all[i])).collect()
     }
 
-    /// The candidates within the budget, the best first: by time, then loss, where an error is
-    /// given, by loss, then time, where a time is; ties to the lower index.
+    /// The candidates within the budget, the best first. An error budget sorts by time, then loss;
+    /// a time budget by loss, then time. Ties go to the lower index.
     #[must_use]
     pub fn ranked(&self, all: &[Known]) -> Vec<usize> {
         let mut allowed: Vec<usize> = (0..all.len()).filter(|&i| self.allows(&all[i])).collect();
@@ -216,7 +218,8 @@ mod tests {
         assert_eq!(Budget::Error(0.3).hopeful(&all), [0, 1, 2], "9 is more than twice 2");
         assert_eq!(Budget::Time(2.0).hopeful(&all[..5]), [0, 1, 2, 3]);
     }
-    /// Of a whole budget all are drawn whole, of none the first alone; what is drawn small alone is never chosen.
+    /// With an unlimited budget all are drawn whole, with none only the first. A candidate that was
+    /// drawn only small is never chosen.
     #[test]
     fn small_pictures_say_who_is_drawn_whole() {
         let mut file = SceneFile::open(Path::new("torus")).unwrap();

@@ -126,7 +126,9 @@ fn plain(wrong: &StageVerdict) -> Option<String> {
         return Some(format!("NaN in {} of its pixels", causes.nan));
     }
     if all(causes.ties) {
-        return Some("ties: of equally near surfels another is kept than the client says".into());
+        return Some(
+            "ties: the client keeps another of the equally near surfels than it says".into(),
+        );
     }
     let surfel = causes.left_out.keys().next()?;
     let one = causes.left_out.len() == 1 && wrong.wrong > 1 && all(causes.lacking());
@@ -140,7 +142,7 @@ fn common(method: &Method, verdict: &Verdict, wrong: &StageVerdict) -> Option<St
     let discarded = most(causes.outside + causes.absent) && 2 * causes.outside > wrong.wrong;
     // Depths that are too near, also where there is no surfel.
     if discarded || (most(causes.below) && causes.strays > 0) {
-        return Some("depth and id are those of fragments that should be discarded".into());
+        return Some("depth and id come from fragments that should be discarded".into());
     }
     let cutoff = method.splats().map(|splats| f64::from(splats.kernel.cutoff));
     // Where a surfel is left out its weight is missing too; more is wrong where shapes are.
@@ -150,9 +152,9 @@ fn common(method: &Method, verdict: &Verdict, wrong: &StageVerdict) -> Option<St
     } else if cutoff.is_some_and(|k| (0.98..1.1).contains(&(k * causes.least_rim))) {
         Some("q is compared with k, not with k^2".into())
     } else if causes.least_rim > 0.999 {
-        Some("the cut-off is too small: what lies just inside is left out".into())
+        Some("the cut-off is too small: fragments just inside it are left out".into())
     } else if causes.least_rim > 0.6 {
-        Some("quads too small: what is left out lies near the rims of its splats".into())
+        Some("quads too small: the missing fragments lie near the rims of their splats".into())
     } else {
         Some("surfels are left out".into())
     }
@@ -192,7 +194,7 @@ fn common_mistakes(
             all.push(("sums in half floats".into(), Change::Accumulator(Storage::Half)));
         }
         "normalization" | "shading" => {
-            let what = "sRGB where linear colours are meant";
+            let what = "sRGB where linear colours are expected";
             all.push((what.into(), Change::Decoded));
             let what = "colours multiplied by the weight";
             all.push((what.into(), Change::Divided));

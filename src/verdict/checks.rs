@@ -4,8 +4,7 @@ use crate::composite::over::Blend;
 use crate::frame::named::{COLOR, VECTOR, component};
 use crate::method::Job;
 use crate::method::picture::before_light;
-use crate::method::projection::Has;
-use crate::method::{Holds, PlaneRow, When};
+use crate::method::stage::{Conditions, Holds, PlaneRow};
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Vector3};
 use crate::scene::Environment;
@@ -25,17 +24,12 @@ pub(crate) fn missing(
     client: &Client,
     rows: &[PlaneRow],
     levels: Range<usize>,
-    has: Has,
+    there: &Conditions,
 ) -> Vec<String> {
-    let wanted = |row: &&PlaneRow| match row.when {
-        When::Colored => has.color,
-        When::StagesOfTubes => has.tangent,
-        _ => true,
-    };
     let mut any = false;
     let mut missing = Vec::new();
     for level in levels {
-        let names = rows.iter().filter(wanted).map(|row| row.numbered(level));
+        let names = rows.iter().filter(|row| there.hold(row)).map(|row| row.numbered(level));
         let (there, not): (Vec<_>, Vec<_>) =
             names.partition(|name| client.frame().plane(name).is_some());
         any |= !there.is_empty();
@@ -96,15 +90,15 @@ pub(crate) fn number<P: Profile>(
     component_of(part, || plane.channel(), plane.ball(at), truth, report);
 }
 
-/// Three numbers against what they may be; their letters are those of what the row holds.
+/// Three numbers against what they may be; their letters are those of what the plane holds.
 pub(crate) fn triple<P: Profile>(
     part: usize,
-    (plane, holds): (&StoredPlane<'_, [f64; 3]>, Holds),
+    plane: &StoredPlane<'_, [f64; 3]>,
     at: (u32, u32),
     truth: [Ball<P>; 3],
     report: &mut Report<'_>,
 ) {
-    let letters = if holds == Holds::Color { COLOR } else { VECTOR };
+    let letters = if plane.holds == Holds::Color { COLOR } else { VECTOR };
     let found = plane.balls(at);
     for (i, letter) in letters.into_iter().enumerate() {
         component_of(part, || component(&plane.channel(), letter), found[i], truth[i], report);

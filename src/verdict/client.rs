@@ -6,8 +6,8 @@ pub use storage::Storage;
 
 use crate::error::{Error, Result};
 use crate::frame::{Frame, NamedPlane, Plane, Samples};
-use crate::method::PlaneRow;
 use crate::method::stage::numbered;
+use crate::method::{Holds, PlaneRow};
 use crate::number::ball::{Ball, Profile};
 use crate::setting::Words;
 use crate::splat::record::SplatRecord;
@@ -102,6 +102,8 @@ pub struct Client {
 pub(crate) struct StoredPlane<'a, T> {
     /// The name of the row.
     pub(crate) name: &'static str,
+    /// What it holds.
+    pub(crate) holds: Holds,
     /// What stands for `#` in it.
     pub(crate) number: usize,
     pub(crate) plane: &'a Plane<T>,
@@ -203,7 +205,7 @@ impl Client {
             _ => return Err(Error::Invalid(format!("no colours or vectors are called `{plane}`"))),
         };
         if size != (radii.width(), radii.height()) {
-            let what = format!("the radii of the plane `{plane}` have another size than it");
+            let what = format!("the radii of the plane `{plane}` have another size than the plane");
             return Err(Error::Invalid(what));
         }
         self.radii.insert(plane.to_owned(), radii);
@@ -313,7 +315,8 @@ impl Client {
         let channel = row.numbered(number);
         let own = self.storage.get(&channel).or_else(|| self.storage.get(row.name));
         let storage = own.copied().unwrap_or_default();
-        StoredPlane { name: row.name, number, plane, storage, radii: self.radii(&channel) }
+        let PlaneRow { name, holds, .. } = *row;
+        StoredPlane { name, holds, number, plane, storage, radii: self.radii(&channel) }
     }
 }
 

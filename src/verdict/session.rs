@@ -34,7 +34,7 @@ impl Session<'_> {
         self.check_client(camera, client)?;
         self.ask(camera, Making::Verdict)?;
         let names = self.numbers();
-        let client = &*numbered(names.as_ref(), client)?;
+        let client = &*numbered(names.as_ref(), self.method(), client)?;
         let verdict = match client.rounding {
             Rounding::Gpu => table::verify::<Gpu>(method, &job, client, budget),
             Rounding::Ieee => table::verify::<Ieee>(method, &job, client, budget),
@@ -56,7 +56,7 @@ impl Session<'_> {
         self.check_client(camera, client)?;
         self.ask(camera, Making::Verdict)?;
         let names = self.numbers();
-        let client = &*numbered(names.as_ref(), client)?;
+        let client = &*numbered(names.as_ref(), self.method(), client)?;
         let mut checks = match client.rounding {
             Rounding::Gpu => table::checks::<Gpu>(self.method(), &job, client, pixel),
             Rounding::Ieee => table::checks::<Ieee>(self.method(), &job, client, pixel),
@@ -73,17 +73,18 @@ impl Session<'_> {
         if found != picture {
             let [width, height] = found;
             return Err(Error::Invalid(format!(
-                "planes of {width} x {height}, but the camera's picture has {} x {}",
+                "the planes have {width} x {height} pixels, but the camera's picture has {} x {}",
                 picture[0], picture[1]
             )));
         }
         if frame.planes.is_empty() {
-            let what = format!("no plane is called as one of the method {}", self.method().name());
+            let what =
+                format!("no plane has the name of a plane of the method {}", self.method().name());
             return Err(Error::Invalid(what));
         }
         if client.records.is_some() && !matches!(self.method(), Method::Ewa(_)) {
             let name = self.method().name();
-            let what = format!("records are judged of the method ewa alone, and this is {name}");
+            let what = format!("only the method ewa judges records, but this is {name}");
             return Err(Error::Invalid(what));
         }
         Ok(())
@@ -91,9 +92,13 @@ impl Session<'_> {
 }
 
 /// A client with indices of surfels in the place of their ids.
-fn numbered<'c>(names: Option<&Names<'_>>, client: &'c Client) -> Result<Cow<'c, Client>> {
+fn numbered<'c>(
+    names: Option<&Names<'_>>,
+    method: &Method,
+    client: &'c Client,
+) -> Result<Cow<'c, Client>> {
     let Some(names) = names else { return Ok(Cow::Borrowed(client)) };
     let mut numbered = client.clone();
-    names.number_given(numbered.frame_mut())?;
+    names.number_given(numbered.frame_mut(), method.stages())?;
     Ok(Cow::Owned(numbered))
 }

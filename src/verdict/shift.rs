@@ -18,7 +18,7 @@
 //! variance is the sum over surfels of the square of the sum over a surfel's decisions of a (y - p).
 //! z is score / sqrt(variance), the estimate of s score / information.
 
-use super::Doubt;
+use super::doubt::Doubt;
 use std::collections::BTreeMap;
 
 /// How many radii a decision is off, one standard deviation.

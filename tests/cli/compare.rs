@@ -111,7 +111,10 @@ fn arrays_of_numpy_are_compared_by_their_name() {
     let doubles: Vec<u8> = DEPTH.iter().flat_map(|v| f64::from(*v).to_le_bytes()).collect();
     npy(&at, "depth.npy", "<f8", "(2, 4, 1)", &doubles);
     let line = fails(at.path(), &["compare", "a.exr", "depth.npy"], 1);
-    assert!(line.contains("depth.npy: holds depth, which the other picture has not;"), "{line}");
+    assert!(
+        line.contains("depth.npy: holds depth, which the other picture does not have;"),
+        "{line}"
+    );
     assert!(line.contains("--as one of: Z, id, normal.X"), "{line}");
     assert_eq!(compared(&at, &["a.exr", "depth.npy", "--as", "Z"]).0, 0);
     assert_eq!(compared(&at, &["Z.npy", "depth.npy", "--as", "Z"]).0, 0);
@@ -129,7 +132,7 @@ fn arrays_of_numpy_are_compared_by_their_name() {
 
     npy(&at, "huge.npy", "<f8", "(4000000000, 4000000000)", b"");
     let line = fails(at.path(), &["compare", "a.exr", "huge.npy"], 1);
-    assert!(line.contains("huge.npy: header: promises"), "{line}");
+    assert!(line.contains("huge.npy: header: declares"), "{line}");
     fs::write(at.path().join("noise.npy"), "no array").unwrap();
     fails(at.path(), &["compare", "a.exr", "noise.npy"], 1);
     fails(at.path(), &["compare", "a.exr", "missing.npy"], 1);

@@ -84,7 +84,7 @@ fn groups_that_cannot_be_are_refused() {
         (&["--groups", "0"], "0 groups; give 1 to 64"),
         (&["--groups", "65"], "65 groups; give 1 to 64"),
         (&["--coplanar", "2,0,0"], "cosine 2"),
-        (&["--extend", "add", "--most", "2"], "covered to 2; give 0 to 1"),
+        (&["--extend", "add", "--most", "2"], "most: 2; give 0 to 1"),
     ] {
         let line = group(more, 1);
         assert!(line.contains(what), "{line}");

@@ -59,11 +59,12 @@ fn a_folder_is_made_described_and_found_again() {
     let (at, options) = given();
     let with = |more: &[&'static str]| [&options[..], more].concat();
     let said = succeeds(at.path(), &with(&["out"]));
-    for word in ["2 of 1 geometries", "20736, 10368 of them unique", "1 of them of several objects"]
+    for word in
+        ["2 of 1 geometries", "20736, 10368 of them unique", "1 of them cover several objects"]
     {
         assert!(said.contains(word), "{word} in {said}");
     }
-    assert!(!said.contains("flaws") && !said.contains("were there"), "{said}");
+    assert!(!said.contains("flaws") && !said.contains("from an earlier run"), "{said}");
     let info = succeeds(at.path(), &["info", "out"]);
     assert!(
         info.contains("2 of 1 geometries") && info.contains("(0, 0, 0) to (3, 0.0625, 1)"),
@@ -77,7 +78,10 @@ fn a_folder_is_made_described_and_found_again() {
     let nodes = Hierarchy::open(&at.path().join("out")).unwrap().nodes().len();
     let made = all.keys().filter(|name| name.starts_with("surfels-")).count();
     let said = succeeds(at.path(), &with(&["out"]));
-    assert!(said.contains(&format!("{made} approximated, {made} of them were there")), "{said}");
+    assert!(
+        said.contains(&format!("{made} approximated, {made} of them from an earlier run")),
+        "{said}"
+    );
     assert!(made > 3 && made <= nodes);
     succeeds(at.path(), &with(&["down", "--traversal", "top-down", "--sampler", "progressive"]));
     assert!(files(&at.path().join("down")) != all);
@@ -98,9 +102,9 @@ fn a_folder_is_rendered_as_a_scene() {
     fs::write(at.path().join("two.toml"), "hierarchy = \"out\"\n[[model]]\nshape = \"torus\"\n")
         .unwrap();
     let line = fails(at.path(), &render("two.toml", "c.exr"), 1);
-    assert!(line.contains("a hierarchy is all that a scene shows"), "{line}");
+    assert!(line.contains("a hierarchy cannot be combined with models"), "{line}");
     let line = fails(at.path(), &["render", "out", "--opacity", "0.5"], 2);
-    assert!(line.contains("--opacity is of models"), "{line}");
+    assert!(line.contains("--opacity applies to models"), "{line}");
     let line = fails(at.path(), &["surfels", "out", "-o", "again"], 2);
     assert!(line.contains("is a hierarchy already"), "{line}");
 }
@@ -182,7 +186,7 @@ fn what_a_full_disk_stopped_goes_on() {
     assert!(line.lines().count() == 1 && line.contains("mesh-0: "), "{line}");
     assert_eq!(names(&at.path().join("out")), ["plan"]);
     let line = fails(at.path(), &["info", "out"], 1);
-    assert!(line.contains("not whole yet"), "{line}");
+    assert!(line.contains("incomplete"), "{line}");
     succeeds(at.path(), &options);
     let all = files(&at.path().join("out"));
     *options.last_mut().unwrap() = "all";
@@ -209,18 +213,18 @@ fn two_at_once_make_one() {
 fn options_that_a_folder_has_no_use_for_are_refused() {
     let (at, options) = given();
     for (more, what) in [
-        (&["--start", "3"][..], "--start is not for a folder"),
-        (&["--distance", "geodesic"], "--distance geodesic is not for a folder"),
-        (&["--average-colors", "3"], "--average-colors is not for a folder"),
+        (&["--start", "3"][..], "--start does not apply to a folder"),
+        (&["--distance", "geodesic"], "--distance geodesic does not apply to a folder"),
+        (&["--average-colors", "3"], "--average-colors does not apply to a folder"),
     ] {
         let line = fails(at.path(), &[&options[..], &["out"], more].concat(), 2);
         assert!(line.contains(what), "{what} in {line}");
     }
     let line =
         fails(at.path(), &["surfels", "hills.ply", "-o", "a.ply", "--traversal", "top-down"], 2);
-    assert!(line.contains("--traversal is for a folder"), "{line}");
+    assert!(line.contains("--traversal applies to a folder"), "{line}");
     let line = fails(at.path(), &["surfels", "sphere", "-o", "out"], 1);
-    assert!(line.contains("no triangles to approximate"), "{line}");
+    assert!(line.contains("no triangles to sample"), "{line}");
     let line = fails(at.path(), &["surfels", "hills.ply", "-o", "no/where"], 1);
     assert!(line.contains("no/where"), "{line}");
     fs::write(at.path().join("file"), "kept").unwrap();
@@ -326,10 +330,10 @@ fn scenes_give_their_opacities_and_properties_to_points() {
     assert!(line.lines().count() == 1, "{line}");
     fs::write(at.path().join("all.toml"), "hierarchy = \"out\"\n").unwrap();
     let line = fails(at.path(), &surfels("all.toml", "again.ply"), 1);
-    assert!(line.contains("a hierarchy has its surfels already"), "{line}");
+    assert!(line.contains("a hierarchy already has its surfels"), "{line}");
     fs::write(at.path().join("tree.toml"), "[[model]]\nshape = \"tree\"\n").unwrap();
     let line = fails(at.path(), &surfels("tree.toml", "tree.ply"), 2);
-    assert!(line.contains("tree: there is no property roughness"), "{line}");
+    assert!(line.contains("tree: no property roughness"), "{line}");
 }
 
 /// What a folder holds is told of its index alone; of a scene that shows it of the bounds, too.

@@ -38,7 +38,7 @@ fn what_takes_too_much_is_refused() {
     let at = TempDir::new().unwrap();
     for (arguments, what) in greedy(&at) {
         let line = fails(at.path(), &[&arguments[..], &["--memory", "96M"]].concat(), 1);
-        assert!(line.contains(what) && line.contains("96 MiB is the limit"), "{line}");
+        assert!(line.contains(what) && line.contains("the limit is 96 MiB"), "{line}");
     }
     assert_eq!(names(at.path()), ["bytes.ply", "zeros.exr"]);
     let succeeds = |arguments: &[&str]| {

@@ -152,6 +152,6 @@ fn pictures_are_stored_in_few_digits() {
         assert!(fails(at.path(), &all.concat(), 2).contains("give --storage f32"));
     }
     let both = ["-o", "a.exr", "--storage", "f16", "--number", "f64"];
-    assert!(fails(at.path(), &small(&both), 1).contains("storage formats are those of f32"));
+    assert!(fails(at.path(), &small(&both), 1).contains("storage formats need f32"));
     assert_eq!(names(at.path()), ["half.exr", "half.png", "whole.exr", "whole.png"]);
 }

@@ -79,7 +79,7 @@ fn what_nothing_meets_is_said() {
     assert_eq!(out.status.code(), Some(1));
     assert!(!at.path().join("best.toml").exists());
     assert!(
-        said.contains("nothing is within an error of 0; the nearest is --method blue"),
+        said.contains("no candidate is within an error of 0; the nearest is --method blue"),
         "{said}"
     );
     for budget in
@@ -89,7 +89,7 @@ fn what_nothing_meets_is_said() {
     }
     fails(at.path(), &["plan", "torus", "--error", "1", "--time", "20ms"], 2);
     let flicker = ["plan", "torus", "--error", "1", "--metric", "flicker-path"];
-    assert!(fails(at.path(), &flicker, 2).contains("of a sequence"));
+    assert!(fails(at.path(), &flicker, 2).contains("measured on sequences"));
     fails(at.path(), &["plan", "nowhere.ply", "--error", "1"], 1);
     let model = "[[model]]\nshape = \"sphere\"\n";
     fs::write(at.path().join("own.toml"), model).unwrap();

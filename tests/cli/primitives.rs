@@ -43,11 +43,11 @@ fn info_counts_what_there_is() {
         words.iter().for_each(|word| assert!(said.contains(word), "{word} in {said}"));
         said
     };
-    says("mesh.ply", &["triangles  2", "edges      1", "surfels    2", "a triangle each"]);
+    says("mesh.ply", &["triangles  2", "edges      1", "surfels    2", "one for each triangle"]);
     says("line.ply", &["has        radii, tangents", "surfels    none: normals"]);
     let words = ["polygons: 2 triangles, normals derived from the triangles\n", "(4, 2, 0)"];
     let said = says("polygons.toml", &words);
-    assert!(said.contains("drawn as polygons") && !said.contains("in the median"), "{said}");
+    assert!(said.contains("drawn as polygons") && !said.contains("the median"), "{said}");
     // The triangle with x + 2 y <= 4 is a polygon, the corners of the other are surfels.
     says("hybrid.toml", &["drawn as hybrid", "hybrid: 3 surfels, 1 triangles, normals derived"]);
     says(
@@ -58,7 +58,7 @@ fn info_counts_what_there_is() {
             "sphere: 100 surfels, procedural",
             "dropped  none",
             "(4, 2, 8)",
-            "in the median",
+            "the median",
         ],
     );
 }
@@ -79,8 +79,8 @@ fn only_the_pyramid_draws_them_and_deferred_and_blue_triangles() {
             }
             let line = fails(at.path(), &["render", &file, "--method", method], 1);
             let expected = format!(
-                "splatref: {scene} has triangles or lines, which the method {method} does not \
-                 draw; use --method {able}\n"
+                "splatref: {scene} has triangles or lines, but the method {method} does not draw \
+                 them; use --method {able}\n"
             );
             assert_eq!(line, expected);
         }
@@ -95,11 +95,11 @@ fn only_the_pyramid_draws_them_and_deferred_and_blue_triangles() {
     }
     ["a.exr", "a.png"].iter().for_each(|name| fs::remove_file(at.path().join(name)).unwrap());
     let line = fails(at.path(), &["explain", "all.toml", "3", "4"], 1);
-    assert!(line.contains("which the method ewa does not draw"), "{line}");
+    assert!(line.contains("but the method ewa does not draw them"), "{line}");
     let line = fails(at.path(), &["group", "all.toml", "-o", "b.ply"], 1);
     assert!(line.contains("only surfels are divided into groups"), "{line}");
     let line = fails(at.path(), &["render", "all.toml", "--opacity", "0.5"], 1);
-    assert!(line.contains("what is drawn as polygons is opaque"), "{line}");
+    assert!(line.contains("a model drawn as polygons is opaque"), "{line}");
     assert_eq!(names(at.path()), before, "nothing was written");
 }
 
@@ -155,10 +155,10 @@ fn a_tree_is_refused_where_it_cannot_be_drawn() {
     for (more, what) in [
         (
             &[] as &[&str],
-            "tree has triangles or lines, which the method ewa does not draw; use --method pyramid",
+            "tree has triangles or lines, but the method ewa does not draw them; use --method pyramid",
         ),
-        (&["--method", "pyramid", "--opacity", "0.5"], "tree: what is drawn as lines is opaque"),
-        (&["--method", "pyramid", "--count", "0"], "a tree with 0 leaves"),
+        (&["--method", "pyramid", "--opacity", "0.5"], "tree: a model drawn as lines is opaque"),
+        (&["--method", "pyramid", "--count", "0"], "a tree of 0 leaves"),
     ] {
         // An option that comes twice is another mistake.
         let count = if more.contains(&"--count") { 2 } else { 4 };

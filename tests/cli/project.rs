@@ -40,7 +40,7 @@ fn what_has_no_records_is_refused() {
         (&["-o", "a.bin", "--method", "pyramid"] as &[&str], "draws no splats", 2),
         (&["-o", "a.bin", "--method", "template"], "draws no splats", 2),
         (&["-o", "a.bin", "--number", "f64"], "records are f32", 2),
-        (&["-o", "a.ply"], "give a name in .bin", 2),
+        (&["-o", "a.ply"], "give a name that ends in .bin", 2),
         (&[], "--output", 2),
         (&["-o", "missing/a.bin"], "missing", 1),
         (&["-o", "a.bin", "--cutoff", "9"], "cut-off of 9", 1),

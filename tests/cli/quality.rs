@@ -119,7 +119,7 @@ fn what_has_no_quality_is_refused() {
     {
         std::os::unix::fs::symlink("in.ply", at.path().join("link.svg")).unwrap();
         let line = fails(at.path(), &["quality", "in.ply", "-o", "link.svg"], 2);
-        assert!(line.contains("is what is read"), "{line}");
+        assert!(line.contains("is also an input"), "{line}");
         fs::remove_file(at.path().join("link.svg")).unwrap();
     }
     assert_eq!(names(at.path()), before, "nothing is written");

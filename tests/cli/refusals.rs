@@ -67,22 +67,22 @@ fn pictures_that_cannot_be_are_refused() {
         (&["--low-pass", "-1"], "low-pass"),
         (&["--environment", "none.exr"], "none.exr"),
         (&["--opacity", "1.5"], "opacity of 1.5"),
-        (&["--bins", "5"], "`bins` means nothing to the method ewa"),
+        (&["--bins", "5"], "`bins` does not apply to the method ewa"),
         (&["--method", "single-pass", "--overlap", "-0.5"], "c = -0.5"),
         (&["--method", "single-pass", "--overlap", "nan"], "c = NaN"),
         (&["--method", "single-pass", "--groups", "0"], "0 groups"),
         (&["--method", "transparent", "--groups", "65"], "1 to 64"),
-        (&["--method", "transparent", "--bins", "0"], "n = 0"),
-        (&["--method", "transparent", "--bins", "65536"], "n = 65536"),
+        (&["--method", "transparent", "--bins", "0"], "bins: 0;"),
+        (&["--method", "transparent", "--bins", "65536"], "bins: 65536"),
         (&["--method", "transparent", "--epsilon", "1e-9"], "at most 65535 bins"),
         (&["--method", "single-pass", "--epsilon", "0"], "at most 65535 bins"),
-        (&["--method", "transparent", "--refraction", "0.7"], "`refraction` means nothing"),
+        (&["--method", "transparent", "--refraction", "0.7"], "`refraction` does not apply to"),
         (&["--method", "transparent-hq", "--refraction", "0.7"], "give an environment"),
         (
             &["--method", "transparent-hq", "--environment", "sky", "--refraction", "5"],
             "a ratio of 5",
         ),
-        (&["--method", "peeling", "--peel", "0"], "layers: 0"),
+        (&["--method", "peeling", "--peel", "0"], "peel: 0"),
     ] {
         let line = fails(at.path(), &small(more), 1);
         assert!(line.contains(what), "{line}");
@@ -126,7 +126,7 @@ fn inputs_are_spared() {
         &["render", "sphere", "--environment", "map.exr", "-o", "map.exr"],
     ] {
         let line = fails(at.path(), arguments, 2);
-        assert!(line.contains("is what the scene is read from"), "{line}");
+        assert!(line.contains("is part of the scene"), "{line}");
     }
     assert_eq!(before, [fs::read(name("a.ply")).unwrap(), fs::read(name("map.exr")).unwrap()]);
     succeeds(at.path(), &["group", "a.ply", "-o", "b.ply"]);
@@ -139,7 +139,7 @@ fn a_picture_and_its_preview_go_together() {
     fs::write(at.path().join("a.exr"), "old").unwrap();
     fs::create_dir(at.path().join("a.png")).unwrap();
     let line = fails(at.path(), &small(&["-o", "a.exr"]), 1);
-    assert!(line.contains("a.png") && line.contains("no regular file"), "{line}");
+    assert!(line.contains("a.png") && line.contains("not a regular file"), "{line}");
     assert_eq!(fs::read(at.path().join("a.exr")).unwrap(), b"old");
     assert_eq!(names(at.path()), ["a.exr", "a.png"]);
 }

@@ -86,8 +86,8 @@ fn info_describes_every_kind_of_file() {
         "triangles  1",
         "has        colours",
         "surfels    1",
-        "normals  of ellipses, a triangle each",
-        "radii    of ellipses, a triangle each",
+        "normals  from ellipses, one for each triangle",
+        "radii    from ellipses, one for each triangle",
         "1 points: 1 not finite",
         "(0.66667, 1, 0) to (0.66667, 1, 0)",
     ] {

@@ -104,13 +104,13 @@ fn what_was_written_stays_whole() {
 fn frames_that_are_none_are_refused() {
     let at = walk();
     for (more, what) in [
-        (&["--frames", "5..5"] as &[&str], "no frame is in 5..5"),
-        (&["--frames", "2..1"], "no frame is in 2..1"),
+        (&["--frames", "5..5"] as &[&str], "5..5 holds no frame"),
+        (&["--frames", "2..1"], "2..1 holds no frame"),
         (&["--frames", "0..4"], "frame 3 of walk: give 0 to 2"),
         (&["--frames", "0"], "such as 0..60"),
         (&["--frames", "0..2", "--repeat", "3"], "--repeat"),
         (&["--frames", "0..2", "--frame", "1"], "--frame"),
-        (&["--frames", "0..2", "-o", "w.png"], "give a name in .exr"),
+        (&["--frames", "0..2", "-o", "w.png"], "give a name that ends in .exr"),
         (&["--frame", "3"], "frame 3 of walk: give 0 to 2"),
     ] {
         let line = fails(at.path(), &[&["render", "walk.toml"], more].concat(), 2);
@@ -126,7 +126,7 @@ fn frames_that_are_none_are_refused() {
     );
     let line =
         fails(at.path(), &[&["render", "walk.toml", "--frames", "0..3"], &sky[..]].concat(), 2);
-    assert!(line.contains("sky.0001.exr is what the scene is read from"), "{line}");
+    assert!(line.contains("sky.0001.exr is part of the scene"), "{line}");
     assert_eq!(names(at.path()), ["sky.0001.exr", "sky.0001.png", "walk.toml"]);
 }
 
@@ -217,34 +217,34 @@ fn a_frame_goes_on_from_the_state_of_the_one_before() {
     // What cannot be.
     let refused = |more: &[&'static str], code| fails(at.path(), &with(more), code);
     let line = refused(&["--frame", "1", "--state", "s.bin", "-o", "x.exr"], 1);
-    assert!(line.contains("what frame 1 saw is for frame 2, and this is frame 1"), "{line}");
+    assert!(line.contains("the state after frame 1 is for frame 2, but this is frame 1"), "{line}");
     let line = refused(&["--frame", "2", "--state", "s.bin", "--flags", "8", "-o", "x.exr"], 1);
-    assert!(line.contains("groups of 64 surfels, the method 8: set --flags 64"), "{line}");
+    assert!(line.contains("flags of 64 surfels, but the method has 8; set --flags 64"), "{line}");
     let line = refused(&["--frame", "2", "--state", "walk.toml", "-o", "x.exr"], 1);
-    assert!(line.contains("no state of splatref"), "{line}");
+    assert!(line.contains("not a state of splatref"), "{line}");
     let line = refused(&["-o", "x.exr", "--keep-state", "walk.toml"], 2);
     assert!(line.contains("walk.toml"), "{line}");
     for kept in ["x.exr", "./x.png"] {
         let line = refused(&["-o", "x.exr", "--keep-state", kept], 2);
-        assert!(line.contains("are one file; give two names"), "{line}");
+        assert!(line.contains("are the same file; give two names"), "{line}");
     }
     let frame = ["--frame", "2", "--state", "s.bin", "-o", "x.exr", "--keep-state", "./s.bin"];
     let line = refused(&frame, 2);
-    assert!(line.contains("is what is read; give another name"), "{line}");
+    assert!(line.contains("is also an input; give another name"), "{line}");
     fs::write(at.path().join("tree.toml"), format!("{WALK}[[geometry]]\nname = \"real\"\nshape = \"tree\"\nleaves = 9\n[[object]]\nof = \"real\"\n")).unwrap();
     let line = fails(at.path(), &["render", "tree.toml", "--method", "deferred", "-o", "x.exr"], 1);
     assert!(
-        line.contains("has triangles or lines, which the method deferred does not draw"),
+        line.contains("has triangles or lines, but the method deferred does not draw"),
         "{line}"
     );
     let ewa = ["render", "walk.toml", "-o", "x.exr", "--keep-state", "t.bin"];
     let line = fails(at.path(), &ewa, 2);
-    assert!(line.contains("the method ewa carries nothing from frame to frame"), "{line}");
+    assert!(line.contains("the method ewa has no state between frames"), "{line}");
     let other = WALK.replace("count = 100", "count = 101");
     fs::write(at.path().join("other.toml"), other).unwrap();
     let other = ["render", "other.toml", "--method", "deferred", "--frame", "2", "-o", "x.exr"];
     let line = fails(at.path(), &[&other[..], &["--state", "s.bin"]].concat(), 1);
-    assert!(line.contains("the state is of another scene"), "{line}");
+    assert!(line.contains("the state belongs to another scene"), "{line}");
     assert!(!at.path().join("x.exr").exists() && !at.path().join("t.bin").exists());
 }
 
@@ -308,5 +308,5 @@ fn levels_of_detail_follow_the_camera() {
     }
     fs::write(at.path().join("bad.toml"), "[[model]]\nshape = \"torus\"\ndetail = 1\n").unwrap();
     let line = fails(at.path(), &["render", "bad.toml", "-o", "x.exr"], 1);
-    assert!(line.contains("`detail` means nothing to torus: remove it"), "{line}");
+    assert!(line.contains("`detail` does not apply to torus: remove it"), "{line}");
 }

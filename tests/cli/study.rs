@@ -80,7 +80,7 @@ fn a_study_that_was_stopped_goes_on() {
     assert!(fails(at.path(), &other, 1).contains("another scene, camera, truth or version"));
     fs::write(at.path().join("whole/study.json"), "{\"of\": 3}").unwrap();
     let broken = [&FEW[..], &["-o", "whole", "--resume"]].concat();
-    assert!(fails(at.path(), &broken, 1).contains("no study"));
+    assert!(fails(at.path(), &broken, 1).contains("not a study"));
     let none = [&FEW[..], &["-o", "none", "--resume"]].concat();
     fails(at.path(), &none, 1);
     assert!(!at.path().join("none").exists(), "nothing is made for what cannot go on");

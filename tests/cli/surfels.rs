@@ -153,7 +153,7 @@ fn opacities_and_properties_go_with_the_points() {
     let line = fails(at.path(), &[&surfels[..], &["--properties", "gloss"]].concat(), 1);
     assert!(line.contains("mesh.ply: element vertex has no property `gloss`"), "{line}");
     let line = fails(at.path(), &["surfels", "mesh.obj", "-o", "out.ply", "--properties", "a"], 2);
-    assert!(line.contains("--properties are of a .ply"), "{line}");
+    assert!(line.contains("--properties needs a .ply"), "{line}");
     let line = fails(at.path(), &["surfels", "mesh.ply", "-o", "folder", "--properties", "a"], 1);
     assert!(line.contains("mesh.ply: element vertex has no property `a`"), "{line}");
     assert!(!at.path().join("folder").exists(), "nothing is begun");
@@ -196,7 +196,7 @@ fn a_prefix_is_the_file_of_its_points() {
     for (arguments, code, what) in [
         (["all.ply", "--prefix", "0"], 1, "a prefix of 0 points"),
         (["sphere", "--prefix", "9"], 2, "sphere is none"),
-        (["mesh.ply", "--prefix", "9"], 1, "mesh.ply: a prefix is of points"),
+        (["mesh.ply", "--prefix", "9"], 1, "mesh.ply: a prefix needs points"),
     ] {
         let line = fails(at.path(), &[&["render", "-o", "out.exr"], &arguments[..]].concat(), code);
         assert!(line.contains(what), "{what} in {line}");
@@ -236,8 +236,12 @@ fn a_view_draws_as_much_of_an_order_as_it_needs() {
     for (arguments, code, what) in [
         (["all.ply", "--surfel-size", "0"], 1, "discs of 0 pixels"),
         (["all.ply", "--surfel-budget", "0"], 1, "a budget of 0 surfels"),
-        (["mesh.ply", "--surfel-budget", "9"], 1, "mesh.ply: a prefix is of points"),
-        (["sphere", "--surfel-budget", "9"], 1, "sphere: what is progressive are points of a file"),
+        (["mesh.ply", "--surfel-budget", "9"], 1, "mesh.ply: a prefix needs points"),
+        (
+            ["sphere", "--surfel-budget", "9"],
+            1,
+            "sphere: only the ordered points of a file can be progressive",
+        ),
     ] {
         let line = fails(at.path(), &[&["render", "-o", "out.exr"], &arguments[..]].concat(), code);
         assert!(line.contains(what), "{what} in {line}");
@@ -253,7 +257,7 @@ fn colours_of_the_first_points_are_means() {
     let options = ["surfels", "in.ply", "--start", "3", "-o"];
     succeeds(at.path(), &[&options[..], &["own.ply"]].concat());
     let said = succeeds(at.path(), &[&options[..], &["out.ply", "--average-colors", "8"]].concat());
-    assert!(said.contains("means over cells, of the first 8\n"), "{said}");
+    assert!(said.contains("means over the nearest points, for the first 8\n"), "{said}");
     let [own, new] = ["own.ply", "out.ply"].map(|name| ply::read(&at.path().join(name)).unwrap());
     let [own_color, new_color] = [&own, &new].map(|cloud| cloud.color.clone().unwrap());
     // The first pick's cell is all: the mean of 0 to 59, 1 and 2.
@@ -306,18 +310,18 @@ fn distances_along_a_surface_do_not_go_through_it() {
     assert!(said.contains("parts      1, which"), "{said}");
     let count = ["surfels", "in.ply", "-o", "out.ply", "--distance", "geodesic"];
     for (name, options, code, what) in [
-        ("in.ply", &[] as &[&str], 1, "in.ply: of points --distance geodesic needs a --reach"),
+        ("in.ply", &[] as &[&str], 1, "in.ply: points need a --reach with --distance geodesic"),
         ("plain.ply", &["--reach", "2"], 1, "plain.ply: the file has no normals"),
         ("in.ply", &["--reach", "0"], 2, "--reach 0: give a length above 0"),
         ("in.ply", &["--reach", "nan"], 2, "--reach NaN"),
-        ("in.ply", &["--reach", "1", "--sampler", "random"], 2, "is of --sampler greedy"),
+        ("in.ply", &["--reach", "1", "--sampler", "random"], 2, "needs --sampler greedy"),
     ] {
         let all = [&[count[0], name], &count[2..], options].concat();
         let line = fails(at.path(), &all, code);
         assert!(line.contains(what), "{what} in {line}");
     }
     let line = fails(at.path(), &["surfels", "in.ply", "-o", "out.ply", "--reach", "1"], 2);
-    assert!(line.contains("--reach is of --distance geodesic"), "{line}");
+    assert!(line.contains("--reach needs --distance geodesic"), "{line}");
 }
 
 #[test]
@@ -358,12 +362,12 @@ fn what_cannot_be_put_in_order_is_refused() {
         (&["in.ply", "-o", "out.ply", "--count", "0"] as &[&str], 2, "give at least 1"),
         (&["in.ply", "-o", "out.ply", "--start", "1", "--sampler", "random"], 2, "no --start"),
         (&["mesh.ply", "-o", "out.ply", "--side", "0"], 2, "--side 0: camera: a picture of 0 x 0"),
-        (&["in.ply", "-o", "out.ply", "--side", "9"], 1, "in.ply: --side is for a mesh"),
-        (&["in.ply", "-o", "out.ply", "--directions", "box"], 1, "--directions is for a mesh"),
+        (&["in.ply", "-o", "out.ply", "--side", "9"], 1, "in.ply: --side needs a mesh"),
+        (&["in.ply", "-o", "out.ply", "--directions", "box"], 1, "--directions needs a mesh"),
         (&["in.ply", "-o", "out.ply", "--sampler", "best"], 2, "greedy"),
-        (&["in.ply", "-o", "in.ply"], 2, "in.ply is what is read"),
-        (&["in.ply", "-o", "out.exr"], 2, "out.exr: points go into a PLY"),
-        (&["sphere", "-o", "out.ply"], 2, "sphere: points or a mesh are read"),
+        (&["in.ply", "-o", "in.ply"], 2, "in.ply is also an input"),
+        (&["in.ply", "-o", "out.exr"], 2, "out.exr: points are written as a PLY"),
+        (&["sphere", "-o", "out.ply"], 2, "sphere: give points or a mesh"),
         (&["in.ply"], 2, "--output"),
         (&["in.ply", "-o", "missing/out.ply"], 1, "missing/out.ply"),
         (&["in.ply", "-o", "out.ply", "--start", "9"], 1, "start 9, but the points are 0 to 8"),
@@ -422,9 +426,9 @@ fn the_candidates_of_a_textured_mesh_have_its_colours() {
     let picture = ["render", "in.ply", "-o", "a.exr", "--size", "32x24", "--texture", "green.exr"];
     succeeds(at.path(), &picture);
     let said = fails(at.path(), &["render", "sphere", "-o", "b.exr", "--texture", "green.exr"], 2);
-    assert!(said.contains("--texture is of a file, and sphere is none"), "{said}");
+    assert!(said.contains("--texture applies to a file, but sphere is not one"), "{said}");
     ply::write(&at.path().join("points.ply"), &points(9)).unwrap();
     let said =
         fails(at.path(), &["surfels", "points.ply", "-o", "c.ply", "--texture", "green.exr"], 1);
-    assert!(said.contains("--texture is for a mesh, but the file has no triangles"), "{said}");
+    assert!(said.contains("--texture needs a mesh, but the file has no triangles"), "{said}");
 }

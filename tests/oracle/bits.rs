@@ -1,10 +1,10 @@
 //! Bits: the fast path is the plain one, and neither threads nor tiles can be seen in a picture.
 
-use crate::ewa::cases::{self, KINDS, Kind};
-use crate::kit::case::Case;
-use crate::kit::draw::Drawing;
-use crate::kit::planes::{bits, digest, number, unclean};
-use crate::kit::scene::{self, OUTLINES, change, scene, surfels};
+use crate::oracle::ewa::cases::{self, KINDS, Kind};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::draw::Drawing;
+use crate::oracle::kit::planes::{bits, digest, number, unclean};
+use crate::oracle::kit::scene::{self, OUTLINES, change, scene, surfels};
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use splatref::composite::bins::MAX_BINS;

@@ -3,9 +3,9 @@
 //! This is a property of the crate's own numbers, in each arithmetic; only the test of tightness
 //! takes extents from the oracle.
 
-use crate::ewa::splat::{Body, Figure, Optics};
-use crate::kit::eye::{Eye, wide};
-use crate::kit::scene::{OUTLINES, discs, near, surfels};
+use crate::oracle::ewa::splat::{Body, Figure, Optics};
+use crate::oracle::kit::eye::{Eye, wide};
+use crate::oracle::kit::scene::{OUTLINES, discs, near, surfels};
 use glam::Vec3;
 use proptest::prelude::*;
 use splatref::method::ewa::Settings;

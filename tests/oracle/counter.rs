@@ -1,10 +1,10 @@
 //! A third number: f64 that counts its operations. Every formula of the crate runs on it.
 
-use crate::ewa::cases::{self, Kind};
-use crate::kit::case::Case;
-use crate::kit::draw::Drawing;
-use crate::kit::planes::{bits, digest};
-use crate::kit::scene::{OUTLINES, groups};
+use crate::oracle::ewa::cases::{self, Kind};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::draw::Drawing;
+use crate::oracle::kit::planes::{bits, digest};
+use crate::oracle::kit::scene::{OUTLINES, groups};
 use glam::Vec3;
 use splatref::composite::{decide, sum};
 use splatref::method::ewa::Settings;

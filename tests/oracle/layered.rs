@@ -1,13 +1,13 @@
 //! Bits of transparent layers: the fast paths of Algorithms 2 and 3 and of peeling are the
 //! definitions.
 
-use crate::bits;
-use crate::kit::case::Case;
-use crate::kit::dice::Dice;
-use crate::kit::draw::Drawing;
-use crate::kit::planes::{self, unclean};
-use crate::kit::scene::{AHEAD, change, discs, scene, surfels};
-use crate::transparent::cases;
+use crate::oracle::bits;
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::draw::Drawing;
+use crate::oracle::kit::planes::{self, unclean};
+use crate::oracle::kit::scene::{AHEAD, change, discs, scene, surfels};
+use crate::oracle::transparent::cases;
 use glam::Vec3;
 use proptest::prelude::*;
 use splatref::frame::Exec;

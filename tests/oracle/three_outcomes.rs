@@ -3,8 +3,8 @@
 //! A decision of an interval must allow what f64 decides for any of the numbers in the interval,
 //! and each decision must meet all three outcomes, or the test would test nothing.
 
-use crate::kit::scene::OUTLINES;
-use crate::three::{Interval, Three};
+use crate::oracle::kit::scene::OUTLINES;
+use crate::oracle::three::{Interval, Three};
 use glam::DVec3;
 use splatref::composite::{bins, decide, groups, mean, sum, under};
 use splatref::method::projection::surfels::PointProjector;

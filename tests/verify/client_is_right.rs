@@ -1,8 +1,8 @@
 //! The client without habits draws the crate's picture, bit for bit; what its habits and its bugs
 //! change.
 
-use crate::cases::{Case, cases};
-use crate::client::{Bug, Habit, How, render};
+use crate::verify::cases::{Case, cases};
+use crate::verify::client::{Bug, Habit, How, render};
 use splatref::frame::{Exec, Frame, Samples};
 use splatref::method::{Method, Session};
 

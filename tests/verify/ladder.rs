@@ -1,6 +1,6 @@
 //! The goldens `*_ladder*`, whose decisions lie beside their limits by steps of 1e-6 and more: what a
 //! limit that is a little off turns is wrong, as no rounding turns it. Cut-offs that are off are bugs of
-//! the [client](crate::client).
+//! the [client](crate::verify::client).
 
 use splatref::frame::Exec;
 use splatref::io::scene_file::SceneFile;

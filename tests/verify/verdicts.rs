@@ -1,7 +1,7 @@
 //! The verifier on the client: no lawful habit is called wrong, and every bug is found.
 
-use crate::cases::{Case, cases};
-use crate::client::{Bug, Habit, How, records, render};
+use crate::verify::cases::{Case, cases};
+use crate::verify::client::{Bug, Habit, How, records, render};
 use splatref::frame::Exec;
 use splatref::method::{Method, Session};
 use splatref::splat::Epsilon;
@@ -169,8 +169,8 @@ fn a_unit_in_which_not_everything_is_within_epsilon_is_named() {
     };
     for (near, bug, words) in [
         (0.5, Bug::EpsilonOfNearness, "a difference of 1/t"),
-        (0.5, Bug::EpsilonOfDepthBuffer, "what a depth buffer holds"),
-        (0.75, Bug::EpsilonOfDepthBuffer, "what a depth buffer holds"),
+        (0.5, Bug::EpsilonOfDepthBuffer, "depth-buffer values"),
+        (0.75, Bug::EpsilonOfDepthBuffer, "depth-buffer values"),
     ] {
         let said = named_at(near, bug);
         assert!(said.contains(words), "{}: {said}", bug.name());

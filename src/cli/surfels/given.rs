@@ -1,4 +1,4 @@
-//! What the points are chosen of: those of a file, or what is seen of a mesh or of a scene.
+//! The points to choose from: the points of a file, or samples of a mesh or of a scene.
 
 use super::{Args, report};
 use splatref::frame::Exec;
@@ -9,7 +9,7 @@ use splatref::scene::Cloud;
 use splatref::source::candidates::{self, Candidates, Directions, candidates};
 use splatref::{Error, Result};
 
-/// Points, and the side of a pixel of the pictures that they are from, if they are.
+/// Points, and the side of a pixel if they were sampled from pictures.
 pub(super) struct Given {
     pub(super) cloud: Cloud,
     pub(super) pixel: Option<f64>,
@@ -22,7 +22,7 @@ impl From<Candidates> for Given {
 }
 
 impl Args {
-    /// What the input gives.
+    /// The points of the input.
     pub(super) fn given(&self, exec: &Exec, show: Progress<'_>) -> Result<Given> {
         if FileKind::from_extension(&self.points)? == FileKind::Toml {
             return self.scene(exec, show).map(Given::from);
@@ -36,11 +36,11 @@ impl Args {
         Ok(Given { cloud, pixel: None })
     }
 
-    /// What is seen of a scene, in its first frame.
+    /// Samples a scene in its first frame.
     fn scene(&self, exec: &Exec, show: Progress<'_>) -> Result<Candidates> {
         let file = SceneFile::open(&self.points)?;
         if file.hierarchy.is_some() {
-            let what = "a hierarchy has its surfels already; name a mesh or a scene";
+            let what = "a hierarchy already has its surfels; give a mesh or a scene";
             return Err(Error::Invalid(what.into()));
         }
         let loaded = file.load_polygons(&self.properties, exec, show)?;
@@ -49,31 +49,38 @@ impl Args {
         candidates(&loaded.scene, &directions, side, exec, show)
     }
 
-    /// From where pictures are taken, and how large.
+    /// The directions of the pictures, and their size.
     fn pictures(&self) -> (Directions, u32) {
         (self.directions(), self.side.unwrap_or(candidates::SIDE))
     }
 
-    /// Whether a file without triangles has no more than points, and no option is for a mesh.
+    /// Checks, for a file without triangles, that it holds only points, and that no option needs a
+    /// mesh.
     fn points_alone(&self, cloud: &Cloud) -> Result<()> {
         let invalid = |what: String| Err(Error::format(&self.points, what));
         if !cloud.edges.is_empty() {
             let edges = cloud.edges.len();
-            return invalid(format!("the file has {edges} edges, but lines are not put in order"));
+            return invalid(format!(
+                "the file has {edges} edges, but lines cannot be ordered; remove them"
+            ));
         }
         if self.texture.is_some() {
-            return invalid("--texture is for a mesh, but the file has no triangles".into());
+            return invalid(
+                "--texture needs a mesh, but the file has no triangles; remove it".into(),
+            );
         }
         match (self.side, self.directions) {
             (None, None) => Ok(()),
-            (Some(_), _) => invalid("--side is for a mesh, but the file has no triangles".into()),
-            (_, Some(_)) => {
-                invalid("--directions is for a mesh, but the file has no triangles".into())
+            (Some(_), _) => {
+                invalid("--side needs a mesh, but the file has no triangles; remove it".into())
             }
+            (_, Some(_)) => invalid(
+                "--directions needs a mesh, but the file has no triangles; remove it".into(),
+            ),
         }
     }
 
-    /// What is seen of a mesh.
+    /// Samples a mesh.
     fn candidates(&self, mut mesh: Cloud, exec: &Exec, show: Progress<'_>) -> Result<Candidates> {
         texture::paint(&mut mesh, &self.points, self.texture.as_deref(), 0, exec)?;
         let (directions, side) = self.pictures();
@@ -83,7 +90,7 @@ impl Args {
     }
 }
 
-/// Says how many triangles were none.
+/// Prints how many triangles were dropped.
 fn dropped(triangles: u64) {
     if triangles > 0 {
         report::line("dropped", format!("{triangles} triangles"));

@@ -1,4 +1,4 @@
-//! `splatref verify`: whether a right implementation may have left somebody's planes.
+//! `splatref verify`: decides whether a correct implementation can produce the planes of a client.
 
 pub(super) mod report;
 
@@ -21,35 +21,35 @@ use std::path::PathBuf;
 
 #[derive(clap::Args)]
 #[command(after_help = "\
-The planes of an EXR are found by the names that `render --stages` gives them (see `splatref info` of
-such a file); the more of them, the sharper. Each stage is judged from what the client has of the
-stage before: its interval is what an implementation may leave whose operations round as promised.
+Hand in an EXR whose planes have the names that `render --stages` writes; `splatref info` lists them. The
+more planes you hand in, the sharper the verdict. Each stage is judged from the client's own planes of
+the stage before: a value is right if an implementation that rounds as promised can produce it.
 
 Examples:
   splatref render sphere --stages -o out/mine.exr && splatref verify sphere out/mine.exr
   splatref verify scene.toml gpu.exr --promise ieee -o out/errors.exr --json out/verdict.json
   splatref verify scene.toml gpu.toml
 
-The TOML file is described in the documentation of splatref::io::client.
+The documentation of splatref::io::client describes the TOML file.
 
-Exit codes: 0 right, 1 wrong, 2 could not be judged, 3 undecidable: no plane is judged, or too many
-sums may be either way.")]
+Exit codes: 0 right, 1 wrong, 2 could not be judged, 3 undecidable: no plane was judged, or too many
+sums are undecided.")]
 pub(super) struct Args {
     /// The scene, as for render
     scene: PathBuf,
-    /// What the client drew: an .exr, or a .toml that says what is in which file
+    /// The client's planes: an .exr, or a .toml that says what is in which file
     client: PathBuf,
-    /// What the client promises of its operations: gpu, what shading languages publish; ieee, one
-    /// rounding each, to nearest [default: what the .toml says, else gpu]
+    /// Set how precise the client's operations are: gpu, as shading languages guarantee; ieee, each
+    /// rounds once, to nearest [default: from the .toml, else gpu]
     #[arg(long, value_name = "gpu|ieee", value_parser = rounding)]
     promise: Option<Rounding>,
-    /// The greatest share of pixels with undecided sums of which a picture is judged
+    /// Report "undecidable" if more than this fraction of the pixels has undecided sums
     #[arg(long, value_name = "X", default_value_t = Verdict::BUDGET, value_parser = share)]
     budget: f64,
-    /// Where the errors go, in bounds, and the mask of what is undecided, a plane a stage
+    /// Write, for each stage, the errors in bounds and the mask of undecided pixels
     #[arg(short, long, value_name = "FILE.exr")]
     output: Option<PathBuf>,
-    /// Where the verdict goes for other programs
+    /// Write the verdict as JSON
     #[arg(long, value_name = "FILE.json")]
     json: Option<PathBuf>,
     #[command(flatten)]
@@ -58,14 +58,14 @@ pub(super) struct Args {
     options: SceneOptions,
 }
 
-/// Whatever keeps a client from being judged is no verdict on it.
+/// An error that prevents a verdict exits with 2, because it is no verdict.
 pub(super) fn run(args: &Args) -> Ended {
     judge(args).map_err(|error| Error::Usage(error.to_string()))
 }
 
 fn judge(args: &Args) -> Ended {
     let file = args.options.scene_file(&args.scene)?;
-    file.output.check_kept("how a client stores planes is said beside them")?;
+    file.output.check_kept("a client's storage is described beside its planes")?;
     let exec = args.exec.exec()?;
     let described = Description::open(&args.client)?;
     check(args, &file, &described)?;
@@ -91,7 +91,7 @@ fn judge(args: &Args) -> Ended {
     })
 }
 
-/// Writes the files that are asked for, both before one is put in its place.
+/// Writes the requested files; both are complete before either replaces an old file.
 fn write(
     args: &Args,
     (seen, client): (&report::Seen<'_>, &Client),
@@ -113,7 +113,7 @@ fn write(
     picture.into_iter().chain(json).try_for_each(Pending::put)
 }
 
-/// What is refused before anything is loaded.
+/// Refuses wrong options before anything is loaded.
 fn check(args: &Args, file: &SceneFile, described: &Description) -> Result<()> {
     for path in args.output.iter().chain(&args.json) {
         output::check(path, &args.scene, file)?;
@@ -127,12 +127,14 @@ fn check(args: &Args, file: &SceneFile, described: &Description) -> Result<()> {
         && !matches!(FileKind::from_extension(path), Ok(FileKind::Exr))
     {
         let path = path.display();
-        return Err(Error::Usage(format!("{path}: the errors are an EXR; give a name in .exr")));
+        return Err(Error::Usage(format!(
+            "{path}: the errors are written as an EXR; give a name that ends in .exr"
+        )));
     }
     Ok(())
 }
 
-/// The planes of a client, and what it promises if somebody says so.
+/// Reads the planes of a client; `promise` replaces the promise in its description.
 pub(super) fn read(
     (described, promise): (&Description, Option<Rounding>),
     session: &Session<'_>,
@@ -144,7 +146,7 @@ pub(super) fn read(
     Ok(client)
 }
 
-/// The errors of each stage in bounds, and what is undecided there.
+/// The errors of each stage in bounds, and the mask of undecided pixels.
 fn errors(camera: &Camera, verdict: &Verdict) -> Result<Frame<f32>> {
     let mut frame = Frame::new(camera.width, camera.height);
     for stage in &verdict.stages {
@@ -154,20 +156,20 @@ fn errors(camera: &Camera, verdict: &Verdict) -> Result<Frame<f32>> {
     Ok(frame)
 }
 
-/// The word of a promise.
+/// Parses the word of a promise.
 pub(super) fn rounding(text: &str) -> std::result::Result<Rounding, String> {
     let mut rounding = Rounding::default();
     if rounding.choose(text) { Ok(rounding) } else { Err("give gpu or ieee".into()) }
 }
 
-/// A share of pixels.
+/// Parses a fraction of pixels.
 fn share(text: &str) -> std::result::Result<f64, String> {
     let share = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
-    share.ok_or_else(|| "give a share from 0 to 1".into())
+    share.ok_or_else(|| "give a fraction from 0 to 1".into())
 }
 
 impl Args {
-    /// The command that replays a pixel, with all options of this one that mean something there.
+    /// The command that explains a pixel, with all options of this command that `explain` takes.
     fn replay(&self, (x, y): (u32, u32)) -> String {
         let mut words = vec!["splatref explain".to_owned(), quoted(&self.scene.to_string_lossy())];
         words.extend([x.to_string(), y.to_string()]);
@@ -194,7 +196,7 @@ impl Args {
     }
 }
 
-/// A word as a shell takes it.
+/// Quotes a word for a shell.
 fn quoted(word: &str) -> String {
     let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,=:+@%".contains(c);
     if word.chars().all(plain) { word.into() } else { format!("'{}'", word.replace('\'', "'\\''")) }

@@ -1,4 +1,4 @@
-//! A verdict in about ten lines, and as JSON.
+//! Prints a verdict in about ten lines, or as JSON.
 
 use super::Args;
 use crate::cli::report::short;
@@ -10,12 +10,12 @@ use splatref::verdict::client::{Client, Rounding};
 use splatref::verdict::shift::{LIMITS, Shift};
 use splatref::verdict::{Doubt, Fault, Finding, Outcome, StageVerdict, Verdict};
 
-/// A verdict, and what was looked up for its report.
+/// A verdict, with what its report shows beside it.
 pub(super) struct Seen<'a> {
     verdict: &'a Verdict,
     method: &'static str,
     likely: Option<String>,
-    /// The surfels that weigh most at the worst pixel.
+    /// The surfels with the largest weights at the worst pixel.
     heaviest: Vec<(u32, f64)>,
 }
 
@@ -35,12 +35,12 @@ impl<'a> Seen<'a> {
         Ok(Self { verdict, method: session.method().name(), likely, heaviest })
     }
 
-    /// The report.
+    /// The lines of the report.
     pub(super) fn lines(&self, args: &Args, client: &Client) -> Vec<String> {
         let Self { verdict, method, likely, heaviest } = self;
         let mut lines = vec![labelled("client", planes(client, method))];
         let promise = match client.rounding {
-            Rounding::Gpu => "gpu, operations as inexact as shading languages allow",
+            Rounding::Gpu => "gpu, operations are as inexact as shading languages allow",
             Rounding::Ieee => "ieee, each operation rounds once, to nearest",
         };
         lines.push(labelled("promise", promise));
@@ -83,13 +83,15 @@ impl<'a> Seen<'a> {
             Outcome::Right => {
                 format!("right: of {covered} covered pixels {undecided} have undecided sums")
             }
-            Outcome::Wrong => "wrong: no implementation that keeps the promise leaves this".into(),
+            Outcome::Wrong => {
+                "wrong: no implementation that keeps the promise can produce this".into()
+            }
             Outcome::Undecidable if !self.verdict.judges() => {
-                "undecidable: no plane was judged; `render --stages` shows which there are".into()
+                "undecidable: no plane was judged; `render --stages` shows what to hand in".into()
             }
             Outcome::Undecidable => format!(
-                "undecidable: the sums of {} % of the covered pixels may be either way, {} % have numbers \
-                 without bounds, {} % are allowed",
+                "undecidable: {} % of the covered pixels have undecided sums, {} % have numbers \
+                 without bounds; the budget is {} %",
                 short(share(*undecided)),
                 short(share(*unbounded)),
                 short(100.0 * budget)
@@ -97,7 +99,7 @@ impl<'a> Seen<'a> {
         }
     }
 
-    /// The report for other programs.
+    /// The report as JSON, for other programs.
     pub(super) fn json(&self, client: &Client) -> Result<String> {
         let Self { verdict, method, likely, heaviest } = self;
         let json = Json {
@@ -129,7 +131,7 @@ fn labelled(label: &str, text: impl std::fmt::Display) -> String {
     format!("{label:<14} {text}")
 }
 
-/// What the client has handed in.
+/// The planes that the client handed in.
 fn planes(client: &Client, method: &str) -> String {
     let count = client.frame().planes.len();
     let plural = if count == 1 { "plane" } else { "planes" };
@@ -143,7 +145,7 @@ fn planes(client: &Client, method: &str) -> String {
 /// A stage in words.
 fn judged(stage: &StageVerdict) -> String {
     if stage.planes.is_empty() {
-        return "not judged: none of its planes is there".into();
+        return "not judged: none of its planes was handed in".into();
     }
     let names: Vec<&str> =
         stage.planes.iter().map(|name| if name.is_empty() { "RGB" } else { name }).collect();
@@ -173,11 +175,11 @@ fn judged(stage: &StageVerdict) -> String {
     format!("{what} ({}){doubts}{missing}", names.join(", "))
 }
 
-/// To which side the undecided decisions at a limit lean.
+/// The bias of the undecided decisions at a threshold, in words.
 pub(in crate::cli) fn leaning(limit: Doubt, shift: &Shift) -> String {
     let estimate = shift.estimate();
     format!(
-        "{}: {} undecided decisions, as if the limit were {:.1e} of itself too {}; z = {:.1}",
+        "{}: {} undecided decisions, as if the threshold were {:.1e} of itself too {}; z = {:.1}",
         limit.name(),
         shift.decisions,
         estimate.abs(),
@@ -186,19 +188,21 @@ pub(in crate::cli) fn leaning(limit: Doubt, shift: &Shift) -> String {
     )
 }
 
-/// What else could be handed in, so that more is judged.
+/// The plane to hand in next, so that more can be judged.
 fn next(verdict: &Verdict) -> Option<String> {
     let lacks = |stage: &&StageVerdict| stage.planes.is_empty() || !stage.missing.is_empty();
     let StageVerdict { stage, missing, .. } = verdict.stages.iter().find(lacks)?;
     Some(match missing.as_slice() {
-        [] => format!("hand in the planes of the stage {stage}: render --stages shows which"),
+        [] => format!("hand in the planes of the stage {stage}; render --stages shows them"),
         [first, ..] => {
-            format!("hand in {first} of the stage {stage}: what follows from it is not judged")
+            format!(
+                "hand in {first} of the stage {stage}; planes that follow from it are not judged"
+            )
         }
     })
 }
 
-/// A verdict as JSON. What is infinite is null.
+/// A verdict as JSON; infinite numbers are null.
 #[derive(Serialize)]
 struct Json<'a> {
     outcome: &'static str,
@@ -214,7 +218,7 @@ struct Json<'a> {
     shifts: Vec<JsonShift>,
 }
 
-/// To which side the undecided decisions at a limit lean; z and the estimate are for readers.
+/// The bias of the undecided decisions at a threshold; z and the estimate are for readers.
 #[derive(Serialize, Deserialize)]
 pub(in crate::cli) struct JsonShift {
     pub(in crate::cli) limit: String,
@@ -233,7 +237,7 @@ impl JsonShift {
         Self { limit: limit.name().into(), decisions, score, information, variance, z, estimate }
     }
 
-    /// The sums that pictures add.
+    /// The sums, to be added over pictures.
     pub(in crate::cli) fn shift(&self) -> Shift {
         let Self { decisions, score, information, variance, .. } = *self;
         Shift { decisions, score, information, variance }

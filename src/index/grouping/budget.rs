@@ -62,8 +62,8 @@ impl Budget {
 
     fn overrun(&self) -> Error {
         Error::Invalid(format!(
-            "more than {} pairs of {} surfels overlap at c = {}, over 64 a surfel: give a lower \
-             c or smaller radii",
+            "more than {} pairs of {} surfels overlap at c = {}, over 64 a surfel; give a lower c \
+             or smaller radii",
             most(self.surfels),
             self.surfels,
             self.factor

@@ -87,8 +87,8 @@ impl Coloring<'_> {
         let report = self.report(overlap, &attempt);
         if report.groups > MAX_GROUPS {
             return Err(Error::Invalid(format!(
-                "c = {overlap} needs {} groups, and at most {MAX_GROUPS} can be: give a lower c or \
-                 smaller radii",
+                "c = {overlap} needs {} groups, but at most {MAX_GROUPS} are possible; give a \
+                 lower c or smaller radii",
                 report.groups
             )));
         }

@@ -39,11 +39,10 @@ impl Words for Extension {
 impl Extension {
     /// The rows of the extension.
     pub(super) fn fields(&mut self, each: &mut Visit<'_>) {
-        let extend = "how groups are made to cover the surface: surfels of others are added, or \
-                      radii are enlarged";
+        let extend = "make each group cover the surface by adding surfels of other groups, or by \
+                      enlarging radii";
         each(Field::new("extend", extend, Slot::Word(self)));
-        let help = "the most of a splat that is covered already if the splat is added, as a part \
-                    of its area";
+        let help = "add a splat only if at most this fraction of its area is covered already";
         let row = |most| Field::new("most", help, Slot::Number(most)).range("0 to 1");
         match self {
             Self::Add { most } => each(row(most)),
@@ -66,7 +65,7 @@ impl Extension {
     pub fn check(&self) -> Result<()> {
         match *self {
             Self::Add { most } if !(0.0..=1.0).contains(&most) => {
-                Err(Error::Invalid(format!("add: a surfel covered to {most}; give 0 to 1")))
+                Err(Error::Invalid(format!("most: {most}; give 0 to 1")))
             }
             Self::None | Self::Add { .. } | Self::Enlarge => Ok(()),
         }

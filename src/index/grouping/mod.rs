@@ -165,8 +165,8 @@ impl Fields for Grouping {
     fn fields(&mut self, each: &mut Visit<'_>) {
         self.rules.fields(each);
         let mut count = self.count.map(|count| count as u32);
-        let help = "most groups: the overlap is the largest that gives so few; `any`: as many as \
-                    the overlap takes";
+        let help = "use the largest overlap that gives at most this many groups; `any` makes as \
+                    many as the overlap needs";
         each(
             Field::new("count", help, Slot::CountOr(&mut count, "any"))
                 .option("groups")

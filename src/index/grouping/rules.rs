@@ -37,15 +37,14 @@ impl Default for Rules {
 impl Rules {
     /// The rows of the rules.
     pub(super) fn fields(&mut self, each: &mut Visit<'_>) {
-        let overlap = "c, the most overlap: splats nearer than c times their radii may not share a \
-                       group";
+        let overlap = "set c: splats nearer than c times their radii go into different groups";
         each(Field::new("overlap", overlap, Slot::Number(&mut self.overlap)).range("0 to 1"));
-        let opposite = "whether splats that face opposite ways may share a group";
+        let opposite = "let splats that face opposite ways share a group";
         each(Field::new("opposite", opposite, Slot::Switch(&mut self.opposite)));
         let mut parts =
             self.coplanar.map(|Coplanar { cosine, offset, color }| [cosine, offset, color]);
-        let coplanar = "whether splats of one plane may share a group: least cosine of the normals, \
-                        most distance from each other's plane in sums of their radii, most \
+        let coplanar = "let splats of one plane share a group: least cosine of the normals, \
+                        largest distance from each other's plane in sums of their radii, largest \
                         difference of colours";
         let names = ["cosine", "offset", "color"];
         each(
@@ -70,7 +69,8 @@ impl Rules {
             Ok(())
         } else {
             let what = format!(
-                "coplanar: cosine {cosine}, offset {offset}, color {color}; give 0 to 1, 0 to 1, >= 0"
+                "coplanar: cosine {cosine}, offset {offset}, color {color}; give 0 to 1, 0 to 1, \
+                 and a number >= 0"
             );
             Err(Error::Invalid(what))
         }

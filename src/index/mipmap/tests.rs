@@ -203,6 +203,6 @@ fn what_has_no_colours_is_refused() {
     };
     let surfels = Surfels::new(cloud).unwrap().0;
     let error = build(&surfels, 1, &Exec::sequential(), &none).unwrap_err().to_string();
-    assert_eq!(error, "the points have no colours, of which mipmaps could be made");
+    assert_eq!(error, "mipmaps need colours, but the points have none; remove the mipmaps");
     assert!(build(&surfels, 0, &Exec::sequential(), &none).is_err());
 }

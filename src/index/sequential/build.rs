@@ -40,7 +40,8 @@ pub(super) fn build(surfels: &Surfels, most: f32, exec: &Exec) -> Result<(Surfel
     let count = surfels.len();
     if count > 1 << 31 {
         return Err(Error::Invalid(format!(
-            "a point tree of {count} surfels, but nodes are numbered by 32 bits: split the model"
+            "a point tree of {count} surfels is too large, because nodes have 32-bit numbers; \
+             split the model"
         )));
     }
     memory::ask(count as u64 * BYTES_A_SURFEL, || format!("a point tree of {count} surfels"))?;
@@ -210,7 +211,9 @@ fn listed(
     let (nodes, dropped) = Surfels::new_or_none(cloud, exec)?;
     if dropped.total() > 0 {
         return Err(Error::Invalid(
-            "the surfels are too far apart for a point tree: a disc leaves the range of f32".into(),
+            "the surfels are too far apart for a point tree, because a disc leaves the range of \
+             f32; scale the model down"
+                .into(),
         ));
     }
     Ok((nodes, Sequential { near, far, gap, far_from, gap_from, parent, surfel }))

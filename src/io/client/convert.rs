@@ -27,13 +27,11 @@ pub(super) fn plane(
 ) -> Reason<(Samples<f64>, Storage)> {
     check_keys(wanted, kind)?;
     check_encoding(wanted)?;
-    let (holds, keys, file) = (wanted.row.holds, &wanted.keys, numbers.file);
+    let (holds, keys, file) = (wanted.row.holds.plain(), &wanted.keys, numbers.file);
     let format = keys.format.unwrap_or(file);
     if !format.fits(file) {
         let (format, file) = (format.word(), file.word());
-        return Err(format!(
-            "format is {format}, but what a file of {file} has cannot all be that"
-        ));
+        return Err(format!("format is {format}, but a file of {file} can hold other numbers"));
     }
     let [width, height] = numbers.size;
     match holds {
@@ -67,10 +65,11 @@ pub(super) fn plane(
 fn check_keys(wanted: &Wanted, kind: Kind) -> Reason<()> {
     let Wanted { keys, row, .. } = wanted;
     let (is_depth, is_raw) = (wanted.is_depth(), kind == Kind::Raw);
-    let (is_color, is_index) = (row.holds == Holds::Color, row.holds == Holds::Index);
-    let is_vector = row.holds == Holds::Vector;
+    let holds = row.holds.plain();
+    let (is_color, is_index) = (holds == Holds::Color, holds == Holds::Index);
+    let is_vector = holds == Holds::Vector;
     let has_channels = matches!(kind, Kind::Exr | Kind::Png);
-    let is_number = !is_index && row.holds != Holds::Count;
+    let is_number = !is_index && holds != Holds::Count;
     for (key, given, means) in [
         ("channel", keys.channel.is_some(), has_channels),
         ("offset", keys.offset.is_some(), is_raw),
@@ -94,25 +93,22 @@ fn check_keys(wanted: &Wanted, kind: Kind) -> Reason<()> {
                 _ if is_depth => "depths",
                 _ => row.holds.words(),
             };
-            return Err(format!("`{key}` means nothing to {of}: remove it"));
+            return Err(format!("`{key}` does not apply to {of}: remove it"));
         }
     }
     Ok(())
 }
 
-/// The planes that hold unit vectors.
-const UNIT: [&str; 2] = ["normal", "projection.normal"];
-
 /// Refuses an encoding that does not fit what the plane holds.
 fn check_encoding(wanted: &Wanted) -> Reason<()> {
     let holds = wanted.row.holds;
     match wanted.keys.encoding {
-        Some(Encoding::Octahedral) if !UNIT.contains(&wanted.row.name) => {
-            let unit = UNIT.join(" and ");
-            Err(format!("encoding is octahedral, which is for unit vectors: {unit}"))
+        Some(Encoding::Octahedral) if holds != Holds::Normal => {
+            let unit = "normal and projection.normal";
+            Err(format!("encoding is octahedral, which needs unit vectors: {unit}"))
         }
-        Some(Encoding::Linear | Encoding::Srgb) if holds == Holds::Vector => {
-            Err("encoding is that of colours; of vectors give \"octahedral\", or remove it".into())
+        Some(Encoding::Linear | Encoding::Srgb) if holds.plain() == Holds::Vector => {
+            Err("encoding is for colours; for vectors give \"octahedral\", or remove it".into())
         }
         _ => Ok(()),
     }
@@ -165,16 +161,16 @@ fn wholes(
         // A cast truncates, saturates, and turns NaN into 0; the round trip exposes all three.
         if f64::from(found as u32) != found || found > most {
             return Err(format!(
-                "{value} at pixel ({x}, {y}) is no whole number from 0 to {most}; say what is `empty`, \
-                 and the `id_base`"
+                "{value} at pixel ({x}, {y}) is not a whole number from 0 to {most}; set `empty` \
+                 and `id_base`"
             ));
         }
         // From here on two different numbers may have been stored as one.
         let all = numbers.file.most_whole().at_most(format.most_whole());
         if value >= all && found < f64::from(NO_ID) {
             return Err(format!(
-                "{value} at pixel ({x}, {y}), but only below {all} are all numbers told apart; \
-                 store them as u32"
+                "{value} at pixel ({x}, {y}), but the format is exact only below {all}; store them \
+                 as u32"
             ));
         }
         Ok(found as u32)
@@ -205,7 +201,7 @@ impl Scaled {
             Some(codes) => codes,
             None if format.is_whole() => {
                 return Err(format!(
-                    "whole numbers ({}), and the plane holds others; say the `format` that they \
+                    "whole numbers ({}), but the plane holds others; give the `format` that they \
                      passed through: unorm8, unorm16, unorm24",
                     format.word()
                 ));
@@ -220,14 +216,14 @@ impl Scaled {
                 if *value > codes {
                     let (x, y) = (i % width as usize, i / width as usize);
                     let word = format.word();
-                    return Err(format!("{value} at pixel ({x}, {y}) is no code of {word}"));
+                    return Err(format!("{value} at pixel ({x}, {y}) is not a code of {word}"));
                 }
                 *value /= codes;
             }
         }
         if keys.range.is_some() && !format.is_unorm() {
             let word = format.word();
-            return Err(format!("`range` means nothing to {word}, only to unorm: remove it"));
+            return Err(format!("`range` does not apply to {word}, only to unorm: remove it"));
         }
         let [low, high] = keys.range.unwrap_or([0.0, 1.0]);
         let storage = format.storage(high - low);
@@ -245,7 +241,7 @@ impl Scaled {
 fn depths(keys: &PlaneKeys, numbers: Scaled) -> Reason<(Vec<Vec<f64>>, Storage)> {
     let meaning = keys.depth.meaning.unwrap_or_default();
     if keys.range.is_some() && meaning != Meaning::T {
-        return Err(format!("`range` means nothing to {}: remove it", meaning.word()));
+        return Err(format!("`range` does not apply to {}: remove it", meaning.word()));
     }
     let (near, far) = ends(keys, meaning)?;
     let format = numbers.format;
@@ -309,7 +305,7 @@ fn ends(keys: &PlaneKeys, meaning: Meaning) -> Reason<(f64, f64)> {
     if can_be {
         return Ok((near, far));
     }
-    Err(format!("meaning is {word}, but near = {near} and far = {far} cannot be"))
+    Err(format!("meaning is {word}, but near = {near} and far = {far} are impossible"))
 }
 
 /// How exactly `scale / t` is stored.
@@ -345,7 +341,7 @@ fn colors(keys: &PlaneKeys, kind: Kind, numbers: Scaled) -> Reason<(Vec<Vec<f64>
             Ok((numbers.map(srgb::to_linear), Storage::Srgb { relative, least }))
         }
         (Encoding::Srgb, Some(_)) => {
-            Err("`range` means nothing to sRGB: remove it, or give encoding = \"linear\"".into())
+            Err("`range` does not apply to sRGB: remove it, or give encoding = \"linear\"".into())
         }
     }
 }

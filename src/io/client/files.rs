@@ -91,7 +91,7 @@ impl<'e> Files<'e> {
         let refused = |what: String| Error::format(path, format!("planes.{key}: {what}"));
         match kind {
             Kind::Raw => {
-                let format = keys.format.unwrap_or(match row.holds {
+                let format = keys.format.unwrap_or(match row.holds.plain() {
                     Holds::Index => Format::U32,
                     Holds::Count => Format::U8,
                     _ => Format::F32,
@@ -105,7 +105,7 @@ impl<'e> Files<'e> {
                     image.channels.iter().map(|(name, _)| name.clone()).collect();
                 if names.len() != components {
                     return Err(refused(format!(
-                        "{} numbers a pixel, and the plane holds {}",
+                        "{} numbers a pixel, but the plane holds {}",
                         names.len(),
                         row.holds.words()
                     )));
@@ -118,7 +118,7 @@ impl<'e> Files<'e> {
                 let names = picture.names(wanted, keys, kind).map_err(refused)?;
                 let mut numbers = picture.numbers(&names).map_err(refused)?;
                 // A PNG has stored whole numbers as codes of colours.
-                if matches!(row.holds, Holds::Index | Holds::Count) {
+                if matches!(row.holds.plain(), Holds::Index | Holds::Count) {
                     numbers.as_codes();
                 }
                 Ok(numbers)
@@ -136,7 +136,7 @@ impl Picture {
                 return Ok(names.clone());
             }
             return Err(format!(
-                "`channel` has {} of them, and the plane holds {}; give {components}",
+                "`channel` names {} of them, but the plane holds {}; give {components}",
                 names.len(),
                 wanted.row.holds.words()
             ));
@@ -153,7 +153,7 @@ impl Picture {
             3 => Ok(colors.to_vec()),
             _ if red == green && green == blue => Ok(colors[..1].to_vec()),
             _ => {
-                Err("the PNG is not grey; say which `channel`: \"R\", \"G\", \"B\" or \"A\"".into())
+                Err("the PNG is not grey; give the `channel`: \"R\", \"G\", \"B\" or \"A\"".into())
             }
         }
     }
@@ -175,7 +175,10 @@ impl Picture {
                 Values::Index(_) => Format::U32,
             });
             if *file.get_or_insert(format) != format {
-                return Err(format!("the channel `{name}` is {}, another is not", format.word()));
+                return Err(format!(
+                    "the channel `{name}` is {}, but another is not",
+                    format.word()
+                ));
             }
             components.push(match values {
                 // A PNG's codes, before they were rounded to `f32`.

@@ -37,7 +37,7 @@ pub(super) fn client(
     let mut unknown = Vec::new();
     if let Some(file) = &sidecar.file {
         if Kind::from_extension(file) != Some(Kind::Exr) {
-            let what = "file: only an EXR has several planes; give others in [planes]";
+            let what = "file: only an EXR holds several planes; name other files in [planes]";
             return Err(Error::format(path, what));
         }
         let image = &files.picture(file, Kind::Exr)?.image;
@@ -46,7 +46,10 @@ pub(super) fn client(
         unknown = left(image, &wanted, file);
     }
     if wanted.is_empty() {
-        return Err(refused(format!("no channel is one of the planes {}", names(stages))));
+        return Err(refused(format!(
+            "no channel has the name of a plane; the planes are {}",
+            names(stages)
+        )));
     }
     let planes = read(path, sidecar, wanted, camera, &mut files)?;
     drop(files);
@@ -78,7 +81,10 @@ fn named(sidecar: &Sidecar, stages: &[Stage]) -> Reason<Vec<Wanted>> {
             format!("planes: no plane is called `{}`; there are {known}", key.escape_debug())
         })?;
         if let Some(twin) = all.iter().find(|other| other.name == name) {
-            return Err(format!("planes: `{}` and `{key}` are one plane; remove one", twin.key));
+            return Err(format!(
+                "planes: `{}` and `{key}` are the same plane; remove one",
+                twin.key
+            ));
         }
         all.push(Wanted::new(key, name, row, keys.clone(), sidecar.depth));
     }
@@ -97,12 +103,12 @@ fn in_picture(image: &Image, wanted: &[Wanted], stages: &[Stage], all: DepthKeys
     let mut found: Vec<Wanted> = Vec::new();
     for row in stages.iter().flat_map(|stage| stage.leaves) {
         for (channel, _) in &image.channels {
-            // // One of three channels stands for the plane, so that it is found once.
-            let name = match row.holds {
+            // One of three channels stands for the plane, so that it is found once.
+            let name = match row.holds.plain() {
                 Holds::Color if channel == COLOR[0] => Some(""),
                 Holds::Color => channel.strip_suffix(".R"),
                 Holds::Vector => channel.strip_suffix(".X"),
-                Holds::Scalar | Holds::Index | Holds::Count => Some(channel.as_str()),
+                _ => Some(channel.as_str()),
             };
             let Some(name) = name.filter(|name| row.is_called(name)) else { continue };
             let is_new = wanted.iter().chain(&found).all(|other| other.name != name);

@@ -170,7 +170,7 @@ impl Sidecar {
         depth.done()?;
         keys.done()?;
         if read.planes.is_empty() && read.file.is_none() {
-            return Err("no plane: give a `file`, or a table [planes.Z] of one".into());
+            return Err("no plane; give a `file`, or a table such as [planes.Z]".into());
         }
         Ok(read)
     }

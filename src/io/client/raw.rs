@@ -54,7 +54,7 @@ impl Layout {
         if format.is_packed() && components != 3 {
             let word = format.word();
             let holds = if components == 1 { "one" } else { "two" };
-            return Err(format!("{word} has three numbers a pixel, and the plane holds {holds}"));
+            return Err(format!("{word} has three numbers a pixel, but the plane holds {holds}"));
         }
         let least = pixel_bytes(format, components);
         let pixel = keys.pixel_stride.unwrap_or(least);
@@ -87,7 +87,7 @@ impl Layout {
         let each = if components == 1 { String::new() } else { format!("{components} ") };
         let exactly = if self.alone { "" } else { "at least " };
         Err(format!(
-            "{width} x {height} pixels of {each}{} take {exactly}{needed} bytes, and the file has \
+            "{width} x {height} pixels of {each}{} need {exactly}{needed} bytes, but the file has \
              {length}; give `size`, `format`, `offset` and strides as it was written",
             format.word()
         ))

@@ -23,7 +23,9 @@ pub(super) fn read(path: &Path) -> Result<Vec<SplatRecord>> {
     let mut records: Vec<_> = all.iter().map(SplatRecord::from_bytes).collect();
     records.sort_by_key(|record| record.surfel);
     match records.windows(2).find(|pair| pair[0].surfel == pair[1].surfel) {
-        Some(pair) => Err(refused(format!("surfel {} has two records", pair[0].surfel))),
+        Some(pair) => {
+            Err(refused(format!("surfel {} has two records; remove one", pair[0].surfel)))
+        }
         None => Ok(records),
     }
 }

@@ -33,7 +33,7 @@ impl Wanted {
 
     /// Whether the plane holds depths t.
     pub(super) fn is_depth(&self) -> bool {
-        self.row.holds == Holds::Scalar && (self.name == "Z" || self.name.ends_with(".Z"))
+        self.row.holds == Holds::Depth
     }
 
     /// Whether the plane holds unit vectors in two numbers a pixel.

@@ -103,8 +103,7 @@ pub(super) fn guarded<T>(decode: impl FnOnce() -> Reason<T>) -> Reason<T> {
     let outside = SILENT.replace(true);
     let result = panic::catch_unwind(AssertUnwindSafe(decode));
     SILENT.set(outside);
-    result
-        .unwrap_or_else(|_| Err("damaged in a way the decoder gives up on; write it again".into()))
+    result.unwrap_or_else(|_| Err("too damaged to decode; write it again".into()))
 }
 
 /// Parses the header, and checks that a file of `length` bytes can hold what the header promises.
@@ -119,8 +118,8 @@ fn metadata(read: impl Read, length: u64) -> Reason<MetaData> {
         // A part of another size has no pixel-by-pixel counterpart.
         if data != display || header.layer_size != meta.headers[0].layer_size {
             return Err(format!(
-                "header: a data window of {width} x {height} pixels at ({}, {}) is not the display \
-                 window or not that of the first part; save the whole picture",
+                "header: the data window of {width} x {height} pixels at ({}, {}) is not the \
+                 display window, or not that of the first part; save the whole picture",
                 data.position.x(),
                 data.position.y()
             ));
@@ -138,7 +137,7 @@ fn metadata(read: impl Read, length: u64) -> Reason<MetaData> {
     if needed > length || blocks.saturating_mul(LEAST_BLOCK) > length {
         let Vec2(width, height) = meta.headers[0].layer_size;
         return Err(format!(
-            "header: promises {width} x {height} pixels in {blocks} blocks, more than a file of \
+            "header: declares {width} x {height} pixels in {blocks} blocks, more than a file of \
              {length} bytes can hold; write it again"
         ));
     }
@@ -332,7 +331,7 @@ fn chunk(
         let found = number()?;
         if i64::from(found) != expected {
             return Err(format!(
-                "byte {offset}: another block, {found} where {expected} belongs; write the file again"
+                "byte {offset}: found block {found} instead of {expected}; write the file again"
             ));
         }
     }
@@ -340,7 +339,8 @@ fn chunk(
     if size as u64 > batch::block_bytes(header) {
         // Each thread holds the bytes of a block, so a false size must not pass.
         return Err(format!(
-            "byte {offset}: a block of {size} bytes, more than its pixels have; write the file again"
+            "byte {offset}: a block of {size} bytes, more than its pixels need; write the file \
+             again"
         ));
     }
     let compressed_pixels_le = rest.get(..size).ok_or_else(early)?.to_vec();
@@ -367,7 +367,7 @@ fn take<const N: usize>(rest: &mut &[u8]) -> Option<[u8; N]> {
 
 /// The error for a file that was cut.
 fn ends_early(place: &str) -> String {
-    format!("{place}: the file ends too early; write it again")
+    format!("{place}: the file is truncated; write it again")
 }
 
 /// Copies a block to its place in the planes.

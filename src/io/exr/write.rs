@@ -67,7 +67,8 @@ fn check(frame: &Frame<f32>, channels: &[Channel<'_>]) -> Result<()> {
     if width == 0 || height == 0 || channels.is_empty() {
         let count = channels.len();
         return Err(Error::Invalid(format!(
-            "no EXR holds {width} x {height} pixels in {count} channels: render at least one of each"
+            "an EXR cannot hold {width} x {height} pixels in {count} channels; render at least one \
+             of each"
         )));
     }
     for Channel { name, data } in channels {
@@ -83,7 +84,8 @@ fn check(frame: &Frame<f32>, channels: &[Channel<'_>]) -> Result<()> {
         };
         if len != width as usize * height as usize * stride {
             return Err(Error::Invalid(format!(
-                "channel `{name}`: its plane has not the {width} x {height} pixels of the frame"
+                "channel `{name}`: its plane does not have the {width} x {height} pixels of the \
+                 frame"
             )));
         }
     }
@@ -179,7 +181,7 @@ fn zip_chunk(UncompressedBlock { index, data }: UncompressedBlock) -> exr::error
     let lines = CompressedScanLineBlock {
         // The data window begins at 0.
         y_coordinate: i32::try_from(index.pixel_position.y())
-            .map_err(|_| exr::error::Error::Invalid("a picture of too many lines".into()))?,
+            .map_err(|_| exr::error::Error::Invalid("the picture has too many lines".into()))?,
         compressed_pixels_le: zip::compress(data),
     };
     Ok(Chunk { layer_index: 0, compressed_block: CompressedBlock::ScanLine(lines) })

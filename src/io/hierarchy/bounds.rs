@@ -58,10 +58,10 @@ impl Hierarchy {
 fn parse(bytes: &[u8], nodes: usize, hash: &Hash) -> Reason<Vec<Bounds>> {
     let mut rest = Reader(bytes);
     if &rest.take::<16>()? != MAGIC {
-        return Err("these are no bounds of a hierarchy of splatref".into());
+        return Err("not the bounds of a splatref hierarchy".into());
     }
     if &rest.take::<32>()? != hash {
-        return Err("the bounds are of another hierarchy than the index".into());
+        return Err("the bounds belong to another hierarchy than the index".into());
     }
     let [count, _] = rest.words()?;
     let length = HEADER + nodes as u64 * OF_A_NODE;
@@ -76,7 +76,7 @@ fn parse(bytes: &[u8], nodes: usize, hash: &Hash) -> Reason<Vec<Bounds>> {
         let radius = rest.scale()?;
         let boxed = low.is_finite() && high.is_finite() && low.cmple(high).all();
         if !(boxed && (0.0..f64::INFINITY).contains(&radius)) {
-            return Err(format!("the bounds of node {number} are none"));
+            return Err(format!("the bounds of node {number} are invalid"));
         }
         Ok(Bounds { low, high, radius })
     };

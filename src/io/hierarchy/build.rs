@@ -146,7 +146,7 @@ impl<'a> Work<'a> {
             header = surfels::header(folder, &hash, node, further)?;
         }
         let Some(header) = header else {
-            let what = "it was replaced by another hierarchy while this one was made";
+            let what = "another hierarchy replaced it while this one was made";
             return Err(Error::format(&surfels::path(folder, node), what));
         };
         let known = &mut self.hierarchy.index.nodes[at];

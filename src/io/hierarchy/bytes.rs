@@ -47,15 +47,15 @@ pub(super) struct Reader<'a>(pub(super) &'a [u8]);
 
 impl Reader<'_> {
     pub(super) fn take<const N: usize>(&mut self) -> Reason<[u8; N]> {
-        let (first, rest) = self.0.split_first_chunk::<N>().ok_or("the file ends too early")?;
+        let (first, rest) = self.0.split_first_chunk::<N>().ok_or("the file is truncated")?;
         self.0 = rest;
         Ok(*first)
     }
 
     pub(super) fn text(&mut self, length: u32) -> Reason<String> {
-        let split = self.0.split_at_checked(length as usize).ok_or("the file ends too early")?;
+        let split = self.0.split_at_checked(length as usize).ok_or("the file is truncated")?;
         self.0 = split.1;
-        String::from_utf8(split.0.to_vec()).map_err(|_| "a name is no UTF-8".into())
+        String::from_utf8(split.0.to_vec()).map_err(|_| "a name is not UTF-8".into())
     }
 
     pub(super) fn word(&mut self) -> Reason<u32> {

@@ -135,7 +135,7 @@ impl Index {
     pub(super) fn parse(bytes: &[u8]) -> Reason<Self> {
         let mut rest = Reader(bytes);
         if &rest.take::<16>()? != MAGIC {
-            return Err("this is no index of a hierarchy of splatref".into());
+            return Err("not the index of a splatref hierarchy".into());
         }
         let hash = rest.take::<32>()?;
         let [nodes, upper, objects, geometries] = rest.words()?;
@@ -147,8 +147,8 @@ impl Index {
         let long = if properties == 0 { length } else { length.max(bytes.len() as u64) };
         if long != bytes.len() as u64 {
             return Err(format!(
-                "{nodes} nodes, {objects} objects and {geometries} geometries take {length} bytes, but the \
-                 file has {}",
+                "{nodes} nodes, {objects} objects and {geometries} geometries need {length} bytes, \
+                 but the file has {}",
                 bytes.len()
             ));
         }
@@ -159,7 +159,7 @@ impl Index {
         let mut name = || rest.word().and_then(|length| rest.text(length));
         let properties = (0..properties).map(|_| name()).collect::<Reason<Vec<_>>>()?;
         if !rest.0.is_empty() {
-            return Err(format!("{} bytes are left after all names", rest.0.len()));
+            return Err(format!("{} bytes follow the last name", rest.0.len()));
         }
         let index = Self { hash, fill, upper, nodes, objects, geometries, properties };
         index.check()?;
@@ -169,11 +169,11 @@ impl Index {
     /// Checks that every reference leads to something that can be there.
     fn check(&self) -> Reason<()> {
         if !is_color(self.fill) {
-            return Err("the colour of what has none is none".into());
+            return Err("the default colour is invalid".into());
         }
         let further = |one: &Geometry| one.kind.properties as usize;
         if self.geometries.iter().any(|one| further(one) != self.properties.len()) {
-            return Err("a geometry does not have the properties of all".into());
+            return Err("a geometry lacks some of the common properties".into());
         }
         self.check_trees()?;
         for (i, node) in self.nodes.iter().enumerate() {
@@ -182,9 +182,7 @@ impl Index {
         let own = self.nodes[..self.upper as usize].iter().flat_map(|node| node.objects.clone());
         let resting = self.objects.iter().filter(|object| object.node != NONE).count() as u32;
         if !own.eq(0..resting) {
-            return Err(
-                "the objects of the nodes are not all that rest, one after the other".into()
-            );
+            return Err("the nodes do not hold all objects at rest, one after the other".into());
         }
         for (i, object) in self.objects.iter().enumerate() {
             let node = self.nodes[..self.upper as usize].get(object.node as usize);
@@ -219,23 +217,23 @@ impl Index {
                 let node = &self.nodes[number as usize];
                 let wrong = |what: &str| Err(format!("node {number}: {what}"));
                 if node.geometry != of {
-                    return wrong("it is of another tree");
+                    return wrong("it belongs to another tree");
                 }
                 if number == range.start && node.parent != NONE {
                     return wrong("the root of a tree has a parent");
                 }
                 let Range { start, end } = node.children;
                 if start != child || end > range.end || end < start {
-                    return wrong("its children are not those that come next");
+                    return wrong("its children are not the next nodes");
                 }
                 let known = |child: u32| self.nodes[child as usize].parent == number;
                 if start <= number || !node.children.clone().all(known) {
-                    return wrong("its children do not know it");
+                    return wrong("its children have another parent");
                 }
                 child = end;
             }
             if !range.is_empty() && child != range.end {
-                return Err("there are nodes that are no children".into());
+                return Err("some nodes have no parent".into());
             }
         }
         if next as usize != self.nodes.len() {
@@ -247,12 +245,12 @@ impl Index {
     fn check_node(&self, node: &Node) -> Reason<()> {
         let Node { low, high, surfels, estimate, .. } = node;
         if !(low.is_finite() && high.is_finite() && low.cmple(*high).all()) {
-            return Err("its box is none".into());
+            return Err("its box is invalid".into());
         }
         let upper = node.geometry == NONE;
         let own = if upper { node.triangles > 0 } else { !node.objects.is_empty() };
         if own || (node.triangles == 0) != (node.vertices == 0) {
-            return Err("it has what nodes of its tree do not have".into());
+            return Err("it has a field that nodes of its tree do not have".into());
         }
         surfels::check(*estimate, *surfels)
     }
@@ -315,7 +313,7 @@ fn object(from: &mut Reader<'_>) -> Reason<Object> {
     from.word()?;
     let (rotation, scale, translation) = (from.matrix()?, from.scale()?, from.position()?);
     if flags > 3 || !is_color(color) {
-        return Err(format!("object {number} has flags or a colour that are none"));
+        return Err(format!("object {number} has invalid flags or an invalid colour"));
     }
     let color = (flags & 1 == 1).then_some(color);
     let place = Similarity { rotation, scale, translation };

@@ -78,7 +78,7 @@ fn item(object: &scene::Object, root: Option<&Node>) -> Result<Item> {
     let (low, high) = root.map(|root| (root.low, root.high)).unwrap_or_default();
     let (low, high) = placed((low, high), &object.motion.at(0));
     if !(low.is_finite() && high.is_finite()) {
-        let what = "leaves the range of f32: its scale or its place is out of bounds";
+        let what = "leaves the range of f32; make its scale smaller, or move it closer";
         return Err(Error::Invalid(format!("{} {what}", object.name)));
     }
     Ok(Item { low, high, weight: root.map_or(0, |root| root.below) })

@@ -145,7 +145,7 @@ pub(super) fn read(folder: &Path, geometry: u32) -> Result<Option<Header>> {
     let (mut header, nodes) = beginning(&mut rest).map_err(format)?;
     let records = u64::from(nodes) * OF_A_NODE;
     if records > length - HEADER {
-        let what = format!("{nodes} nodes take more bytes than the {length} of the file");
+        let what = format!("{nodes} nodes need more bytes than the {length} of the file");
         return Err(format(what));
     }
     let bytes = input::rest(file, records).map_err(io)?;
@@ -155,7 +155,7 @@ pub(super) fn read(folder: &Path, geometry: u32) -> Result<Option<Header>> {
 
 fn beginning(rest: &mut Reader<'_>) -> Reason<(Header, u32)> {
     if &rest.take::<16>()? != MAGIC {
-        return Err("this is no geometry of a hierarchy".into());
+        return Err("not a geometry of a splatref hierarchy".into());
     }
     let hash = rest.take()?;
     let [nodes, kind] = rest.words()?;
@@ -194,7 +194,9 @@ fn records_of(
         all.push(node);
     }
     if offset != length {
-        return Err(format!("its triangles end at byte {offset}, but the file at byte {length}"));
+        return Err(format!(
+            "its triangles end at byte {offset}, but the file ends at byte {length}"
+        ));
     }
     Ok(all)
 }
@@ -225,7 +227,7 @@ pub(super) fn part(
     let (header, _) = beginning(&mut Reader(&start)).map_err(format)?;
     // The hash says whether the offsets of the index belong to this file.
     if header.hash != *hash || header.kind != kind {
-        return Err(format("the geometry is not that of the index".into()));
+        return Err(format("the geometry belongs to another index".into()));
     }
     let bytes = size(node, kind);
     if node.offset.checked_add(bytes).is_none_or(|end| end > length) {
@@ -258,7 +260,7 @@ fn parse(bytes: &[u8], node: &Node, mut part: Part) -> Reason<Part> {
     for _ in 0..node.triangles {
         let corners = rest.words()?;
         if let Some(corner) = corners.iter().find(|corner| **corner >= node.vertices) {
-            return Err(format!("there is no vertex {corner}, only {} of a node", node.vertices));
+            return Err(format!("vertex {corner} does not exist; the node has {}", node.vertices));
         }
         part.triangles.push(corners);
     }

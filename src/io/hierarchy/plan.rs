@@ -86,7 +86,7 @@ pub(super) fn begin(folder: &Path, plan: &Hash) -> Result<bool> {
         // A run that was killed before the plan was written may leave a partial file.
         let name = entry.map_err(io)?.file_name();
         if !name.to_string_lossy().ends_with(".partial") {
-            let what = "the folder holds other files; give the name of a new one";
+            let what = "the folder holds other files; give the name of a new folder";
             return Err(Error::format(folder, what));
         }
     }

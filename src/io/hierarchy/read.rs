@@ -31,7 +31,7 @@ impl Hierarchy {
     pub fn open(folder: &Path) -> Result<Self> {
         let path = folder.join("index");
         if folder.join("plan").exists() && !path.exists() {
-            let what = "the hierarchy is not whole yet; make it again, and it goes on";
+            let what = "the hierarchy is incomplete; rerun `splatref surfels` to resume";
             return Err(Error::format(folder, what));
         }
         let bytes = input::bytes(&path).map_err(|source| Error::io(&path, source))?;
@@ -117,9 +117,9 @@ impl Hierarchy {
 
     fn node(&self, node: u32) -> Result<&Node> {
         let nodes = &self.index.nodes;
-        nodes
-            .get(node as usize)
-            .ok_or_else(|| Error::Invalid(format!("there is no node {node}, only {}", nodes.len())))
+        nodes.get(node as usize).ok_or_else(|| {
+            Error::Invalid(format!("node {node} does not exist; there are {}", nodes.len()))
+        })
     }
 }
 

@@ -166,7 +166,7 @@ impl Hierarchy {
         // A dropped surfel would shift the prefixes that views draw.
         if surfels.len() != count {
             let lost = count - surfels.len();
-            let what = format!("{}: {lost} of {count} surfels can be none", name(number));
+            let what = format!("{}: {lost} of {count} surfels are invalid", name(number));
             return Err(Error::format(&self.folder, what));
         }
         Ok((surfels, primitives))

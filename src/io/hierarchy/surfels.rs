@@ -93,16 +93,16 @@ pub(super) fn header(
 fn parse(bytes: &[u8; HEADER as usize], (length, size): (u64, u64), hash: &Hash) -> Reason<Header> {
     let mut rest = Reader(bytes);
     if &rest.take::<16>()? != MAGIC {
-        return Err("these are no surfels of a hierarchy".into());
+        return Err("not a surfel file of a splatref hierarchy".into());
     }
     if &rest.take::<32>()? != hash {
-        return Err("the surfels are of another hierarchy than the index".into());
+        return Err("the surfels belong to another hierarchy than the index".into());
     }
     let [node, count, p_m] = rest.words()?;
     let estimate = Estimate { count: p_m, distance: rest.float()? };
     let expected = HEADER.saturating_add(u64::from(count).saturating_mul(size));
     if length != expected {
-        return Err(format!("{count} surfels take {expected} bytes, but the file has {length}"));
+        return Err(format!("{count} surfels need {expected} bytes, but the file has {length}"));
     }
     check(estimate, count)?;
     Ok(Header { node, count, estimate })
@@ -130,13 +130,13 @@ pub(super) fn read(
     let (mut file, length) = input::open(&path).map_err(io)?;
     let mut bytes = [0; HEADER as usize];
     if length < HEADER {
-        return Err(Error::format(&path, format!("the file ends too early, after {length} bytes")));
+        return Err(Error::format(&path, format!("the file is truncated after {length} bytes")));
     }
     file.read_exact(&mut bytes).map_err(io)?;
     let size = size(numbers.properties.len());
     let found = parse(&bytes, (length, size), hash).map_err(|what| Error::format(&path, what))?;
     if found != *expected {
-        return Err(Error::format(&path, "the surfels are not those of the index"));
+        return Err(Error::format(&path, "the surfels belong to another index"));
     }
     body(file, found.count.min(most), numbers).map_err(|error| match error {
         Error::Io { source, .. } => io(source),

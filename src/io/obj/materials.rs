@@ -64,7 +64,7 @@ fn texture(name: &str) -> Reason<String> {
     match name {
         "" => Err("map_Kd without a file".into()),
         name if name.starts_with('-') => {
-            Err("the options of map_Kd are not read: remove them, or give a texture in its place"
+            Err("the options of map_Kd are not supported; remove them, or give a texture instead"
                 .into())
         }
         name => Ok(name.to_owned()),

@@ -192,7 +192,7 @@ impl Lines {
         }
         let found = self.materials.iter().position(|material| material.name == name);
         let shown = || name.chars().take(40).flat_map(char::escape_debug).collect::<String>();
-        let found = found.ok_or_else(|| format!("there is no material `{}`", shown()))?;
+        let found = found.ok_or_else(|| format!("no material is called `{}`", shown()))?;
         self.material = found as u32;
         Ok(())
     }
@@ -224,11 +224,11 @@ impl Lines {
         let coordinate = parts.next().unwrap_or_default();
         let normal = parts.next().unwrap_or_default();
         if parts.next().is_some() {
-            return Err(format!("`{}` is no corner; give v, v/vt, v//vn or v/vt/vn", shown()));
+            return Err(format!("`{}` is not a corner; give v, v/vt, v//vn or v/vt/vn", shown()));
         }
         let index = |text: &str, what: &str, count: usize| {
             let number: i64 =
-                text.parse().map_err(|_| format!("`{}`: no number of a {what}", shown()))?;
+                text.parse().map_err(|_| format!("`{}`: not the number of a {what}", shown()))?;
             let place =
                 if number < 0 { number.checked_add(count as i64) } else { number.checked_sub(1) };
             let found = place.and_then(|place| u32::try_from(place).ok());
@@ -355,7 +355,7 @@ fn numbers<'a>(words: impl Iterator<Item = &'a str>) -> Reason<Vec<f64>> {
     let number = |word: &str| {
         word.parse().map_err(|_| {
             let shown: String = word.chars().take(40).flat_map(char::escape_debug).collect();
-            format!("`{shown}` is no number")
+            format!("`{shown}` is not a number")
         })
     };
     words.take(8).map(number).collect()

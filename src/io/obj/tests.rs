@@ -47,7 +47,7 @@ fn colours_are_decoded_and_points_keep_their_normals() {
 #[test]
 fn what_is_wrong_is_one_line() {
     assert!(line("").contains("the file holds no points"));
-    assert_eq!(line("v 0 0 x"), "line 1: `x` is no number");
+    assert_eq!(line("v 0 0 x"), "line 1: `x` is not a number");
     assert!(line("v 0 0").contains("a vertex of 2 numbers; give x y z"));
     assert!(line("v 0 0 0\nv 0 0 0 1 1 1").starts_with("line 2: only some vertices have colours"));
     assert!(line("v 0 0 0 1 1 1\nv 0 0 0").starts_with("line 2: only some vertices have colours"));
@@ -58,10 +58,10 @@ fn what_is_wrong_is_one_line() {
         ("0 1 1", "there is no vertex 0"),
         ("-5 1 1", "there is no vertex -5"),
         ("-9223372036854775808 1 1", "there is no vertex -9"),
-        ("99999999999999999999 1 1", "no number of a vertex"),
+        ("99999999999999999999 1 1", "not the number of a vertex"),
         ("1//1 2 3", "there is no normal 1, as 0 came before"),
-        ("1/1/1/1 2 3", "is no corner"),
-        ("\u{1} 2 3", "`\\u{1}`: no number of a vertex"),
+        ("1/1/1/1 2 3", "is not a corner"),
+        ("\u{1} 2 3", "`\\u{1}`: not the number of a vertex"),
     ] {
         let found = line(&format!("{SQUARE}f {face}\n"));
         assert!(found.starts_with("line 5: ") && found.contains(why), "{found}");
@@ -120,10 +120,10 @@ fn coordinates_stay_with_their_corners() {
             "line 6: `2/2`: there is no texture coordinate 2, as 1 came before",
         ),
         ("f 1/1 2/1 3/1", "line 5: `1/1`: there is no texture coordinate 1, as 0 came before"),
-        ("f 1/a 2 3", "no number of a texture coordinate"),
+        ("f 1/a 2 3", "not the number of a texture coordinate"),
         ("vt", "line 5: texture coordinates of 0 numbers; give u v"),
         ("vt 1 2 3 4", "texture coordinates of 4 numbers"),
-        ("vt 1 x", "`x` is no number"),
+        ("vt 1 x", "`x` is not a number"),
     ] {
         let found = line(&format!("{SQUARE}{lines}\n"));
         assert!(found.contains(why), "{found}");
@@ -179,12 +179,15 @@ fn materials_that_are_none_are_refused() {
     let face = "usemtl a\nf 1 2 3\n";
     let refused = |mtl: &str| beside(&format!("{QUAD}{face}"), mtl).unwrap_err();
     for (mtl, why) in [
-        ("newmtl b\n", "line 10: there is no material `a`"),
+        ("newmtl b\n", "line 10: no material is called `a`"),
         ("Kd 1 1 1\n", "line 1: a.mtl: line 1: Kd before the first newmtl"),
         ("newmtl a\nKd 1 1\n", "line 1: a.mtl: line 2: a Kd of 2 numbers; give r g b"),
         ("newmtl a\nKd 1 -1 0\n", "a.mtl: line 2: a Kd of [1, -1, 0]; give numbers in [0, 65536]"),
-        ("newmtl a\nKd spectral x\n", "`spectral` is no number"),
-        ("newmtl a\nmap_Kd -s 2 2 2 a.png\n", "a.mtl: line 2: the options of map_Kd are not read"),
+        ("newmtl a\nKd spectral x\n", "`spectral` is not a number"),
+        (
+            "newmtl a\nmap_Kd -s 2 2 2 a.png\n",
+            "a.mtl: line 2: the options of map_Kd are not supported",
+        ),
         ("newmtl a\nmap_Kd\n", "map_Kd without a file"),
     ] {
         let found = refused(mtl);

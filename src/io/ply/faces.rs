@@ -81,7 +81,7 @@ pub(super) fn corner(value: f64, vertices: u64) -> Result<u32, String> {
     if value >= 0.0 && value < vertices as f64 {
         Ok(value as u32)
     } else {
-        Err(format!("vertex {value} does not exist, they are 0 to {}", vertices - 1))
+        Err(format!("vertex {value} does not exist; vertices are 0 to {}", vertices - 1))
     }
 }
 

@@ -56,7 +56,7 @@ impl Reader {
     pub(super) fn put(&mut self, part: GroupPart, value: f64) -> Result<(), String> {
         if !(value >= 0.0 && value < MAX_GROUPS as f64) {
             let last = MAX_GROUPS - 1;
-            return Err(format!("there is no group {value}, groups are 0 to {last}"));
+            return Err(format!("group {value} does not exist; groups are 0 to {last}"));
         }
         let group = value as u8;
         if self.member >> group & 1 != 0 {

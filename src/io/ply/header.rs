@@ -116,7 +116,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<PlyHeader, String> {
     let mut names = BTreeSet::new();
     loop {
         let Some(text) = lines.next() else {
-            let what = "the header has no end_header: the file is truncated or no PLY file";
+            let what = "the header has no end_header: the file is truncated, or not a PLY file";
             return Err(format!("line {}: {what}", lines.number));
         };
         let line = lines.number;
@@ -161,7 +161,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<PlyHeader, String> {
 
 fn unknown_line(text: &str, line: u64) -> String {
     format!(
-        "line {line}: {} is no line of a PLY header, which has format, comment, obj_info, \
+        "line {line}: {} is not a line of a PLY header, which has format, comment, obj_info, \
          element NAME COUNT, property TYPE NAME, property list TYPE TYPE NAME, end_header",
         quote(text)
     )
@@ -182,7 +182,7 @@ fn parse_format(name: &str, version: &str, line: u64) -> Result<Format, String> 
     };
     if version != "1.0" {
         return Err(format!(
-            "line {line}: unknown version {} of the format; only 1.0 is read",
+            "line {line}: unknown format version {}; only 1.0 is read",
             quote(version)
         ));
     }
@@ -192,7 +192,7 @@ fn parse_format(name: &str, version: &str, line: u64) -> Result<Format, String> 
 fn parse_element(name: &str, count: &str, line: u64) -> Result<Element, String> {
     let count = count.parse().map_err(|_| {
         let count = quote(count);
-        format!("line {line}: element {}: {count} is no count below 2^64", quote(name))
+        format!("line {line}: element {}: {count} is not a count below 2^64", quote(name))
     })?;
     Ok(Element { name: name.to_owned(), count, properties: Vec::new() })
 }

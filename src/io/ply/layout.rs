@@ -184,8 +184,8 @@ fn prefiltered(name: &str) -> Result<Option<usize>, String> {
     match level.parse() {
         Ok(level @ 1..=MOST_LEVELS) => Ok(Some(level_places(level).start + channel)),
         _ => Err(format!(
-            "element vertex has property {}, but prefiltered colours have {MOST_LEVELS} levels at \
-             most; remove those above",
+            "element vertex has property {}, but prefiltered colours have at most {MOST_LEVELS} \
+             levels; remove those above",
             quote(name)
         )),
     }

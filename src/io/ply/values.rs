@@ -194,7 +194,7 @@ impl<'a> BodyValues<'a> {
         let number = std::str::from_utf8(word).ok().and_then(|word| parse(word, scalar));
         number.ok_or_else(|| {
             let word = quote(&String::from_utf8_lossy(word));
-            format!("{word} is no number of type {}", scalar.name())
+            format!("{word} is not a number of type {}", scalar.name())
         })
     }
 

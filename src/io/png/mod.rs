@@ -67,7 +67,7 @@ fn pending(
     let (width, height) = (color.width(), color.height());
     if width == 0 || height == 0 {
         return Err(Error::Invalid(format!(
-            "no PNG holds {width} x {height} pixels: render at least one"
+            "a PNG cannot hold {width} x {height} pixels; render at least one"
         )));
     }
     if alpha.is_some_and(|a| (a.width(), a.height()) != (width, height)) {
@@ -103,7 +103,7 @@ pub fn write_codes(path: &Path, size: [u32; 2], codes: &[u8]) -> Result<()> {
     let wanted = size.map(u64::from).iter().product::<u64>() * 3;
     if wanted == 0 || codes.len() as u64 != wanted {
         let [width, height] = size;
-        let what = format!("{} codes are no {width} x {height} pixels", codes.len());
+        let what = format!("{} codes do not fill {width} x {height} pixels", codes.len());
         return Err(Error::io(path, io::Error::other(what)));
     }
     write_atomically(path, |file| encode(file, codes, size, ExtendedColorType::Rgb8))

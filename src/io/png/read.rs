@@ -79,8 +79,8 @@ fn read_of_size(path: &Path, check_size: fn(u32, u32) -> Result<()>) -> Result<S
         return Err(Error::format(
             path,
             format!(
-                "header: promises {width} x {height} pixels, more than a file of {length} bytes can \
-                 hold; write it again"
+                "header: declares {width} x {height} pixels, more than a file of {length} bytes \
+                 can hold; write it again"
             ),
         ));
     }
@@ -260,7 +260,7 @@ mod tests {
             (b"\x76\x2f\x31\x01 an EXR".to_vec(), "write it again"),
             (good[..good.len() - 20].to_vec(), "write it again"),
             (damaged, "write it again"),
-            (huge, "promises 65535 x 65535 pixels, more than a file of"),
+            (huge, "declares 65535 x 65535 pixels, more than a file of"),
         ] {
             let line = read_bytes(&bytes).unwrap_err().to_string();
             assert!(line.contains("a.png: ") && line.contains(why), "{line}");

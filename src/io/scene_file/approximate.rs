@@ -45,7 +45,7 @@ impl SceneFile {
             return Err(Error::Usage("a hierarchy of 0 surfels; give at least 1".into()));
         }
         if self.hierarchy.is_some() {
-            let what = format!("{} is a hierarchy already; name a mesh or a scene", self.name);
+            let what = format!("{} is a hierarchy already; give a mesh or a scene", self.name);
             return Err(Error::Usage(what));
         }
         Camera::check_size(settings.side, settings.side)?;
@@ -91,9 +91,13 @@ impl SceneFile {
 /// Refuses a model that cannot be approximated.
 fn check(name: &str, model: &Model) -> Result<()> {
     let what = match &model.source {
-        Source::Shape { .. } => "a shape has surfels of its own and no triangles to approximate",
-        Source::File { prefix: Some(_), .. } => "a prefix is of points, which are not approximated",
-        Source::File { .. } if model.progressive => "progressive points are not approximated",
+        Source::Shape { .. } => "a shape has surfels of its own, but no triangles to sample",
+        Source::File { prefix: Some(_), .. } => {
+            "a prefix needs points, but a hierarchy samples triangles; remove it"
+        }
+        Source::File { .. } if model.progressive => {
+            "progressive needs points, but a hierarchy samples triangles; remove it"
+        }
         Source::File { .. } | Source::Tree { .. } => return Ok(()),
     };
     Err(Error::Invalid(format!("{name}: {what}")))

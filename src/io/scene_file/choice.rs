@@ -53,8 +53,8 @@ impl Choice {
         for (name, value) in &self.values {
             settings.set(name, value).map_err(|refused| {
                 Error::Invalid(match refused {
-                    Refused::Unknown => format!("`{name}` means nothing to {owner}"),
-                    Refused::Idle(why) => format!("`{name}` means nothing {why}"),
+                    Refused::Unknown => format!("`{name}` does not apply to {owner}; remove it"),
+                    Refused::Idle(why) => format!("`{name}` has no effect {why}; remove it"),
                     Refused::Wrong(what) => what,
                 })
             })?;
@@ -175,15 +175,16 @@ pub struct OutputSettings {
 
 impl Fields for OutputSettings {
     fn fields(&mut self, each: &mut Visit<'_>) {
-        each(Field::new("number", "the arithmetic", Slot::Word(&mut self.number)));
-        let storage = "how passes store colours, weights and normals, rounded after every blending";
+        each(Field::new("number", "compute in this arithmetic", Slot::Word(&mut self.number)));
+        let storage = "store the colours, weights and normals of passes in this buffer format, \
+                       rounding after every blend";
         each(Field::new("storage", storage, Slot::Word(&mut self.formats.buffers)));
-        let depth = "how passes store depths";
+        let depth = "store the depths of passes in this buffer format";
         each(Field::new("depth_storage", depth, Slot::Word(&mut self.formats.depth)));
-        let stages = "whether the planes of every stage are kept";
+        let stages = "keep the planes of every stage";
         each(Field::new("stages", stages, Slot::Switch(&mut self.stages)));
-        let compression = "how the EXR is compressed, which loses no bit: fast, as most programs do, \
-                           smallest, or not at all";
+        let compression = "compress the EXR without loss: fast, as most programs do, smallest, or \
+                           not at all";
         each(Field::new("compression", compression, Slot::Word(&mut self.compression)));
     }
 }

@@ -77,7 +77,7 @@ impl Draw {
                 return Err(what.into());
             }
             (_, Some(_)) => {
-                return Err("`split` means nothing without draw = \"hybrid\": remove it".into());
+                return Err("`split` has no effect without draw = \"hybrid\": remove it".into());
             }
             (None, None) => Self::default_for(source),
             (Some("surfels"), None) => Self::Surfels,

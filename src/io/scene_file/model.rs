@@ -47,13 +47,15 @@ pub(super) fn check_draw(model: &Model, purpose: Purpose<'_>) -> Result<()> {
     model.draw.check(&model.source).map_err(Error::Invalid)?;
     if model.progressive && !matches!(model.source, Source::File { .. }) {
         let name = model.source.name();
-        let what = format!("{name}: what is progressive are points of a file, in an order");
+        let what = format!(
+            "{name}: only the ordered points of a file can be progressive; remove `progressive`"
+        );
         return Err(Error::Invalid(what));
     }
     if matches!(model.source, Source::File { texture: Some(_), .. }) && !shows_texture(model) {
         let what = match model.color {
             Some(_) => "a model in one colour".to_owned(),
-            None => format!("what is drawn as {}", model.draw.word()),
+            None => format!("a model drawn as {}", model.draw.word()),
         };
         let name = model.source.name();
         return Err(Error::Invalid(format!("{name}: {what} has no texture; remove one of them")));
@@ -64,7 +66,7 @@ pub(super) fn check_draw(model: &Model, purpose: Purpose<'_>) -> Result<()> {
         let what = if surfels {
             "a model in one colour has the same at every level".to_owned()
         } else {
-            format!("what is drawn as {} has no surfels", model.draw.word())
+            format!("a model drawn as {} has no surfels", model.draw.word())
         };
         return Err(Error::Invalid(format!("{name}: {what}; remove the mipmaps")));
     }
@@ -73,7 +75,7 @@ pub(super) fn check_draw(model: &Model, purpose: Purpose<'_>) -> Result<()> {
         || matches!(purpose, Purpose::Candidates(_));
     if model.opacity.is_some() && !veiled {
         let (name, word) = (model.source.name(), model.draw.word());
-        let what = format!("{name}: what is drawn as {word} is opaque; remove the opacity");
+        let what = format!("{name}: a model drawn as {word} is opaque; remove the opacity");
         return Err(Error::Invalid(what));
     }
     Ok(())
@@ -144,7 +146,7 @@ fn ply_of<'a>(model: &'a Model, names: &[String]) -> Result<Option<&'a Path>> {
             Ok(Some(path))
         }
         source => Err(Error::Usage(format!(
-            "{}: there is no property {}, which only vertices of a .ply have",
+            "{}: no property {}; only vertices of a .ply have such properties",
             source.name(),
             first.escape_debug()
         ))),
@@ -155,8 +157,8 @@ fn ply_of<'a>(model: &'a Model, names: &[String]) -> Result<Option<&'a Path>> {
 fn first(cloud: Cloud, prefix: Option<usize>, progressive: bool) -> Result<Cloud> {
     let Some(count) = prefix.or(progressive.then_some(usize::MAX)) else { return Ok(cloud) };
     if !(cloud.triangles.is_empty() && cloud.edges.is_empty()) {
-        let what = "a prefix is of points, but the file has triangles or edges; \"splatref surfels\" puts what \
-                    is seen of triangles in order";
+        let what = "a prefix needs points, but the file has triangles or edges; \"splatref \
+                    surfels\" samples triangles";
         return Err(Error::Invalid(what.into()));
     }
     if count >= cloud.position.len() {
@@ -204,7 +206,7 @@ fn of_file(
             ModelParts::new(Surfels::none(), Primitives { tubes, ..none }, derived)
         }
         // `check_draw` refuses this before any file is read.
-        Draw::Lines => return Err(Error::Invalid("only a tree is drawn as lines".into())),
+        Draw::Lines => return Err(Error::Invalid("only a tree can be drawn as lines".into())),
     })
 }
 

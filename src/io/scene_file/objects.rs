@@ -83,7 +83,10 @@ impl SceneFile {
         });
         let total = counts.sum::<u64>() + self.models.len() as u64;
         if total > u64::from(u32::MAX) {
-            return Err(Error::Invalid(format!("{total} objects; {} are the most", u32::MAX)));
+            return Err(Error::Invalid(format!(
+                "{total} objects; at most {} are possible",
+                u32::MAX
+            )));
         }
         memory::ask(total * OF_AN_OBJECT, || format!("{total} objects"))?;
         let mut all = Vec::with_capacity(total as usize);
@@ -126,7 +129,7 @@ impl SceneFile {
                 for (number, row) in (0..).zip(table.unwrap_or_default()) {
                     // Refuse rather than choose one of two colours.
                     if row.color.is_some() && color.is_some() {
-                        let what = "the rows have colours, and the object has one: remove one";
+                        let what = "both the rows and the object have colours; remove one";
                         return Err(Error::format(path, what));
                     }
                     let motion = Motion::still(row.place.then(transform));

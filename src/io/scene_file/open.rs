@@ -58,7 +58,8 @@ impl FileKind {
             _ => Err(Error::Usage(match input::no_file(path) {
                 Some(what) => format!("{}: {what}", path.display()),
                 None => format!(
-                    "{}: no known kind of file; give a .ply, an .obj, a scene .toml, an .exr, or a shape: {}",
+                    "{}: unknown kind of file; give a .ply, an .obj, a scene .toml, an .exr, or a \
+                     shape: {}",
                     path.display(),
                     shapes()
                 ),

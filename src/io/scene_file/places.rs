@@ -43,7 +43,7 @@ pub(super) fn read(path: &Path) -> Result<Vec<Row>> {
     let rows = match extension(path).as_deref() {
         Some("csv") => csv(&bytes),
         Some("ply") => of_ply(&bytes),
-        _ => Err("a table of places is a .csv or a .ply".into()),
+        _ => Err("a table of places must be a .csv or a .ply".into()),
     };
     rows.map_err(|what| Error::format(path, what))
 }
@@ -60,7 +60,7 @@ fn csv(bytes: &[u8]) -> Reason<Vec<Row>> {
     let text = std::str::from_utf8(bytes).map_err(|_| "not text; CSV is UTF-8")?;
     let text = text.strip_prefix('\u{feff}').unwrap_or(text);
     let mut lines = (1..).zip(text.lines()).filter(|(_, line)| !line.trim().is_empty());
-    let (_, header) = lines.next().ok_or("there is no header; give the columns, such as x,y,z")?;
+    let (_, header) = lines.next().ok_or("no header; give the columns, such as x,y,z")?;
     let names: Vec<_> = header.split(',').map(str::trim).collect();
     if let Some(name) = names.iter().find(|name| !NAMES.contains(name)) {
         let known = NAMES.join(", ");
@@ -73,21 +73,21 @@ fn csv(bytes: &[u8]) -> Reason<Vec<Row>> {
         row.map_err(|what| format!("line {number}: {what}"))
     });
     let rows = rows.collect::<Reason<Vec<_>>>()?;
-    if rows.is_empty() { Err("there are no rows below the header".into()) } else { Ok(rows) }
+    if rows.is_empty() { Err("no rows below the header; add one".into()) } else { Ok(rows) }
 }
 
 /// Parses the numbers of a line.
 fn numbers(line: &str, names: &[&str], values: &mut Vec<f64>) -> Reason<()> {
     values.clear();
     for (i, word) in line.split(',').map(str::trim).enumerate() {
-        let name = names.get(i).unwrap_or(&"a value too many");
-        let value = word.parse().map_err(|_| format!("{name}: `{word}` is no number"))?;
+        let name = names.get(i).unwrap_or(&"one value too many");
+        let value = word.parse().map_err(|_| format!("{name}: `{word}` is not a number"))?;
         values.push(value);
     }
     if values.len() == names.len() {
         return Ok(());
     }
-    Err(format!("{} values below {} columns", values.len(), names.len()))
+    Err(format!("{} values for {} columns", values.len(), names.len()))
 }
 
 /// The column of each of [`NAMES`].
@@ -99,7 +99,7 @@ impl Columns {
         for (column, name) in names.enumerate() {
             let Some(known) = NAMES.iter().position(|known| *known == name) else { continue };
             if found[known].replace(column).is_some() {
-                return Err(format!("the column {name} is there twice"));
+                return Err(format!("two columns are called {name}; rename one"));
             }
         }
         for (group, needed) in [(0..3, true), (4..8, false), (8..11, false)] {
@@ -107,7 +107,7 @@ impl Columns {
             let given = group.clone().find(|i| found[*i].is_some());
             let (Some(missing), true) = (missing, needed || given.is_some()) else { continue };
             let all = NAMES[group].join(", ");
-            return Err(format!("there is no column {}; give {all}", NAMES[missing]));
+            return Err(format!("no column {}; give {all}", NAMES[missing]));
         }
         Ok(Self(found))
     }
@@ -119,7 +119,7 @@ impl Columns {
             (Some(axis), Some(degrees)) => {
                 let axis = DVec3::from_array(axis);
                 if !(transform::is_axis(axis) && degrees.is_finite()) {
-                    return Err("the axis must not be 0, nor any number infinite".into());
+                    return Err("the axis must be finite and not 0".into());
                 }
                 transform::rotation(axis, degrees)
             }
@@ -182,14 +182,14 @@ mod tests {
         for (text, what) in [
             ("", "no header"),
             ("x,y,z\n", "no rows"),
-            ("x,y\n1,2\n", "line 1: there is no column z; give x, y, z"),
+            ("x,y\n1,2\n", "line 1: no column z; give x, y, z"),
             ("x,y,z,w\n", "line 1: unknown column `w`; the columns are x, y, z, scale"),
-            ("x,y,z,x\n", "line 1: the column x is there twice"),
+            ("x,y,z,x\n", "line 1: two columns are called x"),
             ("x,y,z,axis_x\n", "no column axis_y; give axis_x, axis_y, axis_z, degrees"),
             ("x,y,z,r,b\n", "no column g"),
-            ("x,y,z\n1,2,3\n\n1,two,3\n", "line 4: y: `two` is no number"),
-            ("x,y,z\n1,2\n", "line 2: 2 values below 3 columns"),
-            ("x,y,z\n1,2,3,4\n", "line 2: 4 values below 3 columns"),
+            ("x,y,z\n1,2,3\n\n1,two,3\n", "line 4: y: `two` is not a number"),
+            ("x,y,z\n1,2\n", "line 2: 2 values for 3 columns"),
+            ("x,y,z\n1,2,3,4\n", "line 2: 4 values for 3 columns"),
             ("x,y,z\n1,nan,3\n", "line 2: transform: the translation must be finite"),
             ("x,y,z,scale\n1,2,3,0\n", "line 2: transform: the scale"),
             ("x,y,z,axis_x,axis_y,axis_z,degrees\n1,2,3,0,0,0,4\n", "line 2: the axis"),

@@ -139,8 +139,7 @@ impl Ready {
     pub fn state(&self, path: &Path) -> Result<Seen> {
         let Method::Deferred(settings) = &self.method else {
             let what = format!(
-                "the method {} carries nothing from frame to frame: give --method deferred, or no \
-                 state",
+                "the method {} has no state between frames; give --method deferred, or no state",
                 self.method.name()
             );
             return Err(Error::Invalid(what));
@@ -150,8 +149,9 @@ impl Ready {
         let State { frame, seen } = state::read(path, &self.identity()?, &ids)?;
         if frame.checked_add(1) != Some(self.frame) {
             let (next, own) = (u64::from(frame) + 1, self.frame);
-            let what =
-                format!("what frame {frame} saw is for frame {next}, and this is frame {own}");
+            let what = format!(
+                "the state after frame {frame} is for frame {next}, but this is frame {own}"
+            );
             return Err(Error::format(path, what));
         }
         seen.check(&ids, settings.flags).map_err(|error| Error::format(path, error.to_string()))?;
@@ -216,8 +216,7 @@ impl OutputSettings {
     ) -> Result<Cow<'s, Picture<f32>>> {
         if !self.formats.keep_all() {
             if self.number == Number::F64 {
-                let what =
-                    "storage formats are those of f32; give number = \"f32\", or f32 storage";
+                let what = "storage formats need f32; give number = \"f32\", or f32 storage";
                 return Err(Error::Invalid(what.into()));
             }
             return Ok(Cow::Owned(session.emulate(camera, self.formats, self.stages)?));

@@ -157,7 +157,7 @@ fn mipmaps_of_what_has_none_are_refused() {
     crate::io::ply::write(&folder.path().join("a.ply"), &points).unwrap();
     let text = "[[model]]\nfile = \"a.ply\"\nmipmaps = 1";
     let file = SceneFile::parse(text, &folder.path().join("a.toml")).unwrap();
-    let expected = "a.ply: the points have no colours, of which mipmaps could be made";
+    let expected = "a.ply: mipmaps need colours, but the points have none; remove the mipmaps";
     assert!(error(&file).ends_with(expected), "{}", error(&file));
 }
 
@@ -222,8 +222,8 @@ fn errors_name_the_file_the_line_and_the_key() {
             Some(1),
             "either a `file` or a `shape`",
         ),
-        ("[[model]]\nshape = \"torus\"\ngap = 1\n", Some(1), "`gap` means nothing to torus"),
-        ("[[model]]\nfile = \"a.ply\"\ncount = 1\n", Some(1), "`count` means nothing to a file"),
+        ("[[model]]\nshape = \"torus\"\ngap = 1\n", Some(1), "`gap` does not apply to torus"),
+        ("[[model]]\nfile = \"a.ply\"\ncount = 1\n", Some(1), "`count` does not apply to a file"),
         ("[[model]]\nfile = \"a.ply\"\ncolor = [1, 2]\n", Some(3), "length"),
         ("[[model]]\nfile = \"a.ply\"\ncolor = [1, 2, -1]\n", Some(1), "color"),
         ("[[model]]\nshape = \"torus\"\ncount = -1\n", Some(3), "-1"),
@@ -440,15 +440,15 @@ fn a_preset_can_be_changed_in_part() {
 fn settings_are_of_their_method_and_of_their_type() {
     for (table, line, what) in [
         ("[method]\ncutof = 2\n", 5, "unknown key `cutof`; the keys are name, kernel, outline"),
-        ("[method]\npeel = 3\n", 4, "`peel` means nothing to the method ewa"),
-        ("[method]\nname = \"template\"\ncutoff = 2\n", 4, "`cutoff` means nothing to the method"),
+        ("[method]\npeel = 3\n", 4, "`peel` does not apply to the method ewa"),
+        ("[method]\nname = \"template\"\ncutoff = 2\n", 4, "`cutoff` does not apply to the method"),
         ("[method]\ncutoff = \"2\"\n", 5, "cutoff `2`; give a number"),
         ("[method]\ncull = \"on\"\n", 5, "cull `on`; give true or false"),
         ("[method]\n\nbins = -1\n", 6, "bins `-1`; give a whole number"),
         ("[method]\nname = \"transparent-hq\"\nrefraction = [1, 2]\n", 6, "give three numbers"),
         ("[method]\nname = \"transparent-hq\"\nbends = \"single\"\n", 4, "without a `refraction`"),
         ("[method]\nname = \"single-pass\"\ndepth = \"plain\"\nbins = 3\n", 4, "without depth"),
-        ("[groups]\nmost = 0.5\nextend = \"none\"\n", 4, "`most` means nothing unless"),
+        ("[groups]\nmost = 0.5\nextend = \"none\"\n", 4, "`most` has no effect unless"),
         ("[groups]\ncoplanar = { cosine = 1, offset = 0 }\n", 5, "cosine, offset and color"),
         ("[groups]\noverlap = 2\n", 4, "c = 2; give 0 to 1"),
         ("[output]\nstages = 1\n", 5, "stages `1`; give true or false"),

@@ -102,8 +102,8 @@ use std::fmt::Display;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "blue";
-    const SUMMARY: &'static str =
-        "oriented discs in squares on the screen, as progressive blue surfels are drawn [BJFM19]";
+    const SUMMARY: &'static str = "draw oriented discs in screen squares, for progressive blue \
+                                   surfels [BJFM19]";
     const STAGES: &'static [Stage] = planes::STAGES;
     const DRAWS_POLYGONS: bool = true;
     // 52 of the picture, and the samples of triangles, if there are any.

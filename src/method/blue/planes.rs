@@ -3,42 +3,29 @@
 use super::discs::Kept;
 use crate::frame::{Framebuffer, NamedPlane, Plane};
 use crate::method::Job;
-use crate::method::stage::{Holds, PlaneRow, Stage, When};
+use crate::method::stage::Holds::Scalar;
+use crate::method::stage::{PlaneRow, Stage};
 use crate::method::surface;
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 
-pub(crate) const COLOR: PlaneRow = PlaneRow::new(
-    "resolved",
-    Holds::Color,
-    "linear RGB",
-    "colour of the nearest fragment, before shading; 0 where there is none",
-    When::Colored,
-);
+pub(crate) const COLOR: PlaneRow =
+    surface::COLOR.says("colour of the nearest fragment, before shading; 0 where there is none");
 pub(crate) const OFFSET: PlaneRow = PlaneRow::new(
     "discs.offset",
-    Holds::Scalar,
-    "square world units",
+    Scalar,
     "o, the squared distance of the nearest fragment from the centre of its disc; 0 of a triangle, and where \
      there is none",
-    When::Stages,
+)
+            .unit("square world units");
+pub(crate) const NORMAL: PlaneRow = surface::NORMAL.says(
+    "normal of the nearest fragment, towards the viewer, in world space; the null \
+     vector where there is none",
 );
-pub(crate) const NORMAL: PlaneRow = PlaneRow::new(
-    "normal",
-    Holds::Vector,
-    "",
-    "normal of the nearest fragment, towards the viewer, in world space; the null vector where there is none",
-    When::Lit,
-);
-pub(crate) const WEIGHT: PlaneRow =
-    PlaneRow::new("weight", Holds::Scalar, "", "1 where there is a fragment, else 0", When::Always);
-pub(crate) const ID: PlaneRow = PlaneRow::new(
-    "id",
-    Holds::Index,
-    "",
+pub(crate) const WEIGHT: PlaneRow = surface::WEIGHT.says("1 where there is a fragment, else 0");
+pub(crate) const ID: PlaneRow = surface::ID.unit("").says(
     "surfel of the nearest fragment, or its triangle, counted on after the surfels; 0xFFFF_FFFF where there \
      is none",
-    When::Always,
 );
 
 /// The stages, see [`mod@crate::method::planes`].

@@ -12,7 +12,7 @@ use crate::splat::{Fate, SplatSettings, View};
 
 /// The surfel whose centre a pixel keeps.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Kept<R> {
+pub(crate) struct Kept<R> {
     /// Depth of the centre in world units; +inf where there is none.
     pub(super) depth: R,
     /// [`NONE`] where there is none.

@@ -109,8 +109,8 @@ use std::fmt::Display;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "deferred";
-    const SUMMARY: &'static str =
-        "EWA splatting of the surfels that the last frame and an index buffer select [GBP04]";
+    const SUMMARY: &'static str = "splat by EWA only the surfels that the last frame and an index \
+                                   buffer select [GBP04]";
     const STAGES: &'static [Stage] = planes::STAGES;
     const DRAWS_OBJECTS: bool = true;
     const DRAWS_POLYGONS: bool = true;

@@ -1,7 +1,7 @@
 //! All passes in one call: from a scene and what the last frame saw to named planes; and one stage on
 //! somebody's planes.
 
-use super::indices::{indices, selected};
+use super::indices::{Kept, indices, selected};
 use super::part::{Part, Whole};
 use super::polygons::Polygons;
 use super::visibility::{NONE, Nearest, POLYGON, both, nearest};
@@ -13,11 +13,11 @@ use crate::memory;
 use crate::method::Job;
 use crate::method::ewa::attributes::{Sums, attributes};
 use crate::method::ewa::normalization::resolve;
-use crate::method::ewa::planes as ewa;
+use crate::method::ewa::planes::given_attributes;
 use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture, finish, framebuffer};
 use crate::method::prepare::Prepared;
-use crate::method::stage::unknown;
+use crate::method::stage::{Keep, unknown};
 use crate::method::surface::{self, SurfacePixel};
 use crate::method::tiled::{Tiled, pixels};
 use crate::number::Exact;
@@ -55,11 +55,12 @@ pub(super) fn define<R: Exact>(
 
     let mut left = Vec::new();
     if stages {
-        left.extend(planes::visibility(job, &visible, false));
-        left.extend(planes::indices(job, &kept));
-        left.extend(planes::visibility(job, &depth, true));
-        left.extend(ewa::attributes(&part.job(job), &sums));
-        left.extend(surface::colors(&part.job(job), &averages));
+        let there = job.there(Keep::Stages);
+        left.extend(visible.planes(&Nearest::BEFORE, 0, &there));
+        left.extend(kept.planes(&Kept::PLANES, 0, &there));
+        left.extend(depth.planes(&Nearest::BOTH, 0, &there));
+        left.extend(sums.planes(&Sums::PLANES, 0, &there));
+        left.extend(surface::colors(job, &averages));
         left.extend(planes::shown(job, &ids(&shown, &averages)));
     }
     let wanted = Wanted {
@@ -95,32 +96,36 @@ pub(super) fn stage<R: Exact>(
 ) -> Result<Vec<NamedPlane<R>>> {
     let (whole, before) = whole(job, settings)?;
     let selected = || Ok(whole.drawn(planes::given_selected(job, given)?, job));
-    let visible = || planes::given_visibility(job, given, false);
-    let depth = || planes::given_visibility(job, given, true);
+    let visible = || planes::given_visibility(job, given, &Nearest::BEFORE);
+    let depth = || planes::given_visibility(job, given, &Nearest::BOTH);
+    let there = job.there(Keep::Alone);
     match stage {
         "visibility" => {
             let flagged = flagged(job, &whole, &before)?;
             let polygons = Polygons::draw(job, settings, &whole)?;
             let visible = first::<R>(job, settings, &flagged, polygons.as_ref());
-            Ok(planes::visibility(job, &visible, false))
+            Ok(visible.planes(&Nearest::BEFORE, 0, &there))
         }
-        "indices" => Ok(planes::indices(job, &indices(job, &settings.splats, &whole, &visible()?))),
+        "indices" => {
+            let kept = indices(job, &settings.splats, &whole, &visible()?);
+            Ok(kept.planes(&Kept::PLANES, 0, &there))
+        }
         "difference" => {
             let depth = difference(job, settings, &whole, &before, &selected()?, &visible()?);
-            Ok(planes::visibility(job, &depth, true))
+            Ok(depth.planes(&Nearest::BOTH, 0, &there))
         }
         "attributes" => {
             let part = selected()?;
             let (sums, _) = sums(job, settings, &part, &depth()?);
-            Ok(ewa::attributes(&part.job(job), &sums))
+            Ok(sums.planes(&Sums::PLANES, 0, &there))
         }
         "normalization" => {
             let (part, depth) = (selected()?, depth()?);
-            let sums = ewa::given_attributes(&part.job(job), given)?;
+            let sums = given_attributes(given)?;
             let polygons = Polygons::draw(job, settings, &whole)?;
             let shown = shown(job, settings, &part, &depth);
             let averages = normalization(job, (&shown, polygons.as_ref()), &sums);
-            let mut left = surface::planes(&part.job(job), &averages);
+            let mut left = averages.planes(&SurfacePixel::PLANES, 0, &there);
             left.extend(planes::shown(job, &ids(&shown, &averages)));
             Ok(left)
         }

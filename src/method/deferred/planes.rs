@@ -8,166 +8,125 @@ use super::indices::Kept;
 use super::part::Whole;
 use super::visibility::{NONE, Nearest, POLYGON};
 use crate::error::{Error, Result};
-use crate::frame::{NO_ID, NamedPlane, Plane};
+use crate::frame::{NamedPlane, Plane};
 use crate::method::Job;
-use crate::method::ewa::planes::{COLOR_SUM, COUNT, NORMAL_SUM, WEIGHT_SUM};
+use crate::method::ewa::attributes::Sums;
 use crate::method::input_planes::InputPlanes;
-use crate::method::stage::{Holds, PlaneRow, Stage, When};
-use crate::method::surface;
+use crate::method::record::Part::{HighId, LowId, Number};
+use crate::method::record::{Field, joined, rows};
+use crate::method::stage::Holds::{Depth, HighIndex, Index};
+use crate::method::stage::When::Wide;
+use crate::method::stage::{Keep, PlaneRow, Stage};
+use crate::method::surface::{self, SurfacePixel};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::splat::View;
 
-pub(crate) const BEFORE: PlaneRow = PlaneRow::new(
-    "visibility.Z",
-    Holds::Scalar,
-    "world units",
-    "depth of the nearest fragment of polygons and of the surfels whose flags are set; +inf where there \
-     is none",
-    When::Stages,
-);
-pub(crate) const BEFORE_ID: PlaneRow = PlaneRow::new(
-    "visibility.id",
-    Holds::Index,
-    "surfel",
-    "surfel of that fragment; 0xFFFF_FFFF where there is none",
-    When::Stages,
-);
-pub(crate) const CENTRE: PlaneRow = PlaneRow::new(
-    "indices.Z",
-    Holds::Scalar,
-    "world units",
-    "depth of the nearest centre in the pixel that passes the test of depth; +inf where there is none",
-    When::Stages,
-);
-pub(crate) const CENTRE_ID: PlaneRow = PlaneRow::new(
-    "indices.id",
-    Holds::Index,
-    "surfel",
-    "surfel of that centre, which is selected; 0xFFFF_FFFF where there is none",
-    When::Stages,
-);
-pub(crate) const NEAREST: PlaneRow = PlaneRow::new(
-    "difference.Z",
-    Holds::Scalar,
-    "world units",
-    "depth of the nearest fragment of these and of the selected surfels whose flags are not set; \
-     +inf where there is none",
-    When::Stages,
-);
-pub(crate) const NEAREST_ID: PlaneRow = PlaneRow::new(
-    "difference.id",
-    Holds::Index,
-    "surfel",
-    "surfel of that fragment; 0xFFFF_FFFF where there is none",
-    When::Stages,
-);
+const fn surfel(name: &'static str, meaning: &'static str) -> PlaneRow {
+    PlaneRow::new(name, Index, meaning).unit("surfel")
+}
 
-const HIGH: &str = "the highest 8 bits of that surfel's id; 0 where there is none";
+const fn high(name: &'static str) -> PlaneRow {
+    let meaning = "the highest 8 bits of that surfel's id; 0 where there is none";
+    PlaneRow::new(name, HighIndex, meaning).when(Wide)
+}
 
-pub(super) const BEFORE_HIGH: PlaneRow =
-    PlaneRow::new("visibility.stencil", Holds::Count, "", HIGH, When::Wide);
-pub(super) const CENTRE_HIGH: PlaneRow =
-    PlaneRow::new("indices.stencil", Holds::Count, "", HIGH, When::Wide);
-pub(super) const NEAREST_HIGH: PlaneRow =
-    PlaneRow::new("difference.stencil", Holds::Count, "", HIGH, When::Wide);
-pub(super) const SHOWN_HIGH: PlaneRow =
-    PlaneRow::new("stencil", Holds::Count, "", HIGH, When::Wide);
+impl<R> Nearest<R> {
+    /// What the first pass of visibility splatting leaves.
+    pub(crate) const BEFORE: [Field<Self, R>; 3] = Self::planes([
+        PlaneRow::new(
+            "visibility.Z",
+            Depth,
+            "depth of the nearest fragment of polygons and of the surfels whose flags are set; +inf where \
+             there is none",
+        ),
+        surfel("visibility.id", "surfel of that fragment; 0xFFFF_FFFF where there is none"),
+        high("visibility.stencil"),
+    ]);
+    /// What both passes leave.
+    pub(crate) const BOTH: [Field<Self, R>; 3] = Self::planes([
+        PlaneRow::new(
+            "difference.Z",
+            Depth,
+            "depth of the nearest fragment of these and of the selected surfels whose flags are not set; \
+             +inf where there is none",
+        ),
+        surfel("difference.id", "surfel of that fragment; 0xFFFF_FFFF where there is none"),
+        high("difference.stencil"),
+    ]);
+
+    const fn planes([depth, id, high]: [PlaneRow; 3]) -> [Field<Self, R>; 3] {
+        [
+            depth.at(Number(|pixel| &mut pixel.depth)),
+            id.at(LowId(|pixel| &mut pixel.id)),
+            high.at(HighId(|pixel| &mut pixel.id)),
+        ]
+    }
+}
+
+impl<R> Kept<R> {
+    /// What the pass of indices leaves.
+    pub(crate) const PLANES: [Field<Self, R>; 3] = [
+        Field::new("indices.Z", Depth, Number(|p: &mut Self| &mut p.depth))
+            .says("depth of the nearest centre in the pixel that passes the test of depth; +inf where there is \
+             none"),
+        surfel(
+            "indices.id",
+            "surfel of that centre, which is selected; 0xFFFF_FFFF where there is none",
+        )
+        .at(LowId(|pixel| &mut pixel.id)),
+        high("indices.stencil").at(HighId(|pixel| &mut pixel.id)),
+    ];
+}
+
+/// The highest bits of the ids that a picture shows.
+const fn shown_planes<R>() -> [Field<u64, R>; 1] {
+    [high("stencil").at(HighId(|id| id))]
+}
 
 /// The stages; the planes of the last two are those of every picture.
 pub(super) const STAGES: &[Stage] = &[
-    Stage { name: "visibility", reads: &[], leaves: &[BEFORE, BEFORE_ID, BEFORE_HIGH] },
-    Stage { name: "indices", reads: &["visibility"], leaves: &[CENTRE, CENTRE_ID, CENTRE_HIGH] },
+    Stage { name: "visibility", reads: &[], leaves: &rows(&Nearest::<f32>::BEFORE) },
+    Stage { name: "indices", reads: &["visibility"], leaves: &rows(&Kept::<f32>::PLANES) },
     Stage {
         name: "difference",
         reads: &["visibility", "indices"],
-        leaves: &[NEAREST, NEAREST_ID, NEAREST_HIGH],
+        leaves: &rows(&Nearest::<f32>::BOTH),
     },
     Stage {
         name: "attributes",
         reads: &["indices", "difference"],
-        leaves: &[COLOR_SUM, NORMAL_SUM, WEIGHT_SUM, COUNT],
+        leaves: &rows(&Sums::<f32>::PLANES),
     },
     Stage {
         name: "normalization",
         reads: &["indices", "difference", "attributes"],
-        leaves: &[
-            surface::COLOR,
-            surface::DEPTH,
-            surface::NORMAL,
-            surface::WEIGHT,
-            surface::ID,
-            SHOWN_HIGH,
-        ],
+        leaves: joined!(rows(&SurfacePixel::<f32>::PLANES), rows(&shown_planes::<f32>())),
     },
     surface::shading(&["normalization"]),
 ];
 
-/// What a pass of visibility splatting leaves: the first, or both.
-pub(super) fn visibility<R: Exact>(
-    job: &Job<'_>,
-    visible: &Tiled<Nearest<R>>,
-    both: bool,
-) -> Vec<NamedPlane<R>> {
-    let [depth, id, stencil] = rows(both);
-    let mut planes = vec![
-        depth.scalar(0, visible.plane(|pixel| pixel.depth)),
-        id.index(0, visible.plane(|pixel| pixel.id as u32)),
-    ];
-    if is_wide(job) {
-        planes.push(stencil.count(0, visible.plane(|pixel| high(pixel.id))));
-    }
-    planes
-}
-
-fn rows(both: bool) -> [PlaneRow; 3] {
-    if both { [NEAREST, NEAREST_ID, NEAREST_HIGH] } else { [BEFORE, BEFORE_ID, BEFORE_HIGH] }
-}
-
 /// The highest bits of the ids that a picture shows, if there are any.
-pub(super) fn shown<R: Exact>(job: &Job<'_>, ids: &Tiled<u64>) -> Option<NamedPlane<R>> {
-    is_wide(job).then(|| SHOWN_HIGH.count(0, ids.plane(|&id| high(id))))
+pub(super) fn shown<R: Exact>(job: &Job<'_>, ids: &Tiled<u64>) -> Vec<NamedPlane<R>> {
+    ids.planes(&shown_planes(), 0, &job.there(Keep::Stages))
 }
 
-/// Whether ids have more than 32 bits.
-fn is_wide(job: &Job<'_>) -> bool {
-    Whole::new(job.scene).ids().is_wide()
-}
-
-/// The bits of an id above the lowest 32.
-fn high(id: u64) -> u8 {
-    if id as u32 == NO_ID { 0 } else { (id >> 32) as u8 }
-}
-
-/// Somebody's visibility; nearness is that of the depth, rounded.
+/// Somebody's visibility, of the first pass or of both; nearness is that of the depth, rounded.
 pub(super) fn given_visibility<R: Exact>(
     job: &Job<'_>,
     given: &InputPlanes<'_, R>,
-    both: bool,
+    fields: &[Field<Nearest<R>, R>; 3],
 ) -> Result<Tiled<Nearest<R>>> {
-    let [depth, id, stencil] = rows(both);
-    let (depth, id) = (given.scalar(&depth, 0)?, ids(job, given, [&id, &stencil])?);
+    let empty = Nearest { nearness: R::ZERO, depth: R::INFINITY, id: NONE };
+    let [width, height] = job.camera.size();
+    let visible = given.records(fields, 0, Plane::filled(width, height, empty))?;
+    check_ids(job, visible.values().iter().map(|pixel| pixel.id), fields)?;
     let view = View::new(job.camera);
     Ok(given.tiled(|x, y| {
-        let depth = *depth.at(x, y);
-        let id = match id.at(x, y) {
-            NONE if depth < R::INFINITY => POLYGON,
-            id => id,
-        };
+        let Nearest { depth, id, .. } = *visible.at(x, y);
+        let id = if id == NONE && depth < R::INFINITY { POLYGON } else { id };
         Nearest { nearness: view.nearness(depth), depth, id }
     }))
-}
-
-/// What the pass of indices leaves.
-pub(super) fn indices<R: Exact>(job: &Job<'_>, kept: &Tiled<Kept<R>>) -> Vec<NamedPlane<R>> {
-    let mut planes = vec![
-        CENTRE.scalar(0, kept.plane(|pixel| pixel.depth)),
-        CENTRE_ID.index(0, kept.plane(|pixel| pixel.id as u32)),
-    ];
-    if is_wide(job) {
-        planes.push(CENTRE_HIGH.count(0, kept.plane(|pixel| high(pixel.id))));
-    }
-    planes
 }
 
 /// B(i) as somebody selected it, ascending, each surfel once.
@@ -175,59 +134,31 @@ pub(super) fn given_selected<R: Exact>(
     job: &Job<'_>,
     given: &InputPlanes<'_, R>,
 ) -> Result<Vec<u64>> {
-    let mut selected: Vec<u64> = ids(job, given, [&CENTRE_ID, &CENTRE_HIGH])?.all();
+    let [_depth, ids @ ..] = &Kept::<R>::PLANES;
+    let [width, height] = job.camera.size();
+    let kept = given.records(ids, 0, Plane::filled(width, height, Kept::EMPTY))?;
+    let mut selected: Vec<u64> = kept.values().iter().map(|pixel| pixel.id).collect();
+    check_ids(job, selected.iter().copied(), ids)?;
     selected.retain(|&id| id != NONE);
     selected.sort_unstable();
     selected.dedup();
     Ok(selected)
 }
 
-/// Somebody's ids.
-struct GivenIds<'a> {
-    low: &'a Plane<u32>,
-    /// The highest bits, if there are any.
-    high: Option<&'a Plane<u8>>,
-}
-
-impl GivenIds<'_> {
-    fn at(&self, x: u32, y: u32) -> u64 {
-        let high = self.high.map_or(0, |high| *high.at(x, y));
-        widened(*self.low.at(x, y), high)
-    }
-
-    /// Those of all pixels.
-    fn all(&self) -> Vec<u64> {
-        let low = self.low.values().iter();
-        match self.high {
-            Some(high) => low.zip(high.values()).map(|(&id, &high)| widened(id, high)).collect(),
-            None => low.map(|&id| widened(id, 0)).collect(),
-        }
-    }
-}
-
-/// The planes of ids, with their highest bits if 32 do not say all of them.
-fn ids<'a, R: Exact>(
+/// Whether the scene has all ids; those of 32 bits were checked as they were read.
+fn check_ids<T, R>(
     job: &Job<'_>,
-    given: &InputPlanes<'a, R>,
-    [id, stencil]: [&PlaneRow; 2],
-) -> Result<GivenIds<'a>> {
+    mut ids: impl Iterator<Item = u64>,
+    fields: &[Field<T, R>],
+) -> Result<()> {
     let whole = Whole::new(job.scene);
-    let low = given.ids(id, 0)?;
-    if !whole.ids().is_wide() {
-        return Ok(GivenIds { low, high: None });
-    }
-    let found = GivenIds { low, high: Some(given.count(stencil, 0)?) };
-    let name = id.name;
-    let unknown = |&id: &u64| id != NONE && whole.ids().find(id).is_none();
-    match found.all().into_iter().find(unknown) {
+    let is_unknown = |&id: &u64| id != NONE && whole.ids().find(id).is_none();
+    match ids.find(is_unknown).filter(|_| whole.ids().is_wide()) {
         Some(id) => {
-            let planes = format!("the planes `{name}` and `{}`", stencil.name);
+            let [.., low, high] = fields else { unreachable!("ids have two planes") };
+            let planes = format!("the planes `{}` and `{}`", low.row.name, high.row.name);
             Err(Error::Invalid(format!("{planes} have the id {id}; none of the scene's")))
         }
-        None => Ok(found),
+        None => Ok(()),
     }
-}
-
-fn widened(id: u32, high: u8) -> u64 {
-    if id == NO_ID { NONE } else { u64::from(high) << 32 | u64::from(id) }
 }

@@ -50,13 +50,12 @@ impl Fields for Settings {
     fn fields(&mut self, each: &mut Visit<'_>) {
         let Self { splats, flags, second, share } = self;
         splats.fields(each);
-        let help = "m, how many consecutive surfels of an object share a flag";
+        let help = "share one visibility flag among this many consecutive surfels of an object (m)";
         each(Field::new("flags", help, Slot::Count(flags)).unit("surfels").range("1 to 4096"));
-        let help = "whether visibility splatting is repeated with the surfels that the last frame \
-                    did not see";
+        let help = "repeat visibility splatting with the surfels that the last frame did not see";
         each(Field::new("second", help, Slot::Switch(second)));
-        let help = "objects of which the last frame selected no greater share of their surfels are left \
-                    out, but for those of which it selected none";
+        let help = "leave out an object if the last frame selected some of its surfels, but at \
+                    most this fraction";
         each(Field::new("share", help, Slot::Number(share)).range("0 to 1"));
     }
 }

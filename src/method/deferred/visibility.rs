@@ -18,7 +18,7 @@ pub(super) const POLYGON: u64 = NONE - (1 << 32);
 
 /// The nearest fragment of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Nearest<R> {
+pub(crate) struct Nearest<R> {
     pub(super) nearness: R,
     /// Depth in world units; +inf where there is none.
     pub(super) depth: R,

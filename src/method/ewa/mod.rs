@@ -65,7 +65,7 @@ pub(super) mod normalization;
 mod picture;
 pub(crate) mod planes;
 pub(crate) mod possible;
-pub(super) mod visibility;
+pub(crate) mod visibility;
 
 pub use crate::splat::SplatSettings as Settings;
 
@@ -80,7 +80,7 @@ use std::fmt::Display;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "ewa";
-    const SUMMARY: &'static str = "EWA surface splatting in 2+1 passes [ZPvBG01, GP03]";
+    const SUMMARY: &'static str = "splat surfaces by EWA in 2+1 passes [ZPvBG01, GP03]";
     const STAGES: &'static [Stage] = planes::STAGES;
     const FAST_BYTES_A_PIXEL: Option<u64> = Some(64);
     type Memory = ();

@@ -1,18 +1,19 @@
 //! All stages in one call: from a scene to named planes; and one stage on somebody's planes.
 
-use super::attributes::attributes;
+use super::attributes::{Sums, attributes};
 use super::margin::margins;
 use super::normalization::resolve;
-use super::visibility::visibility;
-use super::{Settings, fast, planes};
+use super::planes::{MARGIN, given_attributes, given_visibility};
+use super::visibility::{Foremost, visibility};
+use super::{Settings, fast};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool, Wanted};
 use crate::method::Job;
 use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture, finish, framebuffer};
 use crate::method::prepare::Prepared;
-use crate::method::stage::unknown;
-use crate::method::surface;
+use crate::method::stage::{Keep, unknown};
+use crate::method::surface::{self, SurfacePixel};
 use crate::number::Exact;
 use crate::scene::Scene;
 
@@ -34,9 +35,11 @@ pub(super) fn define<R: Exact>(
 
     let mut left = Vec::new();
     if stages {
-        left.extend(planes::visibility(&visible));
-        left.extend(planes::attributes(job, &sums));
-        left.push(planes::margin(&margins(job, settings, &visible)));
+        let there = job.there(Keep::Stages);
+        left.extend(visible.planes(&Foremost::PLANES, 0, &there));
+        left.extend(sums.planes(&Sums::PLANES, 0, &there));
+        let margins = margins(job, settings, &visible);
+        left.push(MARGIN.scalar(0, margins.plane(|margin| *margin)));
         left.extend(surface::colors(job, &averages));
     }
     let target = surface::framebuffer(job, &averages, wanted(job.scene, stages));
@@ -50,17 +53,16 @@ pub(super) fn stage<R: Exact>(
     stage: &str,
     given: &InputPlanes<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
-    let splats = || Prepared::splats(job, settings);
+    let (splats, there) = (|| Prepared::splats(job, settings), job.there(Keep::Alone));
     match stage {
-        "visibility" => Ok(planes::visibility(&visibility::<R>(job, &splats()))),
+        "visibility" => Ok(visibility(job, &splats()).planes(&Foremost::PLANES, 0, &there)),
         "attributes" => {
-            let visible = planes::given_visibility(job, given)?;
-            Ok(planes::attributes(job, &attributes(job, &splats(), &visible)))
+            let visible = given_visibility(job, given)?;
+            Ok(attributes(job, &splats(), &visible).planes(&Sums::PLANES, 0, &there))
         }
         "normalization" => {
-            let visible = planes::given_visibility(job, given)?;
-            let sums = planes::given_attributes(job, given)?;
-            Ok(surface::planes(job, &visible.with(&sums, resolve)))
+            let (visible, sums) = (given_visibility(job, given)?, given_attributes(given)?);
+            Ok(visible.with(&sums, resolve).planes(&SurfacePixel::PLANES, 0, &there))
         }
         "shading" => surface::shade(job, given, job.scene.surfels.color().is_some()),
         _ => Err(unknown(stage)),

@@ -74,6 +74,7 @@ pub(crate) fn each_of_range<P: Profile>(
 
 /// What a surfel may become: one splat, two if it is not certain whether it reaches the near plane,
 /// or none; and whether that is certain. Compiled once for all who ask: it is 120 kB.
+#[inline(never)]
 pub(crate) fn each_possible<P: Profile>(
     projector: &Projector<Ball<P>>,
     disc: &Disc<Ball<P>>,

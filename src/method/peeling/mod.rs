@@ -63,7 +63,7 @@
 mod blending;
 pub mod explain;
 mod fast;
-mod layers;
+pub(crate) mod layers;
 mod picture;
 pub(crate) mod planes;
 mod settings;
@@ -84,8 +84,8 @@ use std::fmt::Display;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "peeling";
-    const SUMMARY: &'static str =
-        "depth peeling, each layer by 2+1 passes: the truth of transparency [Mam89, Eve02]";
+    const SUMMARY: &'static str = "peel layer by layer with 2+1 passes each, as a reference for \
+                                   transparency [Mam89, Eve02]";
     const STAGES: &'static [Stage] = planes::ROWS;
     const BLENDS: bool = true;
     const FAST_BYTES_A_PIXEL: Option<u64> = Some(48);

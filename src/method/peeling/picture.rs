@@ -10,7 +10,7 @@ use crate::method::Job;
 use crate::method::fragment::TileSplats;
 use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture};
-use crate::method::stage::unknown;
+use crate::method::stage::{Keep, unknown};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 
@@ -25,7 +25,7 @@ pub(super) fn define<R: Exact>(
     clock.lap("projection");
     let keep = if stages { settings.layers.min(STAGES) as usize } else { 0 };
     let peeled = peel(job, &peeling, settings, keep, &mut clock);
-    let mut left = peeled.layer_planes();
+    let mut left = peeled.layer_planes(job);
     let (color, alpha) = shown(job, &peeled.pixels.map(|pixel| pixel.blend));
     let (color, alpha) =
         (color.map(|color| job.buffers.color(*color)), alpha.map(|alpha| job.buffers.sum(*alpha)));
@@ -42,8 +42,12 @@ struct Peeled<R> {
 }
 
 impl<R: Exact> Peeled<R> {
-    fn layer_planes(&self) -> Vec<NamedPlane<R>> {
-        (1..).zip(&self.kept).flat_map(|(number, layer)| planes::layer(number, layer)).collect()
+    fn layer_planes(&self, job: &Job<'_>) -> Vec<NamedPlane<R>> {
+        let there = job.there(Keep::Stages);
+        let planes = |(number, layer): (usize, &Tiled<PeeledLayer<R>>)| {
+            layer.planes(&PeeledLayer::PLANES, number, &there)
+        };
+        (1..).zip(&self.kept).flat_map(planes).collect()
     }
 }
 
@@ -79,13 +83,13 @@ pub(super) fn stage<R: Exact>(
             let keep = settings.layers.min(STAGES) as usize;
             let peeling = Peeling::project(job, settings);
             let peeled = peel(job, &peeling, settings, keep, &mut Clock::default());
-            let mut left = peeled.layer_planes();
+            let mut left = peeled.layer_planes(job);
             left.extend(planes::pixels(&peeled.pixels));
             Ok(left)
         }
         ("layers", before) => {
             let layer = next_layer(job, settings, given, before)?;
-            Ok(planes::layer(before + 1, &layer).into())
+            Ok(layer.planes(&PeeledLayer::PLANES, before + 1, &job.there(Keep::Alone)))
         }
         ("blending", _) => Ok(planes::shown(shown(job, &planes::given_blends(given)?)).into()),
         _ => Err(unknown(stage)),

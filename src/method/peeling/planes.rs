@@ -5,7 +5,11 @@ use crate::composite::{decide, under::Under};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Plane};
 use crate::method::input_planes::InputPlanes;
-use crate::method::stage::{Holds, PlaneRow, Stage, When};
+use crate::method::record::Part::{Count, Number, Triple};
+use crate::method::record::{Field, joined, rows};
+use crate::method::stage::Holds::{self, Color, Depth, Scalar};
+use crate::method::stage::When::Always;
+use crate::method::stage::{PlaneRow, Stage};
 use crate::method::surface::{ALPHA, DEPTH, ID, SHADED};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
@@ -13,41 +17,32 @@ use crate::number::Exact;
 /// How many layers leave planes.
 pub const STAGES: u32 = 8;
 
-pub(crate) const LAYER_COLOR: PlaneRow = PlaneRow::new(
-    "layer#",
-    Holds::Color,
-    "linear RGB",
-    "shaded colour C_j of layer j, not multiplied by its opacity; black where there is no layer",
-    When::Stages,
-);
-pub(crate) const LAYER_ALPHA: PlaneRow = PlaneRow::new(
-    "layer#.A",
-    Holds::Scalar,
-    "",
-    "opacity a_j of layer j in [0, 1]; 0 where there is no layer",
-    When::Stages,
-);
-pub(crate) const LAYER_DEPTH: PlaneRow = PlaneRow::new(
-    "layer#.Z",
-    Holds::Scalar,
-    "world units",
-    "depth t_j of the nearest fragment of layer j; +inf where there is no layer",
-    When::Stages,
-);
-pub(crate) const LAYER_COUNT: PlaneRow = PlaneRow::new(
-    "layer#.count",
-    Holds::Count,
-    "fragments",
-    "how many fragments layer j averages, up to 255; 0 where there is no layer",
-    When::Stages,
-);
-pub(crate) const LAYERS: PlaneRow = PlaneRow::new(
-    "layers",
-    Holds::Count,
-    "layers",
-    "how many layers the pixel has, up to 255",
-    When::Always,
-);
+impl<R> PeeledLayer<R> {
+    const COLOR: Field<Self, R> = Field::new("layer#", Color, Triple(|p: &mut Self| &mut p.color))
+        .says(
+            "shaded colour C_j of layer j, not multiplied by its opacity; black where there \
+             is no layer",
+        );
+    const ALPHA: Field<Self, R> =
+        Field::new("layer#.A", Scalar, Number(|p: &mut Self| &mut p.alpha))
+            .says("opacity a_j of layer j in [0, 1]; 0 where there is no layer");
+    const DEPTH: Field<Self, R> =
+        Field::new("layer#.Z", Depth, Number(|p: &mut Self| &mut p.depth))
+            .says("depth t_j of the nearest fragment of layer j; +inf where there is no layer");
+    const COUNT: Field<Self, R> =
+        Field::new("layer#.count", Holds::Count, Count(|p: &mut Self| &mut p.count))
+            .unit("fragments")
+            .says("how many fragments layer j averages, up to 255; 0 where there is no layer");
+
+    /// What a layer leaves, counted from 1.
+    pub(crate) const PLANES: [Field<Self, R>; 4] =
+        [Self::COLOR, Self::ALPHA, Self::DEPTH, Self::COUNT];
+}
+
+pub(crate) const LAYERS: PlaneRow =
+    PlaneRow::new("layers", Holds::Count, "how many layers the pixel has, up to 255")
+        .unit("layers")
+        .when(Always);
 
 /// The stages, see [`mod@crate::method::planes`].
 pub(super) const ROWS: &[Stage] = &[
@@ -55,20 +50,10 @@ pub(super) const ROWS: &[Stage] = &[
     Stage {
         name: "layers",
         reads: &["projection"],
-        leaves: &[LAYER_COLOR, LAYER_ALPHA, LAYER_DEPTH, LAYER_COUNT, DEPTH, ID, LAYERS],
+        leaves: joined!(rows(&PeeledLayer::<f32>::PLANES), [DEPTH, ID, LAYERS]),
     },
     Stage { name: "blending", reads: &["layers"], leaves: &[SHADED, ALPHA] },
 ];
-
-/// The planes of layer `number`, counted from 1.
-pub(super) fn layer<R: Exact>(number: usize, layer: &Tiled<PeeledLayer<R>>) -> [NamedPlane<R>; 4] {
-    [
-        LAYER_COLOR.triple(number, layer.plane(|pixel| pixel.color)),
-        LAYER_ALPHA.scalar(number, layer.plane(|pixel| pixel.alpha)),
-        LAYER_DEPTH.scalar(number, layer.plane(|pixel| pixel.depth)),
-        LAYER_COUNT.count(number, layer.plane(|pixel| pixel.count)),
-    ]
-}
 
 /// The planes of all layers together.
 pub(super) fn pixels<R: Exact>(pixels: &Tiled<PeeledPixel<R>>) -> [NamedPlane<R>; 3] {
@@ -95,7 +80,8 @@ pub(super) fn shown<R: Exact>((color, alpha): (Plane<[R; 3]>, Plane<R>)) -> [Nam
 
 /// How many of somebody's layers there are, one after the other from the first.
 pub(super) fn given_layers<R: Exact>(given: &InputPlanes<'_, R>) -> usize {
-    (1..=STAGES as usize).take_while(|&number| given.has(&LAYER_DEPTH, number)).count()
+    let depth = PeeledLayer::<R>::DEPTH.row;
+    (1..=STAGES as usize).take_while(|&number| given.has(&depth, number)).count()
 }
 
 /// `limit_j` of somebody's layer j at each pixel; +inf where there is no layer, as none follows.
@@ -104,7 +90,7 @@ pub(super) fn given_limits<R: Exact>(
     number: usize,
     epsilon: R,
 ) -> Result<Tiled<R>> {
-    let depth = given.scalar(&LAYER_DEPTH, number)?;
+    let depth = given.scalar(&PeeledLayer::<R>::DEPTH.row, number)?;
     Ok(given.tiled(|x, y| decide::limit(*depth.at(x, y), epsilon)))
 }
 
@@ -114,12 +100,11 @@ pub(super) fn given_limits<R: Exact>(
 pub(super) fn given_blends<R: Exact>(given: &InputPlanes<'_, R>) -> Result<Tiled<Under<R>>> {
     let counts = given.count(&LAYERS, 0)?.values();
     let most = counts.iter().copied().max().unwrap_or(0);
-    let layer = |number: usize| {
-        Ok((given.scalar(&LAYER_ALPHA, number)?, given.triple(&LAYER_COLOR, number)?))
-    };
+    let read = [PeeledLayer::ALPHA, PeeledLayer::COLOR];
+    let layer = |number: usize| given.pixels(&read, number, PeeledLayer::NONE);
     let layers: Vec<_> = (1..=usize::from(most)).map(layer).collect::<Result<_>>()?;
     Ok(given.tiled(|x, y| {
-        let layers = layers.iter().map(|(alpha, color)| (*alpha.at(x, y), *color.at(x, y)));
-        layers.fold(Under::CLEAR, |before, (alpha, color)| before.under(alpha, color))
+        let layers = layers.iter().map(|layer| layer.at(x, y));
+        layers.fold(Under::CLEAR, |before, layer| before.under(layer.alpha, layer.color))
     }))
 }

@@ -27,7 +27,7 @@ impl Default for Settings {
 impl Fields for Settings {
     fn fields(&mut self, each: &mut Visit<'_>) {
         self.splats.fields(each);
-        let help = "most layers that are peeled";
+        let help = "peel at most this many layers";
         each(Field::new("peel", help, Slot::Count(&mut self.layers)).range("1 to 256"));
     }
 }
@@ -42,7 +42,7 @@ impl Settings {
         if (1..=MAX_LAYERS).contains(&self.layers) {
             Ok(())
         } else {
-            Err(Error::Invalid(format!("layers: {}; give 1 to {MAX_LAYERS}", self.layers)))
+            Err(Error::Invalid(format!("peel: {} layers; give 1 to {MAX_LAYERS}", self.layers)))
         }
     }
 }

@@ -380,7 +380,7 @@ fn threads_and_tiles_leave_no_trace() {
 fn numbers_out_of_range_are_refused() {
     for layers in [0, MAX_LAYERS + 1] {
         let error = Settings { layers, ..Settings::default() }.check().unwrap_err();
-        assert!(error.to_string().starts_with("layers: "), "{error}");
+        assert!(error.to_string().starts_with("peel: "), "{error}");
     }
     assert!(Settings { layers: MAX_LAYERS, ..Settings::default() }.check().is_ok());
     assert!(settings(-1.0).check().is_err(), "epsilon");

@@ -29,7 +29,7 @@
 //!
 //! # Planes
 //!
-//! With stages: [`planes::PLANES`].
+//! With stages: those that [`planes::STAGE`] leaves.
 
 pub(crate) mod explain;
 pub(crate) mod fast;

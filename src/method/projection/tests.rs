@@ -84,7 +84,7 @@ pub(crate) fn wrong_planes_are_refused(scene: &Scene, camera: &Camera, method: M
         let of = |name: &str| method.stages().iter().find(|s| s.name == name).unwrap();
         let rows = stage.reads.iter().flat_map(|name| of(name).leaves);
         for row in rows.filter(|row| row.name.starts_with("projection")) {
-            if row.holds == Holds::Scalar && stage.reads == ["projection"] {
+            if row.holds.plain() == Holds::Scalar && stage.reads == ["projection"] {
                 let name = row.name;
                 let missing = |frame: &mut Frame<f32>| frame.planes.retain(|p| p.name != name);
                 invalid(stage.name, &missing, name);

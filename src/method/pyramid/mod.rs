@@ -50,20 +50,32 @@ use crate::error::Result;
 use crate::frame::{NamedPlane, Pool};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::input_planes::InputPlanes;
+use crate::method::record::rows;
 use crate::method::{Picture, Stage, projection};
 use crate::number::Exact;
 use std::fmt::Display;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "pyramid";
-    const SUMMARY: &'static str =
-        "one pixel a point, pull-push interpolation; ribbons, tubes, polygons and hybrids [MKC08]";
+    const SUMMARY: &'static str = "draw one pixel per point, interpolate by pull and push; \
+                                   ribbons, tubes, polygons and hybrids [MKC08]";
     const STAGES: &'static [Stage] = &[
         projection::planes::STAGE,
-        Stage { name: "pull", reads: &["projection"], leaves: &planes::PULL },
-        Stage { name: "push", reads: &["projection", "pull"], leaves: &planes::PUSH },
+        Stage { name: "pull", reads: &["projection"], leaves: &rows(&Cell::<f32>::PULL) },
+        Stage { name: "push", reads: &["projection", "pull"], leaves: &rows(&Cell::<f32>::PUSH) },
         // A picture of one pixel has no level to push: its shading reads the projection.
-        Stage { name: "shading", reads: &["projection", "push"], leaves: &planes::SHADING },
+        Stage {
+            name: "shading",
+            reads: &["projection", "push"],
+            leaves: &[
+                planes::SHADED,
+                planes::ALPHA,
+                planes::DEPTH,
+                planes::NORMAL,
+                planes::TANGENT,
+                planes::KIND,
+            ],
+        },
     ];
     const DRAWS_PRIMITIVES: bool = true;
     const FAST_BYTES_A_PIXEL: Option<u64> = Some(224);

@@ -2,7 +2,7 @@
 
 use super::fast::CellLevels;
 use super::gbuffer::GBuffer;
-use super::planes::{self, PULL, PUSH};
+use super::planes::{self, CellFields};
 use super::pull::{self, pull_all, side};
 use super::push::{self, push_all};
 use super::{Cell, Settings};
@@ -10,7 +10,6 @@ use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{Frame, NamedPlane, Plane, Pool, pyramid};
 use crate::method::Job;
-use crate::method::PlaneRow;
 use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture};
 use crate::method::projection::{self, Has};
@@ -35,9 +34,9 @@ pub(super) fn define<R: Exact>(
     clock.lap("push");
     let mut planes = Vec::new();
     if stages {
-        planes = projection::planes::write(&projected.samples, has);
-        planes.extend(write(&PULL, 1, &pulled[1..], job));
-        planes.extend(write(&PUSH, 0, &pushed[..pushed.len() - 1], job));
+        planes = projected.planes(job);
+        planes.extend(write(&Cell::PULL, 1, &pulled[1..], job));
+        planes.extend(write(&Cell::PUSH, 0, &pushed[..pushed.len() - 1], job));
     }
     let normals = stages || !scene.lights.is_empty();
     let target = GBuffer::of(&pushed[0], camera, has, normals);
@@ -80,12 +79,12 @@ fn finish<R: Exact>(
 
 /// The planes of consecutive levels.
 fn write<R: Exact>(
-    rows: &[PlaneRow; 9],
+    fields: &CellFields<R>,
     first: usize,
     levels: &[Plane<Cell<R>>],
     job: &Job<'_>,
 ) -> Vec<NamedPlane<R>> {
-    let level = |(level, cells)| planes::write_level(rows, level, cells, job);
+    let level = |(level, cells)| planes::write_level(fields, level, cells, job);
     (first..).zip(levels).flat_map(level).collect()
 }
 
@@ -109,7 +108,7 @@ pub(super) fn stage<R: Exact>(
         "projection" => {
             let snap = Snap::new(settings.subpixel_bits)?;
             let projected = projection::project::<R>(job, settings.cull, snap)?;
-            Ok(projection::planes::write(&projected.samples, levels.has))
+            Ok(projected.planes(job))
         }
         "pull" => levels.pull(),
         "push" => levels.push(settings),
@@ -153,32 +152,33 @@ impl<'a, R: Exact> GivenLevels<'a, R> {
 
     /// Level 0 before the pull, from the planes of the projection.
     fn samples(&self) -> Result<Plane<Cell<R>>> {
-        Ok(projection::planes::read(self.given, self.has)?.map(Cell::new))
+        Ok(self.given.projection()?.map(Cell::new))
     }
 
     /// A level of a phase.
-    fn read(&self, rows: &[PlaneRow; 9], level: usize) -> Result<Plane<Cell<R>>> {
-        planes::read_level(self.given, rows, level, self.sizes[level], self.has)
+    fn read(&self, fields: &CellFields<R>, level: usize) -> Result<Plane<Cell<R>>> {
+        let [width, height] = self.sizes[level];
+        self.given.records(fields, level, Plane::filled(width, height, Cell::empty()))
     }
 
     /// A level of a phase, or where its planes are missing, the level just computed.
     fn read_or(
         &self,
-        rows: &[PlaneRow; 9],
+        fields: &CellFields<R>,
         level: usize,
         computed: Plane<Cell<R>>,
     ) -> Result<Plane<Cell<R>>> {
-        if self.given.has(&rows[0], level) { self.read(rows, level) } else { Ok(computed) }
+        if self.given.has(&fields[0].row, level) { self.read(fields, level) } else { Ok(computed) }
     }
 
     /// A level before the push.
     fn pulled(&self, level: usize) -> Result<Plane<Cell<R>>> {
-        if level == 0 { self.samples() } else { self.read(&PULL, level) }
+        if level == 0 { self.samples() } else { self.read(&Cell::PULL, level) }
     }
 
     /// A level after the push; the level of one pixel is not pushed.
     fn pushed(&self, level: usize) -> Result<Plane<Cell<R>>> {
-        if level == self.last() { self.pulled(level) } else { self.read(&PUSH, level) }
+        if level == self.last() { self.pulled(level) } else { self.read(&Cell::PUSH, level) }
     }
 
     /// The planes of the pull phase.
@@ -189,8 +189,8 @@ impl<'a, R: Exact> GivenLevels<'a, R> {
         let mut planes = Vec::new();
         for level in levels {
             let coarse = pull::pull(&fine, side(level - 1), self.job.exec);
-            planes.extend(planes::write_level(&PULL, level, &coarse, self.job));
-            fine = self.read_or(&PULL, level, coarse)?;
+            planes.extend(planes::write_level(&Cell::PULL, level, &coarse, self.job));
+            fine = self.read_or(&Cell::PULL, level, coarse)?;
         }
         Ok(planes)
     }
@@ -204,8 +204,8 @@ impl<'a, R: Exact> GivenLevels<'a, R> {
         for level in levels {
             let fine = self.pulled(level)?;
             let pushed = push::push(&fine, &coarse, side(level), settings, self.job.exec);
-            found.push(planes::write_level(&PUSH, level, &pushed, self.job));
-            coarse = self.read_or(&PUSH, level, pushed)?;
+            found.push(planes::write_level(&Cell::PUSH, level, &pushed, self.job));
+            coarse = self.read_or(&Cell::PUSH, level, pushed)?;
         }
         found.reverse();
         Ok(found.into_iter().flatten().collect())

@@ -1,182 +1,107 @@
-//! The planes of the stages, out and in.
+//! The planes of the stages.
 //!
 //! A level lies in the upper left corner of its planes, which have the size of the picture; outside
 //! the level they hold an [empty cell](Cell::empty).
 
 use super::Cell;
 use super::gbuffer::GBuffer;
-use crate::error::Result;
 use crate::frame::{NamedPlane, Plane, pyramid};
 use crate::method::Job;
-use crate::method::input_planes::InputPlanes;
-use crate::method::projection::Has;
-use crate::method::projection::planes::{components, kinds, triple_at, vector};
-use crate::method::{Holds, PlaneRow, When};
-use crate::number::{Exact, Vector2};
+use crate::method::PlaneRow;
+use crate::method::record::Part::{Direction, Kind, Number, Triple};
+use crate::method::record::{self, Field};
+use crate::method::stage::Holds::{Color, Count, Depth, Normal, Scalar, Vector};
+use crate::method::stage::Keep;
+use crate::method::stage::When::{Always, Colored, Lit, StagesOfTubes, Tubes};
+use crate::number::Exact;
 
 /// The planes of [`Cell`]s of a level: `##` is the level.
 macro_rules! level {
-    ($level:literal) => {{
-        use Holds::{Color, Count, Scalar, Vector};
-        use When::{Colored, Stages, StagesOfTubes};
+    ($level:literal) => {
         [
-            PlaneRow::new(
-                concat!($level, ".kind"),
-                Count,
-                "",
-                "0 nothing, 1 surfel, 2 ribbon, 3 tube, 4 triangle",
-                Stages,
-            ),
-            PlaneRow::new(
-                concat!($level, ".front"),
-                Scalar,
-                "world units",
-                "where the interval of depth begins; +inf if empty",
-                Stages,
-            ),
-            PlaneRow::new(
-                concat!($level, ".back"),
-                Scalar,
-                "world units",
-                "where the interval of depth ends; -inf if empty",
-                Stages,
-            ),
-            PlaneRow::new(
-                concat!($level, ".extent"),
-                Scalar,
-                "px",
-                "radius of the ellipse, in pixels of level 0",
-                Stages,
-            ),
-            PlaneRow::new(
+            Field::new(concat!($level, ".kind"), Count, Kind(|p: &mut Self| &mut p.kind))
+                .says("0 nothing, 1 surfel, 2 ribbon, 3 tube, 4 triangle"),
+            Field::new(concat!($level, ".front"), Scalar, Number(|p: &mut Self| &mut p.front))
+                .unit("world units")
+                .says("where the interval of depth begins; +inf if empty"),
+            Field::new(concat!($level, ".back"), Scalar, Number(|p: &mut Self| &mut p.back))
+                .unit("world units")
+                .says("where the interval of depth ends; -inf if empty"),
+            Field::new(concat!($level, ".extent"), Scalar, Number(|p: &mut Self| &mut p.extent))
+                .unit("px")
+                .says("radius of the ellipse, in pixels of level 0"),
+            Field::new(
                 concat!($level, ".displacement.X"),
                 Scalar,
-                "px",
-                "from the cell's centre right to the ellipse's",
-                Stages,
-            ),
-            PlaneRow::new(
+                Number(|p: &mut Self| &mut p.displacement.x),
+            )
+            .unit("px")
+            .says("from the cell's centre right to the ellipse's"),
+            Field::new(
                 concat!($level, ".displacement.Y"),
                 Scalar,
-                "px",
-                "from the cell's centre down to the ellipse's",
-                Stages,
-            ),
-            PlaneRow::new(
-                concat!($level, ".normal"),
-                Vector,
-                "",
-                "view space, of any length",
-                Stages,
-            ),
-            PlaneRow::new($level, Color, "", "colour, linear RGB", Colored),
-            PlaneRow::new(
+                Number(|p: &mut Self| &mut p.displacement.y),
+            )
+            .unit("px")
+            .says("from the cell's centre down to the ellipse's"),
+            Field::new(concat!($level, ".normal"), Vector, Direction(|p: &mut Self| &mut p.normal))
+                .says("view space, of any length"),
+            Field::new($level, Color, Triple(|p: &mut Self| &mut p.color))
+                .when(Colored)
+                .says("colour"),
+            Field::new(
                 concat!($level, ".tangent"),
                 Vector,
-                "",
-                "of a tube, view space, of any length; else the null vector",
-                StagesOfTubes,
-            ),
+                Direction(|p: &mut Self| &mut p.tangent),
+            )
+            .when(StagesOfTubes)
+            .says("of a tube, view space, of any length; else the null vector"),
         ]
-    }};
+    };
 }
 
-/// The planes of the levels 1 to the last as the pull phase left them.
-pub const PULL: [PlaneRow; 9] = level!("pull##");
-/// The planes of the levels 0 to the last but one as the push phase left them; the push leaves the
-/// last as it is.
-pub const PUSH: [PlaneRow; 9] = level!("push##");
-/// The planes of the picture.
-pub const SHADING: [PlaneRow; 6] = [
-    PlaneRow::new("", Holds::Color, "", "the shaded colour, linear RGB", When::Always),
-    PlaneRow::new(
-        "A",
-        Holds::Scalar,
-        "",
-        "1 where something or the environment is seen, else 0",
-        When::Always,
-    ),
-    PlaneRow::new("Z", Holds::Scalar, "world units", "depth t; +inf if empty", When::Always),
-    PlaneRow::new("normal", Holds::Vector, "", "unit vector in world space; 0 if empty", When::Lit),
-    PlaneRow::new(
-        "tangent",
-        Holds::Vector,
-        "",
-        "of a tube, unit vector in world space; else 0",
-        When::Tubes,
-    ),
-    PlaneRow::new("kind", Holds::Count, "", "as in the levels", When::Always),
-];
+/// The planes of the cells of a level.
+pub(crate) type CellFields<R> = [Field<Cell<R>, R>; 9];
+
+impl<R> Cell<R> {
+    /// The planes of the levels 1 to the last as the pull phase left them.
+    pub(crate) const PULL: CellFields<R> = level!("pull##");
+    /// The planes of the levels 0 to the last but one as the push phase left them; the push leaves
+    /// the last as it is.
+    pub(crate) const PUSH: CellFields<R> = level!("push##");
+}
+
+pub(crate) const SHADED: PlaneRow = PlaneRow::new("", Color, "the shaded colour").when(Always);
+pub(crate) const ALPHA: PlaneRow =
+    PlaneRow::new("A", Scalar, "1 where something or the environment is seen, else 0").when(Always);
+pub(crate) const DEPTH: PlaneRow = PlaneRow::new("Z", Depth, "depth t; +inf if empty").when(Always);
+pub(crate) const NORMAL: PlaneRow =
+    PlaneRow::new("normal", Normal, "unit vector in world space; 0 if empty").when(Lit);
+pub(crate) const TANGENT: PlaneRow =
+    PlaneRow::new("tangent", Vector, "of a tube, unit vector in world space; else 0").when(Tubes);
+pub(crate) const KIND: PlaneRow = PlaneRow::new("kind", Count, "as in the levels").when(Always);
 
 /// The planes of a level that leave a stage, of the size of the picture.
 pub(super) fn write_level<R: Exact>(
-    rows: &[PlaneRow; 9],
+    fields: &CellFields<R>,
     level: usize,
     cells: &Plane<Cell<R>>,
     job: &Job<'_>,
 ) -> Vec<NamedPlane<R>> {
-    let has = Has::of(job.scene);
-    let whole = pyramid::in_corner(cells, job.camera.size(), Cell::empty());
-    let [kind, front, back, extent, right, down, normal, color, tangent] = rows;
-    let scalar = |row: &PlaneRow, of: fn(&Cell<R>) -> R| row.scalar(level, whole.map(of));
-    let mut planes = vec![
-        kind.count(level, whole.map(|cell| cell.kind as u8)),
-        scalar(front, |cell| cell.front),
-        scalar(back, |cell| cell.back),
-        scalar(extent, |cell| cell.extent),
-        scalar(right, |cell| cell.displacement.x),
-        scalar(down, |cell| cell.displacement.y),
-        normal.triple(level, whole.map(|cell| components(cell.normal))),
-    ];
-    planes.extend(has.color.then(|| color.triple(level, whole.map(|cell| cell.color))));
-    let tangents = || tangent.triple(level, whole.map(|cell| components(cell.tangent)));
-    planes.extend(has.tangent.then(tangents));
-    planes
-}
-
-/// A level as it comes in; `rows` are [`PULL`] or [`PUSH`], and `size` is that of the level. What
-/// lies outside the level is not read.
-///
-/// # Errors
-/// [`crate::Error::Invalid`] if a plane is missing, or of another type or size, or if a cell has a
-/// kind that there is not.
-pub(super) fn read_level<R: Exact>(
-    given: &InputPlanes<'_, R>,
-    rows: &[PlaneRow; 9],
-    level: usize,
-    size: [u32; 2],
-    has: Has,
-) -> Result<Plane<Cell<R>>> {
-    let [kind, front, back, extent, right, down, normal, color, tangent] = rows;
-    let kind = kinds(given, kind, level)?;
-    let scalar = |row| given.scalar(row, level);
-    let [front, back, extent] = [scalar(front)?, scalar(back)?, scalar(extent)?];
-    let [right, down] = [scalar(right)?, scalar(down)?];
-    let normal = given.triple(normal, level)?;
-    let color = given.triple_if(has.color, color, level)?;
-    let tangent = given.triple_if(has.tangent, tangent, level)?;
-    Ok(Plane::from_pixels(size, |x, y| Cell {
-        kind: *kind.at(x, y),
-        front: *front.at(x, y),
-        back: *back.at(x, y),
-        extent: *extent.at(x, y),
-        displacement: Vector2::new(*right.at(x, y), *down.at(x, y)),
-        normal: vector(*normal.at(x, y)),
-        tangent: vector(triple_at(tangent, x, y)),
-        color: triple_at(color, x, y),
-    }))
+    let size = job.camera.size();
+    let whole = pyramid::in_corner(cells, size, Cell::empty());
+    record::planes(fields, level, (size, &|x, y| *whole.at(x, y)), &job.there(Keep::Stages))
 }
 
 /// The planes of the picture.
 pub(super) fn write_picture<R: Exact>(shaded: GBuffer<R>) -> Vec<NamedPlane<R>> {
-    let [color, alpha, depth, normal, tangent, kind] = &SHADING;
     let mut planes = vec![
-        color.triple(0, shaded.color),
-        alpha.scalar(0, shaded.alpha),
-        depth.scalar(0, shaded.depth),
+        SHADED.triple(0, shaded.color),
+        ALPHA.scalar(0, shaded.alpha),
+        DEPTH.scalar(0, shaded.depth),
     ];
-    planes.extend(shaded.normal.map(|plane| normal.triple(0, plane)));
-    planes.extend(shaded.tangent.map(|plane| tangent.triple(0, plane)));
-    planes.push(kind.count(0, shaded.kind));
+    planes.extend(shaded.normal.map(|plane| NORMAL.triple(0, plane)));
+    planes.extend(shaded.tangent.map(|plane| TANGENT.triple(0, plane)));
+    planes.push(KIND.count(0, shaded.kind));
     planes
 }

@@ -55,13 +55,13 @@ impl Default for Settings {
 
 impl Fields for Settings {
     fn fields(&mut self, each: &mut Visit<'_>) {
-        let weights = "weights of the interpolation within an ellipse";
+        let weights = "choose the interpolation weights within an ellipse";
         each(Field::new("weights", weights, Slot::Word(&mut self.weights)));
-        let occluded = "which cells are occluded: those behind the depths of their parent, or \
-                        those outside";
+        let occluded = "treat a cell as occluded if it lies behind the depths of its parent, or \
+                        also if it lies in front of them";
         each(Field::new("occluded", occluded, Slot::Word(&mut self.occlusion)));
         each(culling(&mut self.cull));
-        let bits = "binary digits after the point of the corners of triangles and lines";
+        let bits = "snap the corners of triangles and lines to this many sub-pixel bits";
         each(
             Field::new("subpixel_bits", bits, Slot::Count(&mut self.subpixel_bits))
                 .range("0 to 12"),

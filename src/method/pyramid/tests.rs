@@ -1,15 +1,15 @@
 //! Stages, planes and explanations of the pyramid.
 
 use super::explain::explain;
-use super::planes::{PULL, PUSH, read_level};
+use super::planes::CellFields;
 use super::*;
-use crate::frame::{Exec, Frame, Samples};
+use crate::frame::{Exec, Frame, Plane, Samples};
 use crate::index::Index;
 use crate::method::Method;
+use crate::method::projection::SampleKind;
 use crate::method::projection::tests::{
     every_stage_runs_alone, lit, samples_mut, stage_with, wrong_planes_are_refused,
 };
-use crate::method::projection::{Has, SampleKind};
 use crate::method::tests::{cameras, scene, surfels};
 use crate::scene::indexed::{Indexed, Vertices};
 use crate::scene::{Camera, Primitives, Scene};
@@ -97,15 +97,16 @@ fn assert_explained<R: Exact>(scene: &Scene, camera: &Camera, settings: &Setting
     let exec = Exec::sequential();
     let index = Index::default();
     let job = Job::new(scene, &index, camera, &exec);
-    let (frame, has) = (settings.define::<R>(&job, true).unwrap().frame, Has::of(scene));
+    let frame = settings.define::<R>(&job, true).unwrap().frame;
     let given = InputPlanes::new(&frame, &job).unwrap();
-    let samples = projection::planes::read(&given, has).unwrap();
+    let samples = given.projection().unwrap();
     let sizes = crate::frame::pyramid::sizes(frame.width, frame.height);
-    let of = |rows, range: std::ops::Range<usize>| {
-        let level = |l| read_level(&given, rows, l, sizes[l], has).unwrap();
+    let of = |fields: &CellFields<R>, range: std::ops::Range<usize>| {
+        let empty = |[width, height]: [u32; 2]| Plane::filled(width, height, Cell::empty());
+        let level = |l| given.records(fields, l, empty(sizes[l])).unwrap();
         range.map(level).collect::<Vec<_>>()
     };
-    let (pulled, pushed) = (of(&PULL, 1..sizes.len()), of(&PUSH, 0..sizes.len() - 1));
+    let (pulled, pushed) = (of(&Cell::PULL, 1..sizes.len()), of(&Cell::PUSH, 0..sizes.len() - 1));
     let (mut kinds, mut occluded) = ([0; 5], 0);
     for (x, y) in (0..frame.height).flat_map(|y| (0..frame.width).map(move |x| (x, y))) {
         let found = explain::<R>(&job, settings, (x, y)).unwrap();

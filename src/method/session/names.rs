@@ -2,6 +2,8 @@
 
 use crate::error::{Error, Result};
 use crate::frame::{Frame, NO_ID, Plane, Samples};
+use crate::method::record::wide_id;
+use crate::method::stage::{Holds, Stage};
 use crate::scene::objects::{Ids, Objects};
 
 /// The ids of the surfels that are drawn, ascending: by these a method that draws surfels one by one, and
@@ -48,7 +50,8 @@ impl<'a> Names<'a> {
     /// Puts indices in the place of ids. What is the id of none is the index of none.
     pub(super) fn number<R>(&self, frame: &mut Frame<R>) -> Result<()> {
         if self.ids.is_wide() {
-            let what = "ids of 40 bits: planes of ids hold 32 of them, which do not say the surfel";
+            let what = "ids have 40 bits, but planes of ids hold 32 of them, which do not identify \
+                        the surfel";
             return Err(Error::Invalid(what.into()));
         }
         each_id(frame, |id| self.index(id.into()).unwrap_or(NO_ID - 1));
@@ -57,7 +60,7 @@ impl<'a> Names<'a> {
 
     /// The same of what somebody hands in. Planes of ids of 40 bits that come without their highest 8 do not
     /// say the surfel, and are left out.
-    pub(crate) fn number_given<R>(&self, frame: &mut Frame<R>) -> Result<()> {
+    pub(crate) fn number_given<R>(&self, frame: &mut Frame<R>, stages: &[Stage]) -> Result<()> {
         if !self.ids.is_wide() {
             return self.number(frame);
         }
@@ -71,15 +74,17 @@ impl<'a> Names<'a> {
             .collect();
         frame.planes.retain_mut(|plane| {
             let Samples::Index(ids) = &mut plane.samples else { return true };
-            let Some(of) = plane.name.strip_suffix("id") else { return true };
-            let stencil = format!("{of}stencil");
-            let Some((_, high)) = high.iter().find(|(name, _)| *name == stencil) else {
+            let stage = stages.iter().find(|stage| stage.row(&plane.name).is_some());
+            let rows = stage.map_or(&[][..], |stage| stage.leaves);
+            let Some(row) = rows.iter().find(|row| row.holds == Holds::HighIndex) else {
+                return true;
+            };
+            let Some((_, high)) = high.iter().find(|(name, _)| row.is_called(name)) else {
                 return false;
             };
             let some = ids.values_mut().iter_mut().zip(high.values());
             some.filter(|(id, _)| **id != NO_ID).for_each(|(id, &high)| {
-                let wide = u64::from(high) << 32 | u64::from(*id);
-                *id = self.index(wide).unwrap_or(NO_ID - 1);
+                *id = self.index(wide_id(*id, high)).unwrap_or(NO_ID - 1);
             });
             true
         });

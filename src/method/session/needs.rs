@@ -47,7 +47,7 @@ impl Session<'_> {
         // Planes of stages are there twice: as records and as planes, or in numbers of two types.
         let a_pixel = fast.unwrap_or(number * OF_A_PIXEL + 2 * kept);
         let mut rows = self.method.stages().iter().flat_map(|stage| stage.leaves);
-        let balls = if kept > 0 && rows.any(|row| row.name == "margin") { OF_A_BALL } else { 0 };
+        let balls = if kept > 0 && rows.any(|row| row.when == When::Whole) { OF_A_BALL } else { 0 };
         pixels * a_pixel + self.items(pixels, making) * (number * OF_A_SPLAT + balls)
     }
 
@@ -89,11 +89,11 @@ impl Session<'_> {
             Copies::Layers => u64::from(peeling::STAGES),
             Copies::Levels => levels,
         };
-        let bytes = |row: &PlaneRow| match row.holds {
-            Holds::Scalar => number,
+        let bytes = |row: &PlaneRow| match row.holds.plain() {
             Holds::Color | Holds::Vector => 3 * number,
             Holds::Index => 4,
             Holds::Count => 1,
+            _ => number,
         };
         let rows = self.method.stages().iter().flat_map(|stage| stage.leaves);
         let kept = rows.filter(|row| row.when != When::Alone);

@@ -37,9 +37,9 @@ fn primitives_are_refused_by_methods_that_draw_surfels_alone() {
             continue;
         }
         let line = found.unwrap_err().to_string();
-        assert!(line.starts_with("sphere has triangles or lines, which the method "), "{line}");
-        let able = " does not draw; use --method deferred or --method pyramid or \
-                    --method blue";
+        assert!(line.starts_with("sphere has triangles or lines, but the method "), "{line}");
+        let able = " does not draw them; use --method deferred or --method pyramid or --method \
+                    blue";
         assert!(line.ends_with(able), "{line}");
     }
 }
@@ -54,7 +54,7 @@ fn a_scene_of_nothing_is_an_empty_picture_or_refused() {
         let mut session = Session::with_groups(&scene, method, Some(groups), &exec).unwrap();
         match session.render(&camera) {
             Ok(picture) => assert_eq!(picture.tally.visible, 0),
-            Err(error) => assert!(error.to_string().contains("an epsilon of 0"), "{error}"),
+            Err(error) => assert!(error.to_string().contains("epsilon 0 needs"), "{error}"),
         }
     }
     for extension in [Extension::None, Extension::Add { most: 0.5 }, Extension::Enlarge] {
@@ -75,7 +75,10 @@ fn groups_that_are_missing_or_of_another_scene_are_refused() {
         let refused =
             |groups| Session::with_groups(&scene, method, groups, &exec).unwrap_err().to_string();
         assert!(refused(None).contains("prepared for another method, without groups"));
-        assert_eq!(refused(Some(others.clone())), "groups of 3 surfels for a scene of 40");
+        assert_eq!(
+            refused(Some(others.clone())),
+            "the groups have 3 surfels, but the scene has 40"
+        );
     }
 }
 

@@ -75,7 +75,8 @@ use std::fmt::Display;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "single-pass";
-    const SUMMARY: &'static str = "one geometry pass into the depth-images of groups, epsilon-z compositing [ZP06, Algorithm 1]";
+    const SUMMARY: &'static str = "draw groups into depth-images in one geometry pass, composite \
+                                   within epsilon [ZP06, Algorithm 1]";
     const STAGES: &'static [Stage] = planes::STAGES;
     /// c = 0.4, which \[ZP06, section 6.1\] finds acceptable; opposite normals relaxed.
     const GROUPING: Option<Grouping> = Some(Grouping {

@@ -8,8 +8,8 @@ use crate::frame::{NamedPlane, Pool, Rect, Wanted};
 use crate::method::Job;
 use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture, finish, framebuffer};
-use crate::method::stage::unknown;
-use crate::method::surface;
+use crate::method::stage::{Keep, unknown};
+use crate::method::surface::{self, SurfacePixel};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::scene::Scene;
@@ -37,7 +37,7 @@ pub(super) fn define<R: Exact>(
     let averages = composites.map(Composite::surface);
     let mut left = Vec::new();
     if stages {
-        left.extend(planes::geometry(job, settings, &images));
+        left.extend(planes::image_planes(job, &ImagePixel::GROUPS, settings.depth, &images));
         left.extend(planes::sums(job, &composites));
         left.extend(surface::colors(job, &averages));
     }
@@ -102,12 +102,14 @@ pub(super) fn stage<R: Exact>(
         "geometry" => {
             let geometry = Geometry::<R>::project(job, settings)?;
             let images = passes(job, &geometry, true, STAGES, &mut Clock::default()).images;
-            Ok(planes::geometry(job, settings, &images))
+            Ok(planes::image_planes(job, &ImagePixel::GROUPS, settings.depth, &images))
         }
         "compositing" => {
-            let composites = composite(job, settings, &planes::given_geometry(job, given)?);
+            let images = planes::given_images(job, &ImagePixel::GROUPS, given)?;
+            let composites = composite(job, settings, &images);
             let mut left = planes::sums(job, &composites);
-            left.extend(surface::planes(job, &composites.map(Composite::surface)));
+            let averages = composites.map(Composite::surface);
+            left.extend(averages.planes(&SurfacePixel::PLANES, 0, &job.there(Keep::Alone)));
             Ok(left)
         }
         "shading" => surface::shade(job, given, job.scene.surfels.color().is_some()),

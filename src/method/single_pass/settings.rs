@@ -57,8 +57,8 @@ impl Fields for Settings {
 impl DepthTest {
     /// The row of the depth test, without that of its bins.
     pub(crate) fn field(&mut self) -> Field<'_> {
-        let help = "what a group keeps of overlapping splats: the nearest, or of the nearest bin \
-                    of depth the one nearest to its own centre";
+        let help = "choose which of a group's overlapping fragments to keep: the nearest, or, in \
+                    the nearest depth bin, the one closest to its own centre";
         Field::new("depth", help, Slot::Word(self))
     }
 }
@@ -75,7 +75,7 @@ impl BinCount {
             Self::Epsilon => None,
             Self::Count(count) => Some(count),
         };
-        let help = "how many bins of depth; `epsilon`: no deeper than epsilon";
+        let help = "use this many depth bins; `epsilon` makes them no deeper than epsilon";
         each(Field::new("bins", help, Slot::CountOr(&mut count, "epsilon")).range("1 to 65535"));
         *self = count.map_or(Self::Epsilon, Self::Count);
     }
@@ -87,7 +87,7 @@ impl BinCount {
     pub fn check(&self) -> Result<()> {
         match *self {
             Self::Count(n) if !(1..=MAX_BINS).contains(&n) => {
-                Err(Error::Invalid(format!("bins: n = {n}; give 1 to {MAX_BINS}")))
+                Err(Error::Invalid(format!("bins: {n}; give 1 to {MAX_BINS}")))
             }
             _ => Ok(()),
         }

@@ -39,27 +39,37 @@ use crate::error::Result;
 use crate::frame::{NamedPlane, Pool};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::input_planes::InputPlanes;
+use crate::method::record::rows;
 use crate::method::{Picture, Stage, projection};
 use crate::number::Exact;
+use reconstruction::Gathered;
 use std::fmt::Display;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "template";
-    const SUMMARY: &'static str =
-        "one pixel a point, search with templates of k x k pixels in a pyramid [MOC08]";
+    const SUMMARY: &'static str = "draw one pixel per point, search with templates of k x k pixels \
+                                   in a pyramid [MOC08]";
     const STAGES: &'static [Stage] = &[
         projection::planes::STAGE,
-        Stage { name: "propagation", reads: &["projection"], leaves: &planes::LEVELS },
+        Stage {
+            name: "propagation",
+            reads: &["projection"],
+            leaves: &rows(&Center::<f32>::PLANES),
+        },
         Stage {
             name: "reconstruction",
             reads: &["projection", "propagation"],
-            leaves: &planes::GATHERED,
+            leaves: &rows(&Gathered::<f32>::PLANES),
         },
-        Stage { name: "normalization", reads: &["reconstruction"], leaves: &planes::NORMALIZATION },
+        Stage {
+            name: "normalization",
+            reads: &["reconstruction"],
+            leaves: &[planes::DEPTH, planes::NORMAL, planes::WEIGHT],
+        },
         Stage {
             name: "shading",
             reads: &["reconstruction", "normalization"],
-            leaves: &planes::SHADING,
+            leaves: &[planes::SHADED, planes::ALPHA],
         },
     ];
     const FAST_BYTES_A_PIXEL: Option<u64> = Some(224);

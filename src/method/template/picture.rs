@@ -2,7 +2,7 @@
 
 use super::fast::CenterLevels;
 use super::normalization::normalize;
-use super::planes::{self, SHADING};
+use super::planes::{self, ALPHA, SHADED};
 use super::propagation::{self, propagate};
 use super::reconstruction::gather;
 use super::{Center, Settings};
@@ -34,10 +34,12 @@ pub(super) fn define<R: Exact>(
     clock.lap("reconstruction");
     let mut planes = Vec::new();
     if stages {
-        planes = projection::planes::write(&projected.samples, has);
+        planes = projected.planes(job);
         let level = |(level, cells)| planes::write_level(level, cells, job);
         planes.extend((1..).zip(&levels[1..]).flat_map(level));
-        planes.extend(planes::write_gathered(&gathered, has));
+        planes.extend(planes::write_gathered(&gathered, job));
+        // The id is a plane of the picture.
+        planes.pop();
     }
     clock.restart();
     let normals = stages || !scene.lights.is_empty();
@@ -81,24 +83,22 @@ pub(super) fn stage<R: Exact>(
         "projection" => {
             let snap = Snap::default();
             let projected = projection::project::<R>(job, settings.cull, snap)?;
-            Ok(projection::planes::write(&projected.samples, has))
+            Ok(projected.planes(job))
         }
         "propagation" => propagated(job, settings, given),
         "reconstruction" => {
             let gathered = gather(&given_levels(job, settings, given)?, settings, exec);
-            let mut planes = planes::write_gathered(&gathered, has);
-            planes.push(planes::write_id(&gathered));
-            Ok(planes)
+            Ok(planes::write_gathered(&gathered, job))
         }
         "normalization" => {
-            let gathered = planes::read_gathered(given, has)?;
+            let gathered = planes::read_gathered(job, given)?;
             Ok(planes::write_normalized(normalize(&gathered, camera, has, true)))
         }
         "shading" => {
             let target = planes::read_normalized(given, has)?;
             let shaded = finish(target, Vec::new(), Tally::default(), Clock::default(), job);
             let mut planes = shaded.frame.planes;
-            planes.retain(|plane| SHADING.iter().any(|row| row.is_called(&plane.name)));
+            planes.retain(|plane| [SHADED, ALPHA].iter().any(|row| row.is_called(&plane.name)));
             Ok(planes)
         }
         _ => Err(unknown(stage)),
@@ -125,21 +125,20 @@ fn given_levels<R: Exact>(
     given: &InputPlanes<'_, R>,
 ) -> Result<Vec<Plane<Center<R>>>> {
     let sizes = sizes(job, settings);
-    (0..sizes.len()).map(|level| given_level(job, level, &sizes, given)).collect()
+    (0..sizes.len()).map(|level| given_level(level, &sizes, given)).collect()
 }
 
 /// A level as the planes have it.
 fn given_level<R: Exact>(
-    job: &Job<'_>,
     level: usize,
     sizes: &[[u32; 2]],
     given: &InputPlanes<'_, R>,
 ) -> Result<Plane<Center<R>>> {
-    let has = Has::of(job.scene);
     if level == 0 {
-        return Ok(projection::planes::read(given, has)?.map(Center::new));
+        return Ok(given.projection()?.map(Center::new));
     }
-    planes::read_level(given, level, sizes[level], has)
+    let [width, height] = sizes[level];
+    given.records(&Center::PLANES, level, Plane::filled(width, height, Center::empty()))
 }
 
 /// The planes of the propagation.
@@ -151,14 +150,14 @@ fn propagated<R: Exact>(
     let sizes = sizes(job, settings);
     let levels = job.only(levels(job, settings, "propagation"));
     let Some(first) = levels.first() else { return Ok(Vec::new()) };
-    let mut fine = given_level(job, first - 1, &sizes, given)?;
+    let mut fine = given_level(first - 1, &sizes, given)?;
     let mut planes = Vec::new();
     for level in levels {
         let reach = R::from_f32(settings.reach(level - 1));
         let coarse = propagation::coarser(&fine, reach, job.exec);
         planes.extend(planes::write_level(level, &coarse, job));
-        fine = if given.has(&planes::LEVELS[0], level) {
-            given_level(job, level, &sizes, given)?
+        fine = if given.has(&Center::<R>::PLANES[0].row, level) {
+            given_level(level, &sizes, given)?
         } else {
             coarse
         };

@@ -66,15 +66,16 @@ impl Default for Settings {
 
 impl Fields for Settings {
     fn fields(&mut self, each: &mut Visit<'_>) {
-        let size = "width of the template";
+        let size = "set the width of the template";
         each(
             Field::new("template", size, Slot::Count(&mut self.size))
                 .unit("cells")
                 .range("3, 5 or 7"),
         );
-        let levels = "the level of an ellipse: eq. 1 of its radius or its diameter (by-size: radius for 3), or the one that covers it";
+        let levels = "choose the level of an ellipse: eq. 1 of its radius or its diameter \
+                      (by-size: radius for 3, else diameter), or the level that covers it";
         each(Field::new("levels", levels, Slot::Word(&mut self.levels)));
-        let falloff = "how the weight within an ellipse falls from the centre";
+        let falloff = "choose how the weight falls off from the centre of an ellipse";
         each(Field::new("falloff", falloff, Slot::Word(&mut self.falloff)));
         each(culling(&mut self.cull));
     }
@@ -103,7 +104,7 @@ impl Settings {
         if [3, 5, 7].contains(&self.size) {
             Ok(())
         } else {
-            Err(Error::Invalid(format!("template: a size of {}; give 3, 5 or 7", self.size)))
+            Err(Error::Invalid(format!("template: {} cells; give 3, 5 or 7", self.size)))
         }
     }
 

@@ -1,15 +1,14 @@
 //! Stages, planes and explanations of the templates.
 
 use super::explain::explain;
-use super::planes::read_level;
 use super::*;
-use crate::frame::{Exec, Frame, Samples};
+use crate::frame::{Exec, Frame, Plane, Samples};
 use crate::index::Index;
 use crate::method::Method;
+use crate::method::projection::SampleKind;
 use crate::method::projection::tests::{
     every_stage_runs_alone, lit, samples_mut, stage_with, wrong_planes_are_refused,
 };
-use crate::method::projection::{Has, SampleKind};
 use crate::method::tests::{cameras, scene, surfels};
 use crate::scene::{Camera, Scene};
 
@@ -61,11 +60,12 @@ fn assert_explained<R: Exact>(scene: &Scene, camera: &Camera, settings: &Setting
     let exec = Exec::sequential();
     let index = Index::default();
     let job = Job::new(scene, &index, camera, &exec);
-    let (frame, has) = (settings.define::<R>(&job, true).unwrap().frame, Has::of(scene));
+    let frame = settings.define::<R>(&job, true).unwrap().frame;
     let given = InputPlanes::new(&frame, &job).unwrap();
-    let samples = projection::planes::read(&given, has).unwrap();
+    let samples = given.projection().unwrap();
     let sizes = crate::frame::pyramid::sizes(frame.width, frame.height);
-    let level = |l: usize| read_level(&given, l, sizes[l], has);
+    let empty = |[width, height]: [u32; 2]| Plane::filled(width, height, Center::empty());
+    let level = |l: usize| given.records(&Center::PLANES, l, empty(sizes[l]));
     let levels = (1..=propagation::top(settings, &sizes)).map(level);
     let levels: Vec<_> = levels.map(Result::unwrap).collect();
     let mut most = 0;

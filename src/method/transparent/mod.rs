@@ -94,8 +94,8 @@ pub(crate) const GROUPING: Grouping = Grouping {
 
 impl Algorithm for Settings {
     const NAME: &'static str = "transparent";
-    const SUMMARY: &'static str =
-        "layers alpha-blended within groups, averaged [ZP06, Algorithm 2]";
+    const SUMMARY: &'static str = "blend layers within groups, average the groups [ZP06, Algorithm \
+                                   2]";
     const STAGES: &'static [Stage] = planes::STAGES;
     const BLENDS: bool = true;
     const GROUPING: Option<Grouping> = Some(GROUPING);

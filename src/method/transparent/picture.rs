@@ -9,13 +9,13 @@ use crate::frame::{NamedPlane, Rect};
 use crate::method::Job;
 use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture};
-use crate::method::stage::unknown;
+use crate::method::stage::{Keep, unknown};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use std::time::Instant;
 
 /// The definition of Algorithm 2, in any number; with `stages`, every stage leaves its planes.
-pub(super) fn define<R: Exact>(
+pub(crate) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stages: bool,
@@ -25,10 +25,9 @@ pub(super) fn define<R: Exact>(
     clock.lap("projection");
     let passes = BlendPasses { blending: &blending, holes: settings.holes, keep: stages };
     let Blended { images, averages } = passes.run(job, |_, _, _| true, &mut clock);
-    let mut left = planes::images(&images);
-    if stages {
-        left.extend(planes::averages(&averages));
-    }
+    let there = job.there(if stages { Keep::Stages } else { Keep::Picture });
+    let mut left = planes::images(&images, &there);
+    left.extend(averages.planes(&GroupAverage::PLANES, 0, &there));
     left.extend(picture(job, &averages));
     let (frame, timings) = (job.frame(left), clock.into_laps());
     Ok(Picture { frame, tally: blending.tally(), timings, seen: None })
@@ -83,13 +82,6 @@ impl<R: Exact> BlendPasses<'_, R> {
     }
 }
 
-/// The planes of the stage of blending, run alone.
-pub(crate) fn blended_alone<R: Exact>(images: &[Tiled<GroupLayers<R>>]) -> Vec<NamedPlane<R>> {
-    let mut left = planes::images(images);
-    left.extend(planes::images_alone(images));
-    left
-}
-
 /// The compositing pass over somebody's images.
 pub(crate) fn average<R: Exact>(
     job: &Job<'_>,
@@ -103,7 +95,7 @@ pub(crate) fn average<R: Exact>(
 }
 
 /// One stage on somebody's planes.
-pub(super) fn stage<R: Exact>(
+pub(crate) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stage: &str,
@@ -114,11 +106,11 @@ pub(super) fn stage<R: Exact>(
             let blending = Blending::project(job, settings)?;
             let passes = BlendPasses { blending: &blending, holes: settings.holes, keep: true };
             let blended = passes.run(job, |_, _, _| true, &mut Clock::default());
-            Ok(blended_alone(&blended.images))
+            Ok(planes::images(&blended.images, &job.there(Keep::Alone)))
         }
         "averaging" => {
             let averages = average(job, settings.holes, &planes::given_images(job, given)?);
-            let mut left: Vec<_> = planes::averages(&averages).into();
+            let mut left = averages.planes(&GroupAverage::PLANES, 0, &job.there(Keep::Alone));
             left.extend(picture(job, &averages));
             Ok(left)
         }

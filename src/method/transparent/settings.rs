@@ -57,10 +57,10 @@ impl Fields for Settings {
         self.splats.fields(each);
         self.bins.field(each);
         let help =
-            "where the bins of each group begin: staggered from group to group, or common to all";
+            "start each group's depth bins at an offset of its own, or all at the same depth";
         each(Field::new("bin_edges", help, Slot::Word(&mut self.bin_edges)));
-        let help =
-            "what a group without fragments gives to the average: nothing, or the background";
+        let help = "choose what a group without fragments adds to the average: nothing, or the \
+                    background";
         each(Field::new("holes", help, Slot::Word(&mut self.holes)));
     }
 }

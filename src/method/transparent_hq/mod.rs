@@ -75,8 +75,9 @@ use std::fmt::Display;
 
 impl Algorithm for Settings {
     const NAME: &'static str = "transparent-hq";
-    const SUMMARY: &'static str = "layers behind a smoothly interpolated nearest one; reflection, \
-         refraction, dispersion [ZP06, Algorithm 3]";
+    const SUMMARY: &'static str = "interpolate the nearest layer smoothly, average the layers \
+                                   behind it; reflection, refraction, dispersion [ZP06, Algorithm \
+                                   3]";
     const STAGES: &'static [Stage] = planes::STAGES;
     const BLENDS: bool = true;
     const GROUPING: Option<Grouping> = Some(transparent::GROUPING);

@@ -8,10 +8,12 @@ use crate::frame::NamedPlane;
 use crate::method::Job;
 use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture};
-use crate::method::single_pass::geometry::Geometry;
+use crate::method::single_pass::geometry::{Geometry, ImagePixel};
 use crate::method::single_pass::picture as first;
-use crate::method::stage::unknown;
+use crate::method::single_pass::planes::{given_images, image_planes};
+use crate::method::stage::{Keep, unknown};
 use crate::method::tiled::Tiled;
+use crate::method::transparent::averaging::GroupAverage;
 use crate::method::transparent::blending::Blending;
 use crate::method::transparent::picture as second;
 use crate::method::transparent::planes as layers;
@@ -37,7 +39,7 @@ pub(super) fn define<R: Exact>(
         first::passes(job, &geometry, stages, FIRST, &mut clock);
     let near = nearest(job, &composites);
     clock.lap("nearest");
-    let mut left = planes::geometry(job, settings, &images);
+    let mut left = image_planes(job, &ImagePixel::NEAREST, settings.nearest, &images);
 
     // 2. The other layers.
     let second::Blended { images, averages } =
@@ -47,13 +49,14 @@ pub(super) fn define<R: Exact>(
     let blends = compositing(job, settings, &near, &averages);
     clock.lap("compositing");
     if stages {
-        left.extend(planes::nearest_stages(&near));
-        left.extend(layers::images(&images));
-        left.extend(layers::averages(&averages));
+        let there = job.there(Keep::Stages);
+        left.extend(near.planes(&FrontLayer::STAGES, 0, &there));
+        left.extend(layers::images(&images, &there));
+        left.extend(averages.planes(&GroupAverage::PLANES, 0, &there));
         left.push(planes::layers_by_opacity(&near, &averages));
     }
     left.extend(planes::compositing(job, &blends, &near, &averages));
-    left.extend(planes::nearest(&near));
+    left.extend(near.planes(&FrontLayer::PICTURE, 0, &job.there(Keep::Picture)));
     let (frame, timings) = (job.frame(left), clock.into_laps());
     Ok(Picture { frame, tally: geometry.splats.tally, timings, seen: None })
 }
@@ -61,7 +64,7 @@ pub(super) fn define<R: Exact>(
 /// Whether there is something to be refracted.
 pub(super) fn check(job: &Job<'_>, settings: &Settings) -> Result<()> {
     if settings.refraction.is_some() && job.scene.environment.is_none() {
-        let what = "refraction: there is nothing to be seen through it; give an environment";
+        let what = "refraction needs something to be seen through it; give an environment";
         return Err(Error::Invalid(what.into()));
     }
     Ok(())
@@ -89,32 +92,34 @@ pub(super) fn stage<R: Exact>(
     given: &InputPlanes<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
     check(job, settings)?;
-    let mut clock = Clock::default();
+    let (mut clock, there) = (Clock::default(), job.there(Keep::Alone));
     match stage {
         "geometry" => {
             let geometry = Geometry::<R>::project(job, &single_pass(settings))?;
             let passes = first::passes(job, &geometry, true, FIRST, &mut clock);
-            Ok(planes::geometry(job, settings, &passes.images))
+            Ok(image_planes(job, &ImagePixel::NEAREST, settings.nearest, &passes.images))
         }
         "nearest" => {
-            let images = planes::given_geometry(job, given)?;
+            let images = given_images(job, &ImagePixel::NEAREST, given)?;
             let near = nearest(job, &first::composite(job, &single_pass(settings), &images));
-            let mut left: Vec<_> = planes::nearest_stages(&near).into();
-            left.extend(planes::nearest(&near));
+            let mut left = near.planes(&FrontLayer::STAGES, 0, &there);
+            left.extend(near.planes(&FrontLayer::PICTURE, 0, &there));
             Ok(left)
         }
         "blending" => {
             let near = planes::given_nearest(given)?;
             let blending = Blending::project(job, &settings.layers)?;
             let blended = others(job, settings, &blending, &near, true, &mut clock);
-            Ok(second::blended_alone(&blended.images))
+            Ok(layers::images(&blended.images, &there))
         }
         "averaging" => {
             let images = layers::given_images(job, given)?;
-            Ok(layers::averages(&second::average(job, settings.layers.holes, &images)).into())
+            let averages = second::average(job, settings.layers.holes, &images);
+            Ok(averages.planes(&GroupAverage::PLANES, 0, &there))
         }
         "compositing" => {
-            let (near, others) = (planes::given_nearest(given)?, layers::given_averages(given)?);
+            let near = planes::given_nearest(given)?;
+            let others = given.pixels(&GroupAverage::PLANES, 0, GroupAverage::EMPTY)?;
             let blends = compositing(job, settings, &near, &others);
             let mut left = planes::compositing(job, &blends, &near, &others);
             left.push(planes::layers_by_opacity(&near, &others));

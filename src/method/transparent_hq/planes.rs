@@ -1,6 +1,5 @@
 //! The planes of the stages: where they leave, and where they come in.
 
-use super::Settings;
 use super::compositing::{count, count_by_opacity};
 use super::nearest::FrontLayer;
 use crate::composite::over::Blend;
@@ -8,75 +7,66 @@ use crate::error::Result;
 use crate::frame::{NO_ID, NamedPlane, Plane};
 use crate::method::Job;
 use crate::method::input_planes::InputPlanes;
+use crate::method::record::Part::{Count, Id, Number, Triple};
+use crate::method::record::{Field, joined, rows};
 use crate::method::single_pass::geometry::ImagePixel;
-use crate::method::single_pass::planes::{ImageRows, given_images, image_planes};
-use crate::method::stage::{Holds, PlaneRow, Stage, When};
+use crate::method::stage::Holds::{self, Color, Scalar};
+use crate::method::stage::When::Always;
+use crate::method::stage::{PlaneRow, Stage};
 use crate::method::surface::{self, ALPHA, DEPTH, ID, SHADED, WEIGHT};
 use crate::method::tiled::Tiled;
 use crate::method::transparent::averaging::GroupAverage;
-use crate::method::transparent::planes::{AVERAGES, blending, shown};
+use crate::method::transparent::planes::{blending, shown};
 use crate::number::Exact;
 
-pub(crate) const IMAGES: ImageRows = ImageRows::new([
-    "nearest.group##.Z",
-    "nearest.group##.id",
-    "nearest.group##.weight",
-    "nearest.group##.normal",
-    "nearest.group##",
-    "nearest.group##.voronoi",
-]);
+impl<R> FrontLayer<R> {
+    /// What the nearest layer leaves with the planes of the stages.
+    pub(crate) const STAGES: [Field<Self, R>; 3] = [
+        Field::new("nearest", Color, Triple(|p: &mut Self| &mut p.color))
+            .says("shaded colour C_F of the nearest layer, not multiplied by its opacity; black where there is \
+             none"),
+        Field::new("nearest.A", Scalar, Number(|p: &mut Self| &mut p.opacity))
+            .says("average opacity alpha of the nearest layer in [0, 1]; 0 where there is none"),
+        Field::new("nearest.mask", Holds::Count, Count(|p: &mut Self| &mut p.mask))
+            .says("the stencil: 1 where the nearest layer is, else 0"),
+    ];
+    /// What it leaves in every picture.
+    pub(super) const PICTURE: [Field<Self, R>; 4] = [
+        DEPTH.at(Number(|pixel| &mut pixel.depth)),
+        NORMAL.at(Triple(|pixel| &mut pixel.normal)),
+        WEIGHT.at(Number(|pixel| &mut pixel.weight)),
+        ID.at(Id(|pixel| &mut pixel.id)),
+    ];
+}
 
-pub(crate) const NEAREST_COLOR: PlaneRow = PlaneRow::new(
-    "nearest",
-    Holds::Color,
-    "linear RGB",
-    "shaded colour C_F of the nearest layer, not multiplied by its opacity; black where there is \
-     none",
-    When::Stages,
-);
-pub(crate) const NEAREST_ALPHA: PlaneRow = PlaneRow::new(
-    "nearest.A",
-    Holds::Scalar,
-    "",
-    "average opacity alpha of the nearest layer in [0, 1]; 0 where there is none",
-    When::Stages,
-);
-pub(crate) const NEAREST_MASK: PlaneRow = PlaneRow::new(
-    "nearest.mask",
-    Holds::Count,
-    "",
-    "the stencil: 1 where the nearest layer is, else 0",
-    When::Stages,
-);
-const NORMAL: PlaneRow = PlaneRow { when: When::Always, ..surface::NORMAL };
+const NORMAL: PlaneRow = surface::NORMAL.when(Always);
 pub(crate) const LAYERS_BY_OPACITY: PlaneRow = PlaneRow::new(
     "l",
-    Holds::Scalar,
-    "layers",
+    Scalar,
     "1 + the average sum of opacities of the other layers over the opacity of the nearest layer; 0 \
      where the nearest layer is not, or has an opacity of 0",
-    When::Stages,
-);
+)
+.unit("layers");
 pub(crate) const LAYERS: PlaneRow = PlaneRow::new(
     "layers",
-    Holds::Scalar,
-    "layers",
+    Scalar,
     "average of the groups' counts of layers behind the nearest one, and 1 for the nearest one; 0 \
      where nothing is seen",
-    When::Always,
-);
+)
+.unit("layers")
+.when(Always);
 
 /// The stages.
 pub(super) const STAGES: &[Stage] = &[
     Stage { name: "projection", reads: &[], leaves: &[] },
-    Stage { name: "geometry", reads: &["projection"], leaves: &IMAGES.all() },
+    Stage { name: "geometry", reads: &["projection"], leaves: &rows(&ImagePixel::<f32>::NEAREST) },
     Stage {
         name: "nearest",
         reads: &["geometry"],
-        leaves: &[NEAREST_COLOR, NEAREST_ALPHA, NEAREST_MASK, DEPTH, NORMAL, WEIGHT, ID],
+        leaves: joined!(rows(&FrontLayer::<f32>::STAGES), rows(&FrontLayer::<f32>::PICTURE)),
     },
     blending(&["projection", "nearest"]),
-    Stage { name: "averaging", reads: &["blending"], leaves: &AVERAGES },
+    Stage { name: "averaging", reads: &["blending"], leaves: &rows(&GroupAverage::<f32>::PLANES) },
     Stage {
         name: "compositing",
         reads: &["nearest", "averaging"],
@@ -84,43 +74,7 @@ pub(super) const STAGES: &[Stage] = &[
     },
 ];
 
-/// The depth-images of the nearest layer.
-pub(super) fn geometry<R: Exact>(
-    job: &Job<'_>,
-    settings: &Settings,
-    images: &[Tiled<ImagePixel<R>>],
-) -> Vec<NamedPlane<R>> {
-    image_planes(job, &IMAGES, settings.nearest, images)
-}
-
-/// Somebody's depth-images of the nearest layer.
-pub(super) fn given_geometry<R: Exact>(
-    job: &Job<'_>,
-    given: &InputPlanes<'_, R>,
-) -> Result<Vec<Tiled<ImagePixel<R>>>> {
-    given_images(job, &IMAGES, given)
-}
-
-/// What the nearest layer leaves with the planes of the stages.
-pub(super) fn nearest_stages<R: Exact>(nearest: &Tiled<FrontLayer<R>>) -> [NamedPlane<R>; 3] {
-    [
-        NEAREST_COLOR.triple(0, nearest.plane(|pixel| pixel.color)),
-        NEAREST_ALPHA.scalar(0, nearest.plane(|pixel| pixel.opacity)),
-        NEAREST_MASK.count(0, nearest.plane(|pixel| pixel.mask)),
-    ]
-}
-
-/// What the nearest layer leaves in every picture.
-pub(super) fn nearest<R: Exact>(nearest: &Tiled<FrontLayer<R>>) -> [NamedPlane<R>; 4] {
-    nearest_planes(
-        nearest.plane(|pixel| pixel.depth),
-        nearest.plane(|pixel| pixel.normal),
-        nearest.plane(|pixel| pixel.weight),
-        nearest.plane(|pixel| pixel.id),
-    )
-}
-
-/// The same of planes.
+/// The planes of the nearest layer that every picture has.
 pub(super) fn nearest_planes<R: Exact>(
     depth: Plane<R>,
     normal: Plane<[R; 3]>,
@@ -132,17 +86,21 @@ pub(super) fn nearest_planes<R: Exact>(
 
 /// Somebody's nearest layer, as the other layers need it: without surfel and weight.
 pub(super) fn given_nearest<R: Exact>(given: &InputPlanes<'_, R>) -> Result<Tiled<FrontLayer<R>>> {
-    let (color, opacity) = (given.triple(&NEAREST_COLOR, 0)?, given.scalar(&NEAREST_ALPHA, 0)?);
-    let (mask, depth) = (given.count(&NEAREST_MASK, 0)?, given.scalar(&DEPTH, 0)?);
-    let normal = given.triple(&NORMAL, 0)?;
-    Ok(given.tiled(|x, y| FrontLayer {
-        depth: *depth.at(x, y),
+    let empty = FrontLayer {
+        depth: R::INFINITY,
         id: NO_ID,
         weight: R::ZERO,
+        normal: [R::ZERO; 3],
+        color: [R::ZERO; 3],
+        opacity: R::ZERO,
+        mask: 0,
+    };
+    let near = given.pixels(&FrontLayer::STAGES, 0, empty)?;
+    let (depth, normal) = (given.scalar(&DEPTH, 0)?, given.triple(&NORMAL, 0)?);
+    Ok(given.tiled(|x, y| FrontLayer {
+        depth: *depth.at(x, y),
         normal: *normal.at(x, y),
-        color: *color.at(x, y),
-        opacity: *opacity.at(x, y),
-        mask: *mask.at(x, y),
+        ..*near.at(x, y)
     }))
 }
 

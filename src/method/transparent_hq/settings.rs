@@ -39,10 +39,11 @@ impl Fields for Settings {
         let mut ratio = self.refraction.map(|refraction| refraction.ratio);
         let mut layers =
             self.refraction.map_or(BendingLayers::Multiple, |refraction| refraction.layers);
-        let help = "ratios of refraction for red, green and blue, the index outside over the index \
-                    inside: 0.6667 from air to glass";
+        let help = "refract by these ratios for red, green and blue: the index outside over the \
+                    index inside, 0.6667 from air to glass";
         each(Field::new("refraction", help, Slot::Ratios(&mut ratio)).range("above 0 to 4"));
-        let bends = Field::new("bends", "how many layers bend light", Slot::Word(&mut layers));
+        let bends =
+            Field::new("bends", "choose how many layers bend light", Slot::Word(&mut layers));
         each(if ratio.is_some() { bends } else { bends.idle("without a `refraction`") });
         self.refraction = ratio.map(|ratio| Refraction { ratio, layers });
     }

@@ -103,18 +103,24 @@ impl<P: Profile> Div for Ball<P> {
         if P::COMMON_ONLY {
             return common::quotient(self, other);
         }
-        let (m, n, r, s) = (self.middle, other.middle, self.radius, other.radius);
-        let middle = m / n;
-        if is_exact::<P>(middle, r + s) {
-            return Self::exact(middle);
-        }
-        let spread = (m.abs() * s + n.abs() * r) / (n.abs() * (n.abs() - s));
-        let quotient = Self::new(middle, Self::reach(middle, spread, P::QUOTIENT, P::TINY));
-        let divides = !other.may_be_zero() & (n.abs() + s <= P::LARGEST_DIVISOR);
-        // The dividend may be 0, or the divisor infinite.
-        let common = quotient.is_in_range() & divides & (middle != 0.0);
-        if common { quotient } else { rare_quotient(self, other) }
+        quotient(self, other)
     }
+}
+
+/// A call, because a division takes longer than the call does.
+#[inline(never)]
+fn quotient<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
+    let (m, n, r, s) = (a.middle, b.middle, a.radius, b.radius);
+    let middle = m / n;
+    if is_exact::<P>(middle, r + s) {
+        return Ball::exact(middle);
+    }
+    let spread = (m.abs() * s + n.abs() * r) / (n.abs() * (n.abs() - s));
+    let quotient = Ball::new(middle, Ball::<P>::reach(middle, spread, P::QUOTIENT, P::TINY));
+    let divides = !b.may_be_zero() & (n.abs() + s <= P::LARGEST_DIVISOR);
+    // The dividend may be 0, or the divisor infinite.
+    let common = quotient.is_in_range() & divides & (middle != 0.0);
+    if common { quotient } else { rare_quotient(a, b) }
 }
 
 /// A quotient that is 0, or not bounded.

@@ -285,7 +285,7 @@ impl<P: Profile> Real for Ball<P> {
         self.middle
     }
 
-    #[inline(always)]
+    #[inline]
     fn to_pixel(self) -> PixelRange {
         // An unbounded ball gets the whole range that a pixel can have. A cast saturates.
         let high = if self.radius.is_nan() { f64::INFINITY } else { self.high() };
@@ -301,21 +301,7 @@ impl<P: Profile> Real for Ball<P> {
 
     #[inline(always)]
     fn sqrt(self) -> Self {
-        if P::COMMON_ONLY {
-            return common::root(self);
-        }
-        let middle = self.middle.sqrt();
-        if is_exact::<P>(middle, self.radius) | self.is_zero() {
-            return Self::exact(middle);
-        }
-        let low = self.low();
-        // NaN fails this comparison.
-        if low >= 0.0 {
-            let spread = self.radius / (middle + low.sqrt());
-            // The root of a normal number is normal; the root of a flushed number is 0.
-            return Self::rounded(middle, spread, P::ROOT, 0.0);
-        }
-        Self::unbounded(middle, true)
+        if P::COMMON_ONLY { common::root(self) } else { root(self) }
     }
 
     #[inline(always)]
@@ -323,13 +309,7 @@ impl<P: Profile> Real for Ball<P> {
         if P::COMMON_ONLY {
             return common::root_of_squares(self);
         }
-        // NaN fails these comparisons.
-        if self.low() < 0.0 && self.high().is_finite() {
-            let middle = self.middle.sqrt();
-            let spread = larger(middle, self.high().sqrt() - middle);
-            return Self::rounded(middle, spread, P::ROOT, 0.0);
-        }
-        self.sqrt()
+        root_of_squares(self)
     }
 
     #[inline(always)]
@@ -337,7 +317,7 @@ impl<P: Profile> Real for Ball<P> {
         Self::new(self.middle.abs(), self.radius)
     }
 
-    #[inline(always)]
+    #[inline(never)]
     fn exp(self) -> Self {
         let middle = Real::exp(self.middle);
         if is_exact::<P>(middle, self.radius) {
@@ -349,7 +329,7 @@ impl<P: Profile> Real for Ball<P> {
         Self::rounded(middle, spread, units, P::TINY)
     }
 
-    #[inline]
+    #[inline(never)]
     fn pow(self, exponent: Self) -> Self {
         let middle = self.middle.pow(exponent.middle);
         if is_exact::<P>(middle, self.radius + exponent.radius) {
@@ -420,6 +400,35 @@ impl<P: Profile> Real for Ball<P> {
     fn clamped(self, low: Self, high: Self) -> Self {
         bounds::clamped(self, low, high)
     }
+}
+
+/// The square root: a call, because a root takes longer than the call does.
+#[inline(never)]
+fn root<P: Profile>(x: Ball<P>) -> Ball<P> {
+    let middle = x.middle.sqrt();
+    if is_exact::<P>(middle, x.radius) | x.is_zero() {
+        return Ball::exact(middle);
+    }
+    let low = x.low();
+    // NaN fails this comparison.
+    if low >= 0.0 {
+        let spread = x.radius / (middle + low.sqrt());
+        // The root of a normal number is normal; the root of a flushed number is 0.
+        return Ball::rounded(middle, spread, P::ROOT, 0.0);
+    }
+    Ball::unbounded(middle, true)
+}
+
+/// The square root of a sum of squares, which may be 0.
+#[inline(never)]
+fn root_of_squares<P: Profile>(x: Ball<P>) -> Ball<P> {
+    // NaN fails these comparisons.
+    if x.low() < 0.0 && x.high().is_finite() {
+        let middle = x.middle.sqrt();
+        let spread = larger(middle, x.high().sqrt() - middle);
+        return Ball::rounded(middle, spread, P::ROOT, 0.0);
+    }
+    root(x)
 }
 
 /// Whether one ball is below another, given the comparison of exact numbers.

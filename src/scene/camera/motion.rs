@@ -44,13 +44,14 @@ impl CameraMotion {
     /// [`super::Camera::new`].
     pub fn new(keys: Vec<(u32, Pose)>) -> Result<Self> {
         if keys.is_empty() {
-            return Err(Error::Invalid("camera: there are no keys".into()));
+            return Err(Error::Invalid("camera: there are no keys; add one".into()));
         }
         for pair in keys.windows(2) {
             let [before, after] = [pair[0].0, pair[1].0];
             if before >= after {
                 return Err(Error::Invalid(format!(
-                    "camera: a key of frame {after} after one of frame {before}: frames must ascend"
+                    "camera: the key of frame {after} follows the key of frame {before}; sort keys \
+                     by frame"
                 )));
             }
         }
@@ -123,7 +124,7 @@ mod tests {
         let one = pose(DVec3::Z, DVec3::ZERO);
         let words = |keys| CameraMotion::new(keys).unwrap_err().to_string();
         assert!(words(vec![]).contains("no keys"));
-        assert!(words(vec![(3, one), (3, one)]).contains("frames must ascend"));
+        assert!(words(vec![(3, one), (3, one)]).contains("sort keys by frame"));
         assert!(words(vec![(0, one), (1, pose(DVec3::Z, DVec3::Z))]).contains("the same point"));
         assert!(words(vec![(0, pose(DVec3::Y, DVec3::ZERO))]).contains("parallel"));
     }

@@ -107,7 +107,8 @@ impl Ids {
             let large = counts.iter().position(|&count| count == most && count > 1 << LARGE);
             let what = match large {
                 Some(object) => format!(
-                    "{} has {most} surfels; ids of {objects} objects leave room for {} in each",
+                    "{} has {most} surfels, but ids of {objects} objects leave room for {} in \
+                     each; split it",
                     name(object),
                     1_u64 << (WIDE - bits_for(objects as u64 + (1 << 8)))
                 ),
@@ -115,7 +116,7 @@ impl Ids {
                     let room = (1_u64 << (WIDE - bits)) - (1 << 8);
                     let first = name(room as usize);
                     let than = format!("the {room} that ids have room for");
-                    format!("{objects} objects, from {first} on more than {than}")
+                    format!("{objects} objects are too many: {first} exceeds {than}")
                 }
             };
             Error::Invalid(what)
@@ -320,11 +321,11 @@ mod tests {
         let words = |counts: &[u32]| split_of(counts).unwrap_err().to_string();
         let mut counts = vec![7; 5000];
         counts[4321] = (1 << 27) + 1;
-        let what =
-            "o4321 has 134217729 surfels; ids of 5000 objects leave room for 134217728 in each";
+        let what = "o4321 has 134217729 surfels, but ids of 5000 objects leave room for 134217728 in each; split it";
         assert_eq!(words(&counts), what);
         let many = vec![1 << 20; (1 << 20) - 255];
-        let what = "1048321 objects, from o1048320 on more than the 1048320 that ids have room for";
+        let what =
+            "1048321 objects are too many: o1048320 exceeds the 1048320 that ids have room for";
         assert_eq!(words(&many), what);
     }
 

@@ -166,8 +166,8 @@ impl Objects {
         for (object, place) in moved.objects.iter().zip(&moved.places) {
             if !moved.extents[object.geometry].is_in_range(place) {
                 return Err(Error::Invalid(format!(
-                    "{} leaves the range of f32 in frame {frame}: its scale or its place is out of \
-                     bounds",
+                    "{} leaves the range of f32 in frame {frame}; make its scale smaller, or move \
+                     it closer",
                     object.name
                 )));
             }

@@ -68,13 +68,13 @@ impl Motion {
     /// [`Error::Invalid`] if there is no key, if frames do not ascend, or as [`Similarity::check`].
     pub fn new(keys: Vec<(u32, Similarity)>) -> Result<Self> {
         if keys.is_empty() {
-            return Err(Error::Invalid("there are no keys".into()));
+            return Err(Error::Invalid("there are no keys; add one".into()));
         }
         for pair in keys.windows(2) {
             let [before, after] = [pair[0].0, pair[1].0];
             if before >= after {
                 return Err(Error::Invalid(format!(
-                    "a key of frame {after} after one of frame {before}: frames must ascend"
+                    "the key of frame {after} follows the key of frame {before}; sort keys by frame"
                 )));
             }
         }
@@ -150,10 +150,10 @@ mod tests {
     fn keys_that_are_none_are_refused() {
         let one = Similarity::IDENTITY;
         let words = |keys| Motion::new(keys).unwrap_err().to_string();
-        assert_eq!(words(vec![]), "there are no keys");
-        let what = "a key of frame 3 after one of frame 3: frames must ascend";
+        assert_eq!(words(vec![]), "there are no keys; add one");
+        let what = "the key of frame 3 follows the key of frame 3; sort keys by frame";
         assert_eq!(words(vec![(1, one), (3, one), (3, one)]), what);
         let flat = place(DMat3::ZERO, 1.0, 0.0);
-        assert!(words(vec![(0, one), (1, flat)]).contains("no rotation"));
+        assert!(words(vec![(0, one), (1, flat)]).contains("not a rotation"));
     }
 }

@@ -181,15 +181,15 @@ fn gather(
         dropped: 0,
     };
     for (done, &direction) in (0..).zip(&directions) {
-        progress("candidates", done, directions.len() as u64);
+        progress("sampling the surface", done, directions.len() as u64);
         let camera =
             Camera::framing(side, side, sphere, direction, Lens::Orthographic(2.0 * radius))?;
         found.add(mesh, &camera, exec)?;
     }
-    progress("candidates", directions.len() as u64, directions.len() as u64);
+    progress("sampling the surface", directions.len() as u64, directions.len() as u64);
     if found.cloud.position.is_empty() {
-        let what = "no triangle covers the centre of a pixel from any direction: all of them are too small, \
-                    or seen edge-on";
+        let what = "no triangle covers the centre of a pixel from any direction, because all are \
+                    too small or seen edge-on; give a larger --side";
         return Err(Error::Invalid(what.into()));
     }
     Ok(found)
@@ -213,7 +213,7 @@ fn mesh(scene: &Scene) -> Result<Cow<'_, Scene>> {
 /// Refuses a mesh without triangles.
 fn some(mesh: Cow<'_, Scene>) -> Result<Cow<'_, Scene>> {
     match mesh.primitives.triangles.is_empty() {
-        true => Err(Error::Invalid("there are no triangles to take candidates from".into())),
+        true => Err(Error::Invalid("there are no triangles to sample".into())),
         false => Ok(mesh),
     }
 }
@@ -231,13 +231,14 @@ impl Directions {
             Self::These(all) => all.clone(),
         };
         if all.is_empty() {
-            return Err(Error::Invalid("there are no directions to look from".into()));
+            return Err(Error::Invalid("there are no directions to sample from".into()));
         }
         match all.iter().find(|d| !(d.is_finite() && d.length_squared() > 0.0)) {
             None => Ok(all),
-            Some(d) => {
-                Err(Error::Invalid(format!("the direction {}, {}, {} is none", d.x, d.y, d.z)))
-            }
+            Some(d) => Err(Error::Invalid(format!(
+                "the direction {}, {}, {} must be finite and not 0",
+                d.x, d.y, d.z
+            ))),
         }
     }
 }

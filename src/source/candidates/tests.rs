@@ -268,11 +268,11 @@ fn threads_and_tiles_change_nothing() {
 fn what_cannot_be_sampled_is_refused() {
     let none = Scene::unlit("none", Surfels::none());
     let error = found(&none, &Directions::Cube, 8).unwrap_err().to_string();
-    assert_eq!(error, "there are no triangles to take candidates from");
+    assert_eq!(error, "there are no triangles to sample");
     let scene = boxed(Vec3::ONE);
     let bad = Directions::These(vec![DVec3::X, DVec3::ZERO]);
     let error = found(&scene, &bad, 8).unwrap_err().to_string();
-    assert_eq!(error, "the direction 0, 0, 0 is none");
+    assert_eq!(error, "the direction 0, 0, 0 must be finite and not 0");
     assert!(found(&scene, &Directions::These(vec![]), 8).is_err());
     assert!(found(&scene, &Directions::Cube, 0).is_err());
 }

@@ -39,18 +39,18 @@ impl Cloud {
         }
         let triangles = self.triangles.len();
         if let Some(length) = of_triangles.filter(|&length| length != triangles) {
-            let what = format!("{triangles} triangles, but texture coordinates of {length}");
+            let what = format!("{triangles} triangles, but texture coordinates for {length}");
             return Err(Error::Invalid(what));
         }
         check_mipmap(n, self.color.is_some(), &self.mipmap)?;
         let outside = |triangle: &[u32; 3]| triangle.iter().any(|&i| i as usize >= n);
         if let Some(at) = self.triangles.iter().position(outside) {
-            let what = format!("triangle {at} has a corner that is none of the {n} points");
+            let what = format!("triangle {at} has a corner that is not one of the {n} points");
             return Err(Error::Invalid(what));
         }
         let outside = |edge: &[u32; 2]| edge.iter().any(|&i| i as usize >= n);
         if let Some(at) = self.edges.iter().position(outside) {
-            let what = format!("edge {at} has an end that is none of the {n} points");
+            let what = format!("edge {at} has an end that is not one of the {n} points");
             return Err(Error::Invalid(what));
         }
         Ok(())

@@ -318,7 +318,7 @@ fn missing_radii(
 /// The chosen radius, `n` times.
 fn given(radius: f32, n: usize) -> Result<Vec<f32>> {
     if !(radius > 0.0 && radius.is_finite()) {
-        let what = format!("a radius of {radius} was asked for; it must be finite and > 0");
+        let what = format!("radius: {radius}; give a finite number > 0");
         return Err(Error::Invalid(what));
     }
     Ok(vec![radius; n])

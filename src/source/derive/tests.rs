@@ -164,7 +164,7 @@ fn what_cannot_be_derived_says_what_to_give() {
     let uneven = Cloud { color: Some(vec![]), ..points(vec![Vec3::ONE]) };
     assert_eq!(refused(uneven), "1 positions, but 0 colours");
     let outside = Cloud { triangles: vec![[0, 0, 0], [0, 1, 0]], ..points(vec![Vec3::ONE]) };
-    assert!(refused(outside).contains("triangle 1 has a corner that is none of the 1 points"));
+    assert!(refused(outside).contains("triangle 1 has a corner that is not one of the 1 points"));
 }
 
 #[test]

@@ -92,7 +92,7 @@ fn colors(
     let all = count as u64;
     let (mut color, mut more) = (Vec::with_capacity(count), Vec::with_capacity(count * levels));
     for start in (0..count).step_by(BATCH) {
-        progress("texture", start as u64, all);
+        progress("sampling the texture", start as u64, all);
         let some = BATCH.min(count - start);
         exec.extend(&mut color, some, |i| find(start + i, 1.0));
         exec.extend(&mut more, some * levels, |at| {
@@ -100,7 +100,7 @@ fn colors(
             find(start + at / levels, (1_u64 << (2 * level)) as f64)
         });
     }
-    progress("texture", all, all);
+    progress("sampling the texture", all, all);
     let mipmap = (levels > 0).then(|| Mipmap::new(levels, more)).transpose()?;
     Ok((color, mipmap))
 }

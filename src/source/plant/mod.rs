@@ -69,9 +69,7 @@ pub struct Plant {
 /// [`Error::Invalid`] if `leaves` is 0 or more than [`MAX_LEAVES`].
 pub fn apple_tree(leaves: usize, seed: u64) -> Result<Plant> {
     if leaves == 0 || leaves > MAX_LEAVES {
-        return Err(Error::Invalid(format!(
-            "a tree with {leaves} leaves; ask for 1 to {MAX_LEAVES}"
-        )));
+        return Err(Error::Invalid(format!("a tree of {leaves} leaves; give 1 to {MAX_LEAVES}")));
     }
     grow::grow(leaves, seed)
 }
@@ -151,6 +149,8 @@ fn unit(v: DVec3) -> Option<DVec3> {
 fn lines(vertices: Vertices, segments: Vec<[u32; 2]>) -> Result<Polylines> {
     match Polylines::new(vertices, segments)? {
         (lines, 0) => Ok(lines),
-        (_, n) => Err(Error::Invalid(format!("{n} segments are too wide for 32-bit floats"))),
+        (_, n) => Err(Error::Invalid(format!(
+            "{n} segments are too wide for 32-bit floats; make the tree smaller"
+        ))),
     }
 }

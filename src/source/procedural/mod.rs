@@ -163,7 +163,7 @@ impl Shape {
     pub fn surfels(&self, count: usize, seed: u64) -> Result<Surfels> {
         if count == 0 || count > MAX_COUNT {
             return Err(Error::Invalid(format!(
-                "{}: {count} surfels; ask for 1 to {MAX_COUNT}",
+                "{}: {count} surfels; give 1 to {MAX_COUNT}",
                 self.name()
             )));
         }

@@ -319,7 +319,7 @@ fn names_lead_back_to_shapes() {
 fn wrong_numbers_are_errors_and_wrong_rays_miss() {
     let message = |shape: Shape, count| shape.surfels(count, 0).unwrap_err().to_string();
     assert!(message(Shape::Sphere, 0).starts_with("sphere: 0 surfels"));
-    assert!(message(Shape::Sphere, usize::MAX).contains("ask for 1 to"));
+    assert!(message(Shape::Sphere, usize::MAX).contains("give 1 to"));
     assert!(message(Shape::Sheets { gap: 0.0 }, 9).starts_with("sheets: gap 0"));
     assert!(message(Shape::Checkerboard { square: f32::NAN }, 9).contains("square NaN"));
     assert!(message(Shape::Staircase { step: 1.0, thickness: 1e9 }, 9).contains("thickness"));

@@ -69,7 +69,7 @@ pub fn averaged(
     let mut nearest: Vec<Found> = vec![(f32::INFINITY, 0); points.len()];
     let prefixes = u64::from(count.next_power_of_two().ilog2()) + u64::from(count > 0);
     for done in 0..prefixes {
-        progress("colours", done, prefixes);
+        progress("averaging colours", done, prefixes);
         let last = (1 << done).min(count);
         let added = new.len()..last;
         let places: Vec<Vec3> = picks[added.clone()].iter().map(|&i| points[i as usize]).collect();
@@ -89,14 +89,14 @@ pub fn averaged(
             number => (sum / number as f64).as_vec3(),
         }));
     }
-    progress("colours", prefixes, prefixes);
+    progress("averaging colours", prefixes, prefixes);
     Ok(new)
 }
 
 fn check(points: &[Vec3], colors: &[Vec3], order: &Order, count: usize) -> Result<()> {
     let invalid = |what| Err(Error::Invalid(what));
     if points.len() != colors.len() {
-        return invalid(format!("{} colours of {} points", colors.len(), points.len()));
+        return invalid(format!("{} colours, but {} points", colors.len(), points.len()));
     }
     for (what, all) in [("point", points), ("the colour of point", colors)] {
         if let Some(at) = all.iter().position(|value| !value.is_finite()) {
@@ -104,7 +104,7 @@ fn check(points: &[Vec3], colors: &[Vec3], order: &Order, count: usize) -> Resul
         }
     }
     if let Some(pick) = order.index.iter().find(|pick| **pick as usize >= points.len()) {
-        return invalid(format!("pick {pick} of {} points", points.len()));
+        return invalid(format!("pick {pick}, but there are {} points", points.len()));
     }
     if count > order.index.len() {
         let picks = order.index.len();
@@ -224,11 +224,11 @@ mod tests {
             let done = averaged(points, colors, &order, count, &Exec::sequential(), &|_, _, _| ());
             done.unwrap_err().to_string()
         };
-        assert_eq!(run(&points, &colors[..1], 1), "1 colours of 2 points");
+        assert_eq!(run(&points, &colors[..1], 1), "1 colours, but 2 points");
         assert_eq!(run(&[Vec3::ZERO, Vec3::NAN], &colors, 1), "point 1 is not finite");
         let nan = run(&points, &[Vec3::INFINITY, Vec3::ONE], 1);
         assert_eq!(nan, "the colour of point 0 is not finite");
         assert_eq!(run(&points, &colors, 2), "colours of 2 points, but the order has 1");
-        assert_eq!(run(&[], &[], 0), "pick 0 of 0 points");
+        assert_eq!(run(&[], &[], 0), "pick 0, but there are 0 points");
     }
 }

@@ -158,7 +158,8 @@ impl Start {
     /// The index of the first pick; an error if the points cannot be ordered.
     pub(super) fn first_pick(&self, points: &[Vec3]) -> Result<u32> {
         if let Some(at) = points.iter().position(|point| !point.is_finite()) {
-            let what = format!("point {at} is not finite and has no distance to others");
+            let what =
+                format!("point {at} is not finite, so it has no distance to others; remove it");
             return Err(Error::Invalid(what));
         }
         self.among(points.len())
@@ -168,10 +169,10 @@ impl Start {
     pub(super) fn among(&self, n: usize) -> Result<u32> {
         let invalid = |what| Err(Error::Invalid(what));
         let Ok(count) = u32::try_from(n) else {
-            return invalid(format!("{n} points, but indices are of 32 bits: split the model"));
+            return invalid(format!("{n} points, but indices have 32 bits: split the model"));
         };
         if n == 0 {
-            return invalid("there are no points to put in order".into());
+            return invalid("there are no points to order".into());
         }
         match *self {
             Self::Seed(seed) => Ok(random::below(seed, 0, u64::from(count)) as u32),

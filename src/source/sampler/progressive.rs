@@ -120,7 +120,7 @@ impl Progressive {
             if picks.order.index.len() >= count || rest.indices.is_empty() {
                 break;
             }
-            progress("picks", picks.order.index.len() as u64, count as u64);
+            progress("picking points", picks.order.index.len() as u64, count as u64);
             let drawn = rest.draw(samples);
             // The last round accepts only as many as are still wanted.
             let room = accepted.min(count - picks.order.index.len());
@@ -138,7 +138,7 @@ impl Progressive {
                 }
             }
         }
-        progress("picks", count as u64, count as u64);
+        progress("picking points", count as u64, count as u64);
         Ok(picks.order)
     }
 }
@@ -238,11 +238,11 @@ pub fn shuffled(points: &[Vec3], seed: u64, count: usize, progress: Progress<'_>
     let count = count.min(keys.len());
     for (done, &(_, index)) in keys[..count].iter().enumerate() {
         if done.is_multiple_of(EACH) {
-            progress("picks", done as u64, count as u64);
+            progress("picking points", done as u64, count as u64);
         }
         picks.add(index);
     }
-    progress("picks", count as u64, count as u64);
+    progress("picking points", count as u64, count as u64);
     Ok(picks.order)
 }
 

@@ -45,10 +45,12 @@ pub fn quality(points: &[Vec3], prefix: &[u32], exec: &Exec) -> Result<Quality> 
         return invalid(format!("a prefix of {}; give 1 to 2^32 - 1 indices", prefix.len()));
     }
     if let Some(at) = points.iter().position(|point| !point.is_finite()) {
-        return invalid(format!("point {at} is not finite and has no distance to others"));
+        return invalid(format!(
+            "point {at} is not finite, so it has no distance to others; remove it"
+        ));
     }
     if let Some(index) = prefix.iter().find(|index| **index as usize >= points.len()) {
-        return invalid(format!("index {index} of {} points", points.len()));
+        return invalid(format!("index {index}, but there are {} points", points.len()));
     }
     let bytes = prefix.len() as u64 * BYTES_A_POINT;
     memory::ask(bytes, || format!("distances among {} points", prefix.len()))?;

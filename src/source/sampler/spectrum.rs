@@ -119,13 +119,17 @@ pub fn spectrum(points: &[Vec3], exec: &Exec) -> Result<Spectrum> {
         return invalid(format!("a spectrum of {n} points; give {FEWEST} to 2^32 - 1"));
     }
     if let Some(at) = points.iter().position(|point| !point.is_finite()) {
-        return invalid(format!("point {at} is not finite and has no distance to others"));
+        return invalid(format!(
+            "point {at} is not finite, so it has no distance to others; remove it"
+        ));
     }
     memory::ask(n as u64 * BYTES_A_POINT, || format!("a spectrum of {n} points"))?;
     let reach2 = reach2(points, exec);
     let reach = f64::from(reach2).sqrt();
     if !(reach > 0.0 && reach < f64::INFINITY) {
-        return invalid(format!("a spectrum of points of which 129 are within {reach}"));
+        return invalid(format!(
+            "the spectrum needs points at distances above 0, but 129 are within {reach}"
+        ));
     }
     let pairs = pairs(points, reach2, exec);
     let count = n as f64;
@@ -141,7 +145,10 @@ pub fn spectrum(points: &[Vec3], exec: &Exec) -> Result<Spectrum> {
     let areas = (0..BINS).fold(0.0, |sum, b| sum + area(b) * outer(b));
     let density = weighed / (count * areas);
     if !(density > 0.0) {
-        return invalid("a spectrum of points in heaps that are far from each other".into());
+        return invalid(
+            "the spectrum needs points spread evenly, but these are in clusters far from each other"
+                .into(),
+        );
     }
     let unit = (2.0 / (3.0_f64.sqrt() * density)).sqrt();
     let excess = |(b, &pairs): (usize, &u64)| {

@@ -1,4 +1,4 @@
-//! What an entry draws, and what it is measured against.
+//! The scene that an entry draws, and the reference that it is measured against.
 
 use super::Found;
 use crate::compare::metrics::Metric;
@@ -15,15 +15,15 @@ use std::time::{Duration, Instant};
 /// Width and height of pictures.
 pub(super) const SIZE: [u32; 2] = [240, 180];
 
-/// What is found as it is, and with the cure.
+/// The results without and with the cure.
 pub(super) fn both(found: impl Fn(bool) -> Result<Found>) -> Result<[Found; 2]> {
     Ok([found(false)?, found(true)?])
 }
 
-/// Progress that nobody sees.
+/// Ignores progress.
 pub(super) fn quiet(_: &str, _: u64, _: u64) {}
 
-/// A scene before a camera, and how it is drawn.
+/// A scene with its camera and method.
 #[derive(Debug)]
 pub(super) struct Case {
     pub(super) scene: Scene,
@@ -33,7 +33,7 @@ pub(super) struct Case {
 }
 
 impl Case {
-    /// Surfels of a shape under the headlight, from where it looks good.
+    /// Surfels of a shape under the headlight, from its default view.
     pub(super) fn of_shape(shape: Shape, count: usize, method: Method) -> Result<Self> {
         let [width, height] = SIZE;
         let camera = Camera::new(width, height, shape.default_pose(), shape.default_lens())?;
@@ -41,7 +41,7 @@ impl Case {
         Ok(Self { scene, camera, method, grouping: None })
     }
 
-    /// The same from elsewhere, +y up, the lens given by its vertical field of view in degrees.
+    /// The same from another eye, with +y up and a vertical field of view in degrees.
     pub(super) fn seen_from(self, eye: DVec3, target: DVec3, degrees: f64) -> Result<Self> {
         let [width, height] = SIZE;
         let pose = Pose { eye, target, up: DVec3::Y };
@@ -49,7 +49,7 @@ impl Case {
         Ok(Self { camera, ..self })
     }
 
-    /// The picture, and what one took: the second of two.
+    /// The picture and its time, from the second of two runs.
     pub(super) fn draw(&self, exec: &Exec) -> Result<(Frame<f32>, Duration)> {
         let mut session = match &self.grouping {
             None => Session::new(&self.scene, self.method, exec)?,
@@ -64,7 +64,7 @@ impl Case {
         Ok((frame, start.elapsed()))
     }
 
-    /// The picture against another one, by the name of a metric.
+    /// The error of the picture against another one, by the name of a metric.
     pub(super) fn against(&self, truth: &Frame<f32>, metric: &str, exec: &Exec) -> Result<Found> {
         let (frame, time) = self.draw(exec)?;
         let error = Metric::named(metric)?
@@ -73,7 +73,7 @@ impl Case {
         Ok(Found { error, picture: frame.color("")?.clone(), time: Some(time) })
     }
 
-    /// The picture, and that of the method which is the cure, against another one.
+    /// The errors of the picture and of the curing method's picture, against a third one.
     pub(super) fn and_cured(
         self,
         method: Method,
@@ -85,18 +85,18 @@ impl Case {
         Ok([plain, Self { method, ..self }.against(truth, metric, exec)?])
     }
 
-    /// The true picture of surfaces from where this is seen.
+    /// The true picture of these surfaces, from the same camera.
     pub(super) fn truth(&self, surfaces: &[Surface], exec: &Exec) -> Result<Frame<f32>> {
         Ok(of_surfaces(surfaces, &self.scene, false, (&self.camera, &[]), exec, &quiet)?.frame)
     }
 }
 
-/// A shape where it is.
+/// A shape without a transform.
 pub(super) fn exact(shape: Shape) -> [Surface; 1] {
     [Surface::Shape { shape, place: Similarity::IDENTITY, color: None }]
 }
 
-/// Surfels with light and dark cubes of a side as their colours.
+/// Colours the surfels by light and dark cubes with this side.
 pub(in crate::study) fn checked(surfels: Surfels, side: f64) -> Result<Surfels> {
     let cloud = surfels.into_cloud();
     let check = |p: &Vec3| {
@@ -108,7 +108,7 @@ pub(in crate::study) fn checked(surfels: Surfels, side: f64) -> Result<Surfels> 
     Ok(Surfels::new(Cloud { color, ..cloud })?.0)
 }
 
-/// What has changed from a picture to another.
+/// The change from one picture to another.
 pub(super) fn change(from: &Plane<[f32; 3]>, to: &Plane<[f32; 3]>) -> Vec<[f32; 3]> {
     let pixels = from.values().iter().zip(to.values());
     pixels.map(|(from, to)| [0, 1, 2].map(|k| to[k] - from[k])).collect()

@@ -49,38 +49,44 @@ pub(super) const FAILURES: [Failure; 2] = [
     Failure {
         id: "bounds-conic",
         title: "The centred conic of a small splat loses its digits",
-        why: "Sixteen discs all over a picture of 90 degrees, their planes at 30 degrees to the ray. [ZRB+04, 3] has the outline as \
-              the conic a x^2 + 2 b x y + c y^2 + 2 d x + 2 e y = f, by the inverse of (U, V, p), and moves it to its centre: what \
-              is left of f, f - d x_t - e y_t, is as small a part of f as the splat is of its distance to the axis, squared. \
-              At 1024 radii a disc has a radius of 1 px in a picture 2048 px wide. \
-              What is measured is the greatest error of a side of the box in f32, as a part of half the box; 1 where no \
-              ellipse is left. Pictures: each disc magnified, where it is in the picture; light is right, red is \
+        why: "Sixteen discs are spread over a picture of 90 degrees, and their planes are tilted \
+              by 30 degrees to the ray. [ZRB+04, 3] writes the outline as the conic a x^2 + 2 b x \
+              y + c y^2 + 2 d x + 2 e y = f, from the inverse of (U, V, p), and moves the conic to \
+              its centre. This leaves f - d x_t - e y_t of f: a fraction as small as the squared \
+              ratio of the splat's size to its distance from the axis. At 1024 radii a disc has a \
+              radius of 1 px in a picture 2048 px wide. The error is the largest error of a side \
+              of the box in f32, as a fraction of half the box; it is 1 where no ellipse is left. \
+              Pictures: each disc magnified at its place in the picture; light is right, red is \
               missing, blue is too much.",
         swept: "distance, radii",
         values: &[4.0, 16.0, 64.0, 128.0, 256.0, 512.0, 1024.0, 2048.0],
         error: "error of the box, part of half its side",
         limit: 0.1,
-        cure: "`--outline perspective`: centre and covariance by a rank-one update, without a conic; see `splat::project`",
+        cure: "`--outline perspective`: centre and covariance from a rank-one update, without a \
+               conic; see `splat::project`",
         at: conic,
     },
     Failure {
         id: "bounds-hyperbola",
         title: "The box of a hyperbola is the gap between its branches",
-        why: "A disc tilted by 45 degrees, 20 degrees off the axis. [WHA+07] takes the box from tangents, \
-              x = (h_13 +- sqrt(h_13^2 - h_11 h_33)) / h_33 with h_ij = U_i U_j + V_i V_j - p_i p_j. It is exact as long as all of the disc is \
-              before the eye. Where the near half is not, below 0.71 radii here, the outline is a hyperbola, and between two \
-              tangents is the gap between its branches; or the root is of a negative number, and there is no box. \
-              Pictures: the disc is light in the box and red outside; blue is the box beside the disc.",
+        why: "A disc is tilted by 45 degrees, 20 degrees off the axis. [WHA+07] takes the box from \
+              tangents, x = (h_13 +- sqrt(h_13^2 - h_11 h_33)) / h_33 with h_ij = U_i U_j + V_i \
+              V_j - p_i p_j. The box is exact as long as the whole disc is in front of the eye. \
+              Below 0.71 radii the near half is not. Then the outline is a hyperbola, and the two \
+              tangents enclose the gap between its branches; or the root is of a negative number, \
+              and there is no box. Pictures: the disc is light inside the box and red outside; \
+              blue is the rest of the box.",
         swept: "distance, radii",
         values: &[4.0, 2.0, 1.0, 0.8, 0.72, 0.7, 0.6, 0.35],
         error: "pixels of the disc outside, per mille",
         limit: 10.0,
-        cure: "bounds of the part before the near plane, with room for rounding; see `splat::crossing`",
+        cure: "bounds of the part in front of the near plane, with room for rounding; see \
+               `splat::crossing`",
         at: hyperbola,
     },
 ];
 
-/// The rows of M, see the module.
+/// The rows of M; see the module.
 #[derive(Clone, Copy, Debug)]
 struct Mapping<R> {
     u: Vector3<R>,
@@ -88,7 +94,7 @@ struct Mapping<R> {
     p: Vector3<R>,
 }
 
-/// Middle and half of the side of a box, in x and y.
+/// The middle and half the side of a box, in x and y.
 type Sides = [[f64; 2]; 2];
 
 /// A conic about its centre: a x^2 + 2 b x y + c y^2 = level.
@@ -113,7 +119,7 @@ impl<R: Real> Mapping<R> {
         Centred { form: [a, b, c], level, center }
     }
 
-    /// The two tangents of each axis, in any order; no numbers where there are none.
+    /// The two tangents of each axis, in any order; NaN where there are none.
     fn tangents(&self) -> [[R; 2]; 2] {
         let Self { u, v, p } = *self;
         let h = |[a, b, c]: [R; 3], [d, e, f]: [R; 3]| (a * d + b * e) - c * f;
@@ -126,7 +132,7 @@ impl<R: Real> Mapping<R> {
 }
 
 impl Mapping<f32> {
-    /// The same disc, exactly.
+    /// The same disc in f64, exactly.
     fn wide(&self) -> Mapping<f64> {
         let [u, v, p] = [self.u, self.v, self.p].map(|v| v.map(f64::from));
         Mapping { u, v, p }
@@ -141,13 +147,13 @@ impl Mapping<f64> {
 }
 
 impl<R: Exact> Centred<R> {
-    /// The box; none where the conic is no ellipse.
+    /// The box; `None` if the conic is not an ellipse.
     fn sides(&self) -> Option<Sides> {
         let ([a, b, c], level) = (self.form, self.level);
         let det = a * c - b * b;
         let half = [(c * level / det).sqrt(), (a * level / det).sqrt()];
         let sides = [0, 1].map(|k| [self.center[k].to_f64(), half[k].to_f64()]);
-        // A comparison that NaN fails.
+        // Written so that NaN fails the comparison.
         (a > R::ZERO && det > R::ZERO && level > R::ZERO).then_some(sides)
     }
 
@@ -159,7 +165,7 @@ impl<R: Exact> Centred<R> {
     }
 }
 
-/// The same conic from the footprint that this crate has of a disc in f32.
+/// The same conic, from the crate's own footprint of a disc in f32.
 fn by_footprint(disc: &Mapping<f32>) -> Result<Centred<f64>> {
     let world = |v: Vector3<f32>| Vector3::new(v.x, v.y, -v.z);
     let normal = disc.u.cross(disc.v).normalized();
@@ -169,7 +175,7 @@ fn by_footprint(disc: &Mapping<f32>) -> Result<Centred<f64>> {
         radius: 1.0,
         tangents: Some([world(disc.u), world(disc.v)]),
     };
-    // So many pixels that the farthest disc is a few.
+    // Large enough that the farthest disc has a few pixels.
     let camera = ahead(4096, 2048.0)?;
     let kernel = Kernel { outline: Outline::Perspective, low_pass: 0.0, cutoff: 1.0 };
     let projector = Projector::new(View::new(&camera), &kernel, false);
@@ -184,11 +190,11 @@ fn by_footprint(disc: &Mapping<f32>) -> Result<Centred<f64>> {
     Ok(Centred { form: [ux * ux, ux * uy, uy * uy + vy * vy], level: 1.0, center })
 }
 
-/// How many discs are in a row, and pixels in the cell of one.
+/// How many discs a row has, and how many pixels the cell of a disc has.
 const CELLS: u32 = 4;
 const CELL: u32 = 60;
 
-/// The k-th disc, of the radius 1, its centre at a distance to the plane of the eye.
+/// The k-th disc, with radius 1 and its centre at a distance from the plane of the eye.
 fn small(k: u32, distance: f64) -> Mapping<f32> {
     let [x, y] = [k % CELLS, k / CELLS].map(|i| (f64::from(i) - 1.5) / 2.0);
     // The first row is at the top.
@@ -196,7 +202,7 @@ fn small(k: u32, distance: f64) -> Mapping<f32> {
     let along = ray.normalize();
     let side = along.cross(DVec3::Y).normalize();
     let up = along.cross(side);
-    // Each is turned by another angle.
+    // Each disc is turned by another angle.
     let turn = 1.0 + f64::from(k);
     let u = side * cos(turn) + up * sin(turn);
     let across = up * cos(turn) - side * sin(turn);
@@ -210,7 +216,7 @@ fn conic(distance: f64, _: &Exec) -> Result<[Found; 2]> {
     both(|cured| small_ones(distance, cured))
 }
 
-/// All small discs: the boxes of the footprints that this crate has of them, or those of the textbook.
+/// Draws all small discs with the boxes of the crate's footprints, or of the textbook.
 fn small_ones(distance: f64, cured: bool) -> Result<Found> {
     let mut picture = Plane::filled(CELLS * CELL, CELLS * CELL, [0.0; 3]);
     let mut most = 0.0;
@@ -237,7 +243,7 @@ fn small_ones(distance: f64, cured: bool) -> Result<Found> {
     Ok(Found { error: most, picture, time: None })
 }
 
-/// How far a side of a box is off, at most, as a part of half the true one.
+/// The largest error of a side of the box, as a fraction of half the true side.
 fn off(found: &Sides, truth: &Sides) -> f64 {
     let errors = found.iter().zip(truth).map(|([middle, half], [true_middle, true_half])| {
         ((middle - true_middle).abs() + (half - true_half).abs()) / true_half
@@ -245,7 +251,7 @@ fn off(found: &Sides, truth: &Sides) -> f64 {
     errors.fold(0.0, |most, error| if error <= most { most } else { error })
 }
 
-/// Draws a disc in its cell, which is one and a half times as large as its box.
+/// Draws a disc in its cell, which is one and a half times the size of its box.
 fn paint(
     picture: &mut Plane<[f32; 3]>,
     k: u32,
@@ -264,13 +270,14 @@ fn paint(
     }
 }
 
-/// Where the disc that crosses the plane of the eye is tilted to: not along an axis of the picture.
+/// The direction in which the disc that crosses the plane of the eye is tilted: not along an axis
+/// of the picture.
 fn askew() -> DVec3 {
     let turn = 30_f64.to_radians();
     DVec3::new(cos(turn), sin(turn), 0.0)
 }
 
-/// The disc of [`tilted`], its half axis that comes nearest to the eye first.
+/// The disc of [`tilted`]; its first half axis comes nearest to the eye.
 fn crossing(distance: f64) -> Mapping<f64> {
     let (center, normal) = tilted(distance, askew());
     let three = |v: DVec3| Vector3::new(v.x, v.y, -v.z);
@@ -280,7 +287,7 @@ fn crossing(distance: f64) -> Mapping<f64> {
 
 fn hyperbola(distance: f64, _: &Exec) -> Result<[Found; 2]> {
     const SIDE: u32 = 240;
-    // A wide lens, to see beyond the disc.
+    // A wide lens, so that the picture shows the surroundings of the disc.
     let camera = ahead(SIDE, 0.25 * f64::from(SIDE))?;
     let disc = tilted(distance, askew());
     let rect = visible(&camera, disc);
@@ -288,7 +295,7 @@ fn hyperbola(distance: f64, _: &Exec) -> Result<[Found; 2]> {
     let boxed = |column, row| {
         let [px, py] = [column, row].map(|v| f64::from(v) + 0.5 - 0.5 * f64::from(SIDE));
         let [px, py] = [px, -py].map(|v| v / f64::from(camera.fx));
-        // Comparisons that NaN fails.
+        // Written so that NaN fails the comparisons.
         (px - x).abs() <= half_x && (py - y).abs() <= half_y
     };
     Ok([
@@ -323,8 +330,8 @@ mod tests {
         ends.map(|[low, high]| [f64::midpoint(low, high), (high - low) / 2.0])
     }
 
-    /// Where all of the disc is before the eye both textbooks are right, but for rounding: what the atlas shows
-    /// is no slip of its formulas.
+    /// While the whole disc is in front of the eye, both textbooks are right up to rounding, so the
+    /// errors in the atlas are not caused by a slip in its formulas.
     #[test]
     fn boxes_of_ellipses_are_those_of_the_sampled_rim() {
         let far = [2.0, 8.0, 64.0, 2048.0];
@@ -338,7 +345,7 @@ mod tests {
         }
     }
 
-    /// The conic is the rim, not only its box.
+    /// The conic matches the rim, not only its box.
     #[test]
     fn the_centred_conic_goes_through_the_rim() {
         for disc in [small(3, 8.0).wide(), small(6, 2.0).wide(), crossing(1.0)] {
@@ -351,7 +358,8 @@ mod tests {
         }
     }
 
-    /// Nothing of a disc that crosses the plane of the eye is between its tangents, in x or in y.
+    /// No point of a disc that crosses the plane of the eye lies between its tangents, in x or in
+    /// y.
     #[test]
     fn the_box_of_a_hyperbola_is_its_gap() {
         for (distance, axis) in [(0.7, 0), (0.7, 1), (0.69, 0), (0.69, 1), (0.6, 0)] {

@@ -1,4 +1,4 @@
-//! Footprints that are not what a disc projects to.
+//! Entries about footprints that differ from the projection of a disc.
 
 use super::case::{Case, both, checked, exact, quiet};
 use super::{Failure, Found};
@@ -16,9 +16,10 @@ pub(super) const FAILURES: [Failure; 4] = [
     Failure {
         id: "ewa-grazing",
         title: "The footprint of a tilted disc is not its outline",
-        why: "One disc, three radii away, tilted more and more, without low-pass filter and cut off at its rim. The affine footprint \
-              of EWA is a linear map at the disc's centre [ZPvBG01, eq. 8]: perspective makes the near half of a tilted disc larger \
-              and its far half smaller, and the footprint has neither.",
+        why: "One disc, three radii away, is tilted more and more, without a low-pass filter and \
+              cut off at its rim. The affine footprint of EWA is a linear map at the disc's centre \
+              [ZPvBG01, eq. 8]. Perspective makes the near half of a tilted disc larger and its \
+              far half smaller, but the footprint shows neither.",
         swept: "tilt, degrees",
         values: &[0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 80.0, 85.0],
         error: "wrong pixels of the footprint, per mille of the disc",
@@ -29,8 +30,10 @@ pub(super) const FAILURES: [Failure; 4] = [
     Failure {
         id: "ewa-wide",
         title: "A footprint off the axis of a wide lens is not the disc's outline",
-        why: "One disc that faces the eye, three radii away along the axis, farther and farther from it. What the lens stretches \
-              it also tilts against the picture; the affine footprint is as if the stretch were that of the centre everywhere [ZRB+04].",
+        why: "One disc faces the eye, three radii away along the axis, and moves farther and \
+              farther from the axis. The lens stretches the disc and also tilts it against the \
+              picture, but the affine footprint assumes the stretch of the centre everywhere \
+              [ZRB+04].",
         swept: "angle to the axis, degrees",
         values: &[0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0, 70.0],
         error: "wrong pixels of the footprint, per mille of the disc",
@@ -41,8 +44,9 @@ pub(super) const FAILURES: [Failure; 4] = [
     Failure {
         id: "ewa-near",
         title: "Discs close to the eye leave holes and cover the sky",
-        why: "The checked plane of 2,000 surfels from an eye that comes down to it. A disc that reaches behind the \
-              camera has no ellipse as its outline; an affine footprint ends above the horizon or before the disc does.",
+        why: "The eye comes down to a checked plane of 2,000 surfels. A disc that reaches behind \
+              the camera does not have an ellipse as its outline. An affine footprint ends above \
+              the horizon, or before the disc does.",
         swept: "height of the eye over the plane, radii of the nearest discs",
         values: &[16.0, 8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125],
         error: "wrongly covered or missed pixels, per mille of all",
@@ -53,8 +57,9 @@ pub(super) const FAILURES: [Failure; 4] = [
     Failure {
         id: "ewa-minify",
         title: "Checks smaller than a pixel alias",
-        why: "A sphere of 100,000 surfels with finer and finer checks, drawn without the low-pass filter: \
-              splats smaller than a pixel count by where their centres fall [ZPvBG01, 4].",
+        why: "A sphere of 100,000 surfels has finer and finer checks, and is drawn without the \
+              low-pass filter. Splats smaller than a pixel then count only if their centres fall \
+              right [ZPvBG01, 4].",
         swept: "side of a check, px",
         values: &[8.0, 4.0, 3.0, 2.0, 1.5, 1.0, 0.75, 0.5],
         error: "RMSE, linear RGB, to 8 x 8 times the pixels",
@@ -88,7 +93,8 @@ fn wide(degrees: f64, exec: &Exec) -> Result<[Found; 2]> {
     both(found)
 }
 
-/// A disc of the radius 1 around a point, its normal turned about +y from +z, in the middle of a picture whose plane is z = -1.
+/// A disc of radius 1 around a point, with its normal turned about +y from +z, in the middle of a
+/// picture whose plane is z = -1.
 fn one_disc(center: DVec3, degrees: f64, outline: Outline, exec: &Exec) -> Result<Found> {
     const SIDE: u32 = 256;
     let tilt = degrees.to_radians();
@@ -101,7 +107,7 @@ fn one_disc(center: DVec3, degrees: f64, outline: Outline, exec: &Exec) -> Resul
     };
     let pose = Pose { eye: DVec3::ZERO, target: -DVec3::Z, up: DVec3::Y };
     let mut camera = Camera::new(SIDE, SIDE, pose, Lens::Focal(256.0))?;
-    // Shifted, not turned.
+    // The camera is shifted, not turned.
     camera.cx -= (f64::from(camera.fx) * center.x / -center.z) as f32;
     let kernel = Kernel { outline, low_pass: 0.0, cutoff: 1.0 };
     let settings = ewa::Settings { kernel, ..ewa::Settings::BOTH_SIDES };

@@ -1,4 +1,4 @@
-//! Groups of surfels that overlap little.
+//! Entries about groups of surfels that overlap little.
 
 use super::case::Case;
 use super::{Failure, Found};
@@ -15,21 +15,23 @@ pub(super) const FAILURES: [Failure; 3] = [
     Failure {
         id: "group-c",
         title: "Surfels of one group that overlap show flaps",
-        why: "The spheres of the cluster, 20,000 surfels, by the single pass. Groups are fewer where surfels may \
-              overlap more, down to c = 0 [ZP06, 5.1]; of two that overlap in a group the plain depth test keeps the nearest.",
+        why: "The single pass draws the spheres of the cluster, 20,000 surfels. There are fewer \
+              groups if surfels may overlap more, down to c = 0 [ZP06, 5.1]. Where two surfels of \
+              one group overlap, the plain depth test keeps the nearest.",
         swept: "c",
         values: &[1.0, 0.8, 0.6, 0.4, 0.2],
         error: "RMSE, linear RGB, to the picture of EWA",
         limit: 0.01,
-        cure: "`--overlap 1`, the default: more groups; Voronoi depth alone takes off a fifth",
+        cure: "`--overlap 1`, the default: more groups; Voronoi depth alone removes a fifth of the \
+               error",
         at: overlap,
     },
     Failure {
         id: "transparent-holes",
         title: "Groups that do not cover the surface",
-        why: "A torus of 4,000 surfels with opacity 0.4 by Algorithm 2 [ZP06, 4.2]. Each of K groups shows a part of the \
-              surface; where a group has a hole, a layer is missing from its picture, and the average of K is too \
-              transparent or shows what is behind.",
+        why: "Algorithm 2 draws a torus of 4,000 surfels with opacity 0.4 [ZP06, 4.2]. Each of K \
+              groups shows a part of the surface. Where a group has a hole, its picture lacks a \
+              layer. The average of K groups is then too transparent, or shows the background.",
         swept: "K",
         values: &[2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0],
         error: "RMSE, linear RGB, to the picture of peeling",
@@ -40,9 +42,10 @@ pub(super) const FAILURES: [Failure; 3] = [
     Failure {
         id: "bin-arcs",
         title: "Arcs at the borders of depth bins",
-        why: "A torus of 20,000 surfels with opacity 0.4 by Algorithm 3 [ZP06, 4.2.1]. Fragments are of one layer if they share a bin \
-              of depth; a surface that passes from one bin to the next is two layers where discs of both bins overlap. \
-              These places are arcs, in which too much is opaque.",
+        why: "Algorithm 3 draws a torus of 20,000 surfels with opacity 0.4 [ZP06, 4.2.1]. \
+              Fragments belong to one layer if they share a depth bin. A surface that passes from \
+              one bin to the next becomes two layers where discs of both bins overlap. These \
+              places are arcs, and they are too opaque.",
         swept: "bins",
         values: &[8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0, 4096.0],
         error: "RMSE, linear RGB, to the picture of peeling",
@@ -69,7 +72,7 @@ fn overlap(c: f64, exec: &Exec) -> Result<[Found; 2]> {
     Ok([found(c)?, found(1.0)?])
 }
 
-/// A torus through which one sees, and its picture by peeling.
+/// A transparent torus, and its picture by peeling.
 fn torus(count: usize, splats: ewa::Settings, exec: &Exec) -> Result<(Case, Frame<f32>)> {
     let method = peeling::Settings { splats, layers: 64 };
     let mut case = Case::of_shape(Shape::Torus, count, method.into())?;

@@ -1,4 +1,4 @@
-//! Layers told apart by epsilon.
+//! Entries about layers that epsilon separates.
 
 use super::case::{Case, exact};
 use super::{Failure, Found};
@@ -14,21 +14,23 @@ pub(super) const FAILURES: [Failure; 4] = [
     Failure {
         id: "eps-sheets",
         title: "The sheet behind bleeds through",
-        why: "Two sheets of 20,000 surfels, one behind the other. What lies within epsilon of the nearest depth is \
-              blended with it [GP03; ZP06, 3]: with the default epsilon of two median radii both sheets are, once \
-              they are as near to each other as that.",
+        why: "Two sheets of 20,000 surfels lie one behind the other. Fragments within epsilon of \
+              the nearest depth are blended with it [GP03; ZP06, 3]. With the default epsilon of \
+              two median radii both sheets are blended once they are that close.",
         swept: "gap, median radii",
         values: &[16.0, 8.0, 4.0, 3.0, 2.5, 2.0, 1.5, 1.0, 0.5, 0.25],
         error: "RMSE, linear RGB",
         limit: 0.05,
-        cure: "an `--epsilon` of half the gap, as long as it is more than the surface's own depth differs within a disc",
+        cure: "an `--epsilon` of half the gap, as long as it exceeds how much the depth of the \
+               surface differs within a disc",
         at: sheets,
     },
     Failure {
         id: "eps-slope",
         title: "A curved surface leaves its band and is torn",
-        why: "A sphere of 2,000 surfels with a smaller and smaller epsilon. Discs that overlap in a pixel differ in depth there, by up to their \
-              radius times the slope; those beyond epsilon are not blended, and the nearest one is seen as it is.",
+        why: "A sphere of 2,000 surfels is drawn with a smaller and smaller epsilon. Discs that \
+              overlap in a pixel differ in depth by up to their radius times the slope. Discs \
+              beyond epsilon are not blended, so the nearest one is seen alone.",
         swept: "epsilon, median radii",
         values: &[4.0, 2.0, 1.0, 0.5, 0.25, 0.125, 0.0625, 0.03125],
         error: "normal error, 99 %, degrees",
@@ -39,9 +41,9 @@ pub(super) const FAILURES: [Failure; 4] = [
     Failure {
         id: "eps-default",
         title: "One epsilon does not fit a scan of uneven density",
-        why: "The left half of a sphere of 40,000 surfels, and the right half of one of fewer. The default epsilon \
-              is two radii of the median surfel, so less than one of a large one: large discs tear each other where they \
-              overlap.",
+        why: "The left half is from a sphere of 40,000 surfels, the right half from a sphere of \
+              fewer. The default epsilon is two radii of the median surfel, which is less than one \
+              radius of a large surfel. Large discs therefore tear each other where they overlap.",
         swept: "how many times denser the left half is",
         values: &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0],
         error: "normal error, 99 %, degrees",
@@ -52,9 +54,10 @@ pub(super) const FAILURES: [Failure; 4] = [
     Failure {
         id: "voronoi-bin",
         title: "Depth bins thinner than a disc is deep cut layers apart",
-        why: "A sphere of 5,000 surfels by the single pass with Voronoi depth [ZP06, 5.1, eq. 10]. Within a bin of depth the disc whose centre \
-              is nearest wins. Two fragments of one layer on either side of a border of bins are told apart by depth, as by the plain test: \
-              the thinner the bins, the more of them.",
+        why: "The single pass draws a sphere of 5,000 surfels with Voronoi depth [ZP06, 5.1, eq. \
+              10]. Within a depth bin the disc with the nearest centre wins. Two fragments of one \
+              layer on either side of a border between bins are compared by depth, as in the plain \
+              test. Thinner bins have more such borders.",
         swept: "bins",
         values: &[8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 1024.0, 4096.0],
         error: "RMSE, linear RGB, to the picture of EWA",
@@ -94,7 +97,8 @@ fn density(times: f64, exec: &Exec) -> Result<[Found; 2]> {
     case.and_cured(epsilon(Epsilon::World(2.0 * most)), &truth, "normal-99", exec)
 }
 
-/// The left half of a sphere of so many surfels, and the right half of one of `times` as few.
+/// The left half of a sphere of this many surfels, and the right half of a sphere with `times`
+/// fewer.
 fn halves(count: usize, times: f64) -> Result<Surfels> {
     let half = |count: usize, left: bool| -> Result<Cloud> {
         let surfels = Shape::Sphere.surfels(count, 0)?;

@@ -1,15 +1,16 @@
 //! The atlas of failures: where each method breaks, measured.
 //!
-//! A [`Failure`] is a scene, one parameter that is swept, and an error against the truth. Its [`Curve`] is
-//! the error at each value, as the method is by default or as the entry says, and again with the cure. It
-//! *breaks* at the first value whose error is above [`Failure::limit`]; values are in the order from
-//! where it works to where it does not.
+//! A [`Failure`] sweeps one parameter of a scene, and measures an error against the truth. Its
+//! [`Curve`] holds the error at each value, without the cure and with it. The entry *breaks* at the
+//! first value whose error exceeds [`Failure::limit`]. The values go from those that work to those
+//! that do not.
 //!
-//! The truth is that of [`mod@crate::study::truth`] where a surface is known. Where the entry is about layers, which
-//! have no surface, it is the picture of depth peeling; where about arithmetic, the same in f64. Errors
-//! are functions of the scene alone: the same on every machine. Times are not, and no test looks at them.
+//! The truth is [`mod@crate::study::truth`] if a surface is known. Layers have no surface, so
+//! entries about layers compare with depth peeling. Entries about arithmetic compare with the same
+//! formula in f64. Errors depend on the scene alone, and are the same on every machine. Times are
+//! not, and no test checks them.
 //!
-//! The page of the atlas is `docs/atlas.md`, made by `splatref study failures -o docs`.
+//! `splatref study failures -o docs` writes the page, `docs/atlas.md`.
 
 mod case;
 mod conics;
@@ -36,50 +37,51 @@ use std::time::Duration;
 /// An entry of the atlas.
 #[derive(Clone, Copy, Debug)]
 pub struct Failure {
-    /// How it is called.
+    /// Its short name.
     pub id: &'static str,
-    /// What is seen.
+    /// What you see in the picture.
     pub title: &'static str,
-    /// What is drawn, why it fails, and who says so.
+    /// What is drawn, why it fails, and which paper says so.
     pub why: &'static str,
-    /// What is swept, with its unit.
+    /// The parameter that is swept, with its unit.
     pub swept: &'static str,
-    /// Its values, from where it works to where it does not.
+    /// The values, from those that work to those that do not.
     pub values: &'static [f64],
-    /// What is measured, with its unit.
+    /// The error that is measured, with its unit.
     pub error: &'static str,
     /// An error above this is a failure.
     pub limit: f64,
     /// What cures it.
     pub cure: &'static str,
-    /// Measures a value: as it is, and with the cure.
+    /// Measures a value, without the cure and with it.
     pub at: fn(f64, &Exec) -> Result<[Found; 2]>,
 }
 
-/// What is found at a value.
+/// The result at one value.
 #[derive(Clone, Debug)]
 pub struct Found {
     /// The error.
     pub error: f64,
-    /// The picture, linear RGB: of the scene, or of what goes wrong.
+    /// The picture in linear RGB: the scene, or a drawing of the error.
     pub picture: Plane<[f32; 3]>,
-    /// How long a picture of the scene took; none where the error is of no method's picture.
+    /// How long a picture of the scene took; `None` if the error does not come from a method's
+    /// picture.
     pub time: Option<Duration>,
 }
 
-/// A failure, measured.
+/// A measured failure.
 #[derive(Clone, Debug)]
 pub struct Curve {
-    /// Of which failure.
+    /// The failure.
     pub of: &'static Failure,
-    /// Of each value, as it is.
+    /// The error at each value, without the cure.
     pub plain: Vec<f64>,
-    /// Of each value, with the cure.
+    /// The error at each value, with the cure.
     pub cured: Vec<f64>,
-    /// The index of the first value at which it is broken; none if it never is.
+    /// The index of the first broken value; `None` if it never breaks.
     pub breaks: Option<usize>,
-    /// Pictures just before it breaks, where it is broken, and there with the cure; if it never is, the last
-    /// as it is and with the cure.
+    /// Pictures before it breaks, where it is broken, and there with the cure. If it never breaks:
+    /// the last value without and with the cure.
     pub pictures: Vec<Plane<[f32; 3]>>,
 }
 
@@ -100,7 +102,7 @@ pub fn failures() -> Vec<&'static Failure> {
 }
 
 impl Failure {
-    /// Measures every value. `progress` is told how many of how many values are done.
+    /// Measures every value. `progress` gets how many values are done, and how many there are.
     ///
     /// # Errors
     /// As drawing the scenes.
@@ -128,8 +130,8 @@ impl Failure {
         })
     }
 
-    /// How many times as long a picture takes with the cure, where it breaks: the ratio of medians of
-    /// five by turns; none where no picture is drawn.
+    /// The time of a picture with the cure divided by the time without it, where the entry breaks.
+    /// Both are medians of five, taken by turns. `None` if no picture is drawn.
     ///
     /// # Errors
     /// As drawing the scenes.
@@ -139,7 +141,7 @@ impl Failure {
             for (times, found) in times.iter_mut().zip((self.at)(self.values[at], exec)?) {
                 times.extend(found.time);
             }
-            // What is of no method's picture is not measured again.
+            // Entries without a method's picture have no time, so they are not measured again.
             if times[0].is_empty() {
                 return Ok(None);
             }

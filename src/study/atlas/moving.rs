@@ -1,4 +1,4 @@
-//! Deferred splatting over frames.
+//! Entries about deferred splatting over several frames.
 
 use super::case::{SIZE, both, change, checked, quiet};
 use super::{Failure, Found};
@@ -18,9 +18,11 @@ pub(super) const FAILURES: [Failure; 2] = [
     Failure {
         id: "deferred-motion",
         title: "Holes after a fast turn",
-        why: "A sphere of 20,000 surfels before a sheet, at rest for three frames and then turned, by deferred splatting without its \
-              third pass, a flag a surfel. Pass 1 draws what the last frame saw; where the sphere's surfels were not seen it leaves \
-              no depth, and the sheet shines through between what is new [GBP04, 4.1, Fig. 3].",
+        why: "A sphere of 20,000 surfels in front of a sheet is at rest for three frames, and then \
+              turned. Deferred splatting draws it without the third pass, with a flag for each \
+              surfel. Pass 1 draws the surfels that the last frame saw. Where the sphere's surfels \
+              were not seen, pass 1 leaves no depth, and the sheet shines through between the new \
+              surfels [GBP04, 4.1, Fig. 3].",
         swept: "degrees in a frame",
         values: &[0.0, 0.5, 1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0],
         error: "RMSE, linear RGB, to the picture of EWA",
@@ -31,8 +33,9 @@ pub(super) const FAILURES: [Failure; 2] = [
     Failure {
         id: "deferred-dense",
         title: "More than one surfel for a pixel flickers",
-        why: "A sphere with checks of the side of a pixel, in more and more surfels, the camera going towards it. Deferred splatting draws \
-              the surfel that is nearest at each pixel's centre, and which one that is changes from frame to frame [GBP04, 4.4].",
+        why: "The camera moves towards a sphere that has checks of a pixel and more and more \
+              surfels. Deferred splatting draws the surfel nearest to each pixel's centre, and \
+              that surfel changes from frame to frame [GBP04, 4.4].",
         swept: "surfels a pixel",
         values: &[0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0],
         error: "change that EWA does not show, RMSE, linear RGB",
@@ -42,7 +45,7 @@ pub(super) const FAILURES: [Failure; 2] = [
     },
 ];
 
-/// The sphere is at rest up to this frame, and turned in the next.
+/// The last frame in which the sphere is at rest; it is turned in the next.
 const REST: u32 = 2;
 
 fn turn(degrees: f64, exec: &Exec) -> Result<[Found; 2]> {
@@ -75,7 +78,7 @@ fn turn(degrees: f64, exec: &Exec) -> Result<[Found; 2]> {
     })
 }
 
-/// A sphere that is turned by some degrees about +y after [`REST`], before a sheet.
+/// A sphere in front of a sheet; it turns by some degrees about +y after [`REST`].
 fn sphere_and_sheet(degrees: f64) -> Result<Objects> {
     let geometry = |name: &str, shape: Shape, count| {
         Ok(Geometry {
@@ -100,7 +103,7 @@ fn sphere_and_sheet(degrees: f64) -> Result<Objects> {
     )
 }
 
-/// Frames whose changes are measured, and those before them.
+/// How many frames are measured, and how many frames come before them.
 const FRAMES: [u32; 2] = [4, 2];
 const SIDE: u32 = 128;
 
@@ -133,7 +136,7 @@ fn dense(wanted: f64, exec: &Exec) -> Result<[Found; 2]> {
     Ok([found(&plain)?, found(&cured)?])
 }
 
-/// The pictures of all frames but those before, and what the last took.
+/// The pictures of all measured frames, and the time of the last.
 fn approach(
     scene: &Scene,
     method: Method,

@@ -1,4 +1,5 @@
-//! Formulas that lose digits, and bounds that fall short: errors of no method's picture.
+//! Entries about formulas that lose digits and bounds that are too small. Their errors do not come
+//! from a method's picture.
 
 use super::case::both;
 use super::{Failure, Found};
@@ -14,41 +15,46 @@ pub(super) const FAILURES: [Failure; 3] = [
     Failure {
         id: "ewa-thin",
         title: "The determinant of a thin ellipse cancels",
-        why: "A disc seen nearly edge-on, turned by 45 degrees. Its covariance with the low-pass filter is [[a, b], [b, c]], and the \
-              textbook's q = (c dx^2 - 2 b dx dy + a dy^2) / (a c - b^2): where the ellipse is long and thin a c and b^2 \
-              agree in more and more digits of f32. What is measured is the greatest error of q at 64 points of the \
-              ellipse, as a part of the textbook's q in f64. Pictures: the ellipse stretched to a circle, light where q is right to 0.001 and red where \
-              it is not; around it blue and black.",
+        why: "A disc is seen nearly edge-on, turned by 45 degrees. Its covariance with the \
+              low-pass filter is [[a, b], [b, c]], and the textbook has q = (c dx^2 - 2 b dx dy + \
+              a dy^2) / (a c - b^2). Where the ellipse is long and thin, a c and b^2 agree in more \
+              and more digits of f32. The error is the largest error of q at 64 points of the \
+              ellipse, as a fraction of the textbook's q in f64. Pictures: the ellipse stretched \
+              to a circle, light where q is right to 0.001 and red where it is not; around it blue \
+              and black.",
         swept: "radius, px",
         values: &[1.0, 4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0],
         error: "relative error of q",
         limit: 0.001,
-        cure: "q as this crate writes it, without that difference; see `splat::Footprint`",
+        cure: "q as splatref writes it, without that difference; see `splat::Footprint`",
         at: thin,
     },
     Failure {
         id: "bounds",
         title: "A square of the projected radius does not hold the disc",
-        why: "A disc tilted by 45 degrees, 20 degrees off the axis. The square of side 2 r f / t around its centre, which [BHZK05, 3] gives a \
-              point sprite, is that of a disc that faces the camera at the centre's depth; the near half of a tilted one \
-              projects to more. Pictures: the disc is light in the square and red outside; blue is the square beside the disc.",
+        why: "A disc is tilted by 45 degrees, 20 degrees off the axis. [BHZK05, 3] gives a point \
+              sprite the square of side 2 r f / t around its centre. That square fits a disc at \
+              the centre's depth that faces the camera, but the near half of a tilted disc \
+              projects to more. Pictures: the disc is light inside the square and red outside; \
+              blue is the rest of the square.",
         swept: "distance, radii",
         values: &[64.0, 32.0, 16.0, 8.0, 4.0, 2.0, 1.5, 1.25],
         error: "pixels of the disc outside, per mille",
         limit: 10.0,
-        cure: "bounds of the projected outline, which are a guarantee here; see `splat::bounds`",
+        cure: "bounds of the projected outline, which splatref guarantees; see `splat::bounds`",
         at: bounds,
     },
     Failure {
         id: "bounds-angle",
         title: "Off the axis that square falls short even of a disc that faces the eye",
-        why: "A disc at a depth of four radii, its normal towards the eye, farther and farther off the axis of a picture plane that stays. \
-              A length off the axis projects to more than r f / t. Pictures: as before.",
+        why: "A disc at a depth of four radii turns its normal towards the eye, and moves farther \
+              and farther off the axis of a fixed picture plane. Off the axis a length projects to \
+              more than r f / t. Pictures: as before.",
         swept: "angle to the axis, degrees",
         values: &[0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0],
         error: "pixels of the disc outside, per mille",
         limit: 10.0,
-        cure: "bounds of the projected outline, which are a guarantee here; see `splat::bounds`",
+        cure: "bounds of the projected outline, which splatref guarantees; see `splat::bounds`",
         at: bounds_off_axis,
     },
 ];
@@ -60,7 +66,7 @@ fn thin(radius: f64, _: &Exec) -> Result<[Found; 2]> {
     both(|cured| edge_on(radius, cured))
 }
 
-/// A thin ellipse: q as this crate has it, or the textbook's.
+/// A thin ellipse, with the crate's q or the textbook's.
 fn edge_on(radius: f64, cured: bool) -> Result<Found> {
     let half = std::f64::consts::FRAC_1_SQRT_2;
     let long = 1.0 / (1.0 + THIN * THIN).sqrt();
@@ -69,18 +75,18 @@ fn edge_on(radius: f64, cured: bool) -> Result<Found> {
     let side = f64::from(SIDE);
     let pose = Pose { eye: DVec3::Z * 1e4, target: DVec3::ZERO, up: DVec3::Y };
     let camera = Camera::new(SIDE, SIDE, pose, Lens::Orthographic(side))?;
-    // A disc of radius r is of variance r^2: the textbook's.
+    // A disc of radius r has variance r^2, as in the textbook.
     let kernel = Kernel { cutoff: 1.0, ..Kernel::DEFAULT };
     let splat = splat::<f32>(&camera, &kernel, (DVec3::ZERO, normal, radius))?.footprint;
     let low_pass = f64::from(kernel.low_pass);
     let [longer, shorter] = [radius, radius * THIN * long].map(|r| (r * r + low_pass).sqrt());
-    // q at a point of the ellipse's axes, in f32 and in f64; both the same point: what f32 holds.
+    // q at a point of the ellipse's axes, in f32 and in f64, at the same point in f32.
     let both = |u: f64, v: f64| {
         let (u, v) = (longer * u * half, shorter * v * half);
         let (dx, dy) = ((u + v) as f32, (u - v) as f32);
         let axes = [radius * half, radius * half * THIN * long].map(|v| v as f32);
         let double = textbook(axes.map(f64::from), low_pass, [dx.into(), dy.into()]);
-        // The raster's y goes down.
+        // y points down in the raster.
         let single =
             if cured { splat.form(dx, -dy) } else { textbook(axes, kernel.low_pass, [dx, dy]) };
         [single.into(), double]
@@ -90,7 +96,7 @@ fn edge_on(radius: f64, cured: bool) -> Result<Found> {
         let angle = std::f64::consts::TAU * f64::from(i) / 64.0;
         error(both(cos(angle), sin(angle)))
     });
-    // What is no number is as wrong as can be.
+    // NaN counts as the largest error.
     let known = errors.map(|error| if error.is_nan() { f64::INFINITY } else { error });
     let picture = Plane::from_values(
         SEEN,
@@ -110,7 +116,8 @@ fn edge_on(radius: f64, cured: bool) -> Result<Found> {
 /// The side of the picture of the thin ellipse, stretched to a circle.
 const SEEN: u32 = 180;
 
-/// q of a covariance of the half axes a (1, 1) and b (1, -1) and the low-pass filter, by its determinant.
+/// q from the determinant of the covariance with the half axes a (1, 1) and b (1, -1) and the
+/// low-pass filter.
 fn textbook<R: Real>([a, b]: [R; 2], low_pass: R, [dx, dy]: [R; 2]) -> R {
     let square = a * a + b * b;
     let (diagonal, across) = (square + low_pass, a * a - b * b);
@@ -140,9 +147,9 @@ fn splat<R: Exact>(
     }
 }
 
-/// The disc before a camera whose picture holds it.
+/// The disc in front of a camera whose picture contains it.
 fn bounds(distance: f64, _: &Exec) -> Result<[Found; 2]> {
-    // The disc is about half the picture, wherever it is.
+    // The disc fills about half the picture, wherever it is.
     let focal = 0.25 * f64::from(SIDE) * distance;
     let camera = ahead(SIDE, focal.at_most(0.25 * f64::from(SIDE) * 4.0))?;
     Ok(beyond_the_square(&camera, (distance, tilted(distance, DVec3::X))))
@@ -160,7 +167,8 @@ fn bounds_off_axis(degrees: f64, _: &Exec) -> Result<[Found; 2]> {
     Ok(beyond_the_square(&camera, (DISTANCE, (center, normal))))
 }
 
-/// The pixels of a disc of the radius 1 at a depth that are beyond the square, and with the cure beyond the bounds, per mille.
+/// The pixels of a disc of radius 1 at a depth that lie outside the square, and with the cure
+/// outside the bounds, per mille.
 fn beyond_the_square(camera: &Camera, (distance, disc): (f64, (DVec3, DVec3))) -> [Found; 2] {
     let focal = f64::from(camera.fx);
     let (center, _) = disc;
@@ -177,32 +185,33 @@ fn beyond_the_square(camera: &Camera, (distance, disc): (f64, (DVec3, DVec3))) -
     ]
 }
 
-/// Where the middle of a pixel is beside the axis, in pixels.
+/// The distance of a pixel's middle from the axis, in pixels.
 fn from_the_axis(camera: &Camera, at: [u32; 2]) -> [f64; 2] {
     let [x, y] = at.map(|v| f64::from(v) + 0.5);
     [x - f64::from(camera.cx), y - f64::from(camera.cy)]
 }
 
-/// A camera in the origin that looks along -z at a square picture.
+/// A camera at the origin that looks along -z, with a square picture.
 pub(super) fn ahead(side: u32, focal: f64) -> Result<Camera> {
     let pose = Pose { eye: DVec3::ZERO, target: -DVec3::Z, up: DVec3::Y };
     Camera::new(side, side, pose, Lens::Focal(focal))
 }
 
-/// Centre and normal of a disc of the radius 1 before [`ahead`], tilted by 45 degrees, 20 degrees off the axis;
-/// both away from the axis in the same direction.
+/// The centre and the normal of a disc of radius 1 in front of [`ahead`], tilted by 45 degrees and
+/// 20 degrees off the axis; both point away from the axis in the same direction.
 pub(super) fn tilted(distance: f64, side: DVec3) -> (DVec3, DVec3) {
     let (away, tilt) = (20_f64.to_radians(), 45_f64.to_radians());
     (side * (distance * tan(away)) - DVec3::Z * distance, side * sin(tilt) + DVec3::Z * cos(tilt))
 }
 
-/// The bounds that this crate has of a disc of the radius 1; none if it is not drawn.
+/// The crate's bounds of a disc of radius 1; `None` if it is not drawn.
 pub(super) fn visible(camera: &Camera, (center, normal): (DVec3, DVec3)) -> Option<Rect> {
     let kernel = Kernel { outline: Outline::RayCast, low_pass: 0.0, cutoff: 1.0 };
     splat::<f32>(camera, &kernel, (center, normal, 1.0)).ok().map(|splat| splat.bounds)
 }
 
-/// How much of a disc of the radius 1 is not held, per mille of its pixels in a picture, and which.
+/// How much of a disc of radius 1 is outside, per mille of its pixels in a picture, with a picture
+/// of which.
 pub(super) fn outside(
     camera: &Camera,
     (center, normal): (DVec3, DVec3),
@@ -225,7 +234,7 @@ pub(super) fn outside(
     Found { error, picture, time: None }
 }
 
-/// What a pixel shows: light where a disc is found, red where it is missed, blue where it is not.
+/// The colour of a pixel: light where the disc is found, red where it is missed, blue beside it.
 pub(super) fn shown(disc: bool, found: bool) -> [f32; 3] {
     match (disc, found) {
         (true, true) => [0.75, 0.75, 0.75],

@@ -1,4 +1,4 @@
-//! Points in an order, made of a mesh, and what a view draws of them.
+//! Ordered points from a mesh, and the points that a view draws.
 
 use super::case::quiet;
 use crate::error::Result;
@@ -19,8 +19,8 @@ pub fn mesh(triangles: Triangles) -> Scene {
     Scene { primitives, ..Scene::lit("mesh", Surfels::none()) }
 }
 
-/// So many of the points that are seen of a mesh from directions, in pictures of a side, in the greedy order
-/// from point 0. Their radii are chosen by views.
+/// Samples a mesh from directions, in pictures of a side, and orders this many points greedily from
+/// point 0. Views choose their radii.
 ///
 /// # Errors
 /// As [`candidates`] and [`Greedy::order`].
@@ -38,7 +38,7 @@ pub fn order(
     Ok(Cloud { radius: Some(vec![1.0; cloud.position.len()]), ..cloud })
 }
 
-/// The same along the surface: neighbours are within two pixels.
+/// The same with distances along the surface; neighbours are within two pixels.
 ///
 /// # Errors
 /// As [`candidates`], [`Graph::new`] and [`Greedy::along`].
@@ -57,7 +57,7 @@ pub fn order_along(
     Ok(Cloud { radius: Some(vec![1.0; cloud.position.len()]), ..cloud })
 }
 
-/// A geometry of points in an order, and of the triangles that take their place close by.
+/// A geometry of ordered points, with the triangles that replace them nearby.
 ///
 /// # Errors
 /// As [`Surfels::new`] and [`Geometry::with_prefix`].
@@ -68,7 +68,7 @@ pub fn geometry(order: Cloud, primitives: Primitives) -> Result<Geometry> {
     plain.with_prefix(estimate)
 }
 
-/// An object of a geometry for each place.
+/// An object of one geometry at each place.
 ///
 /// # Errors
 /// As [`Objects::new`].
@@ -82,7 +82,7 @@ pub fn objects(geometry: Geometry, places: &[Similarity]) -> Result<Objects> {
     Objects::new(vec![geometry], all.collect(), [0.75; 3].into())
 }
 
-/// What a camera asks of objects, as a scene of surfels.
+/// The surfels of objects that a camera needs, as a flat scene.
 ///
 /// # Errors
 /// As [`Objects::seen_from`] and [`flatten()`].
@@ -92,7 +92,7 @@ pub fn seen(objects: &Objects, surfel_size: f32, camera: &Camera, exec: &Exec) -
     flatten(&Scene { objects: Some(objects), ..Scene::lit("order", Surfels::none()) }, exec)
 }
 
-/// A torus of the radii 1 and 0.4 around +y, 36,864 triangles.
+/// A torus with the radii 1 and 0.4 around +y, 36,864 triangles.
 ///
 /// # Errors
 /// As [`Triangles::new`].

@@ -9,12 +9,12 @@ use std::fmt::Write;
 /// The folder of charts and pictures beside the page.
 pub const PICTURES: &str = "atlas";
 
-/// What the page is made of.
+/// The files of the page.
 #[derive(Clone, Debug)]
 pub struct Files {
-    /// The page, Markdown.
+    /// The page in Markdown.
     pub text: String,
-    /// A chart of each failure, by its name.
+    /// A chart for each failure, by its name.
     pub charts: Vec<(&'static str, Drawing)>,
     /// Pictures side by side, linear RGB, of each failure that has some.
     pub pictures: Vec<(&'static str, Plane<[f32; 3]>)>,
@@ -23,15 +23,15 @@ pub struct Files {
 const INTRODUCTION: &str = "\
 # The atlas of failures
 
-Where each method breaks, measured. Every entry is a scene, one parameter that is swept, and an error; it
-breaks at the first value whose error is above the limit. The same sweep with the cure is beside it.
-Pictures: just before it breaks, where it is broken, and there with the cure. What the page calls the truth is the exact
-surface at 8 x 8 samples a pixel, unless the error names another picture.
+This page shows where each method breaks, and what cures it. Every entry sweeps one parameter of a scene, and
+measures an error. The entry breaks at the first value whose error exceeds the limit. The row below shows the same
+sweep with the cure. The pictures show the last value before it breaks, the broken value, and the broken value with
+the cure. The truth is the exact surface at 8 x 8 samples a pixel, unless the error names another picture.
 
-This page is made by `splatref study failures -o docs`. Its errors are the same on every machine, and a test holds
-the page against them. The times that a cure costs are of the machine that made the page.
+The command `splatref study failures -o docs` writes this page. Its errors are the same on every machine, and a test
+compares the page with them. The cost of a cure was measured on the machine that wrote the page.
 
-A number here is that of its scene. Another scene breaks elsewhere; `splatref study SCENE` tells where.
+Each number belongs to its scene. Another scene breaks elsewhere; `splatref study SCENE` shows where.
 ";
 
 /// How lines begin whose numbers are of one machine.
@@ -96,7 +96,7 @@ fn chart(curve: &Curve) -> Drawing {
     sweep.draw()
 }
 
-/// Pictures side by side, a white gap between them; none of none.
+/// Joins pictures side by side with a white gap; `None` without pictures.
 #[must_use]
 pub fn beside(pictures: &[Plane<[f32; 3]>]) -> Option<Plane<[f32; 3]>> {
     const GAP: u32 = 6;
@@ -116,7 +116,7 @@ pub fn beside(pictures: &[Plane<[f32; 3]>]) -> Option<Plane<[f32; 3]>> {
     Some(all)
 }
 
-/// A page without what is of one machine.
+/// The page without the lines that differ between machines.
 #[cfg(test)]
 pub(super) fn lasting(page: &str) -> String {
     page.lines().filter(|line| !line.starts_with(COST)).collect::<Vec<_>>().join("\n")

@@ -1,4 +1,4 @@
-//! Prefixes of orders \[BJFM19, 6\], and meshes as surfels.
+//! Entries about prefixes of orders \[BJFM19, 6\], and about meshes drawn as surfels.
 
 use super::case::{Case, SIZE, both, quiet};
 use super::orders::{geometry, mesh, objects, order, order_along, seen, torus};
@@ -18,8 +18,9 @@ pub(super) const FAILURES: [Failure; 5] = [
     Failure {
         id: "mesh-paddles",
         title: "Vertices of thin triangles are paddles",
-        why: "A cylinder of 64 columns whose triangles are longer and longer, its vertices drawn as surfels. The radius that is derived \
-              is the longest edge, so that discs cover; those at long edges stand out over the silhouette.",
+        why: "The vertices of a cylinder with 64 columns are drawn as surfels, and its triangles \
+              are longer and longer. The derived radius is the longest edge, so that discs cover \
+              the surface. Discs at long edges therefore stick out over the silhouette.",
         swept: "length of a triangle, its widths",
         values: &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0],
         error: "spill, per mille",
@@ -30,8 +31,9 @@ pub(super) const FAILURES: [Failure; 5] = [
     Failure {
         id: "blue-thin",
         title: "Walls that are nearer to each other than surfels are have holes",
-        why: "A plate of 2 x 2 in 500 surfels, both sides together, seen from the front by the method blue. The order keeps surfels apart in \
-              space, also those on two sides [BJFM19, 6].",
+        why: "A plate of 2 x 2 in 500 surfels on both sides together is seen from the front, by \
+              the method blue. The order keeps surfels apart in space, even two on different sides \
+              [BJFM19, 6].",
         swept: "thickness, distances of surfels",
         values: &[4.0, 2.0, 1.0, 0.5, 0.25, 0.0625],
         error: "holes, per mille",
@@ -42,33 +44,36 @@ pub(super) const FAILURES: [Failure; 5] = [
     Failure {
         id: "blue-prefix",
         title: "Prefixes too short for their estimate have holes",
-        why: "A torus in an order of 20,000, from so far away that few surfels are asked for. The radius of a prefix is \
-              estimated from the first 1,000, as if each stood for one share of the area [BJFM19, 4.1]; a few on a curved \
-              surface do not.",
+        why: "A torus in an order of 20,000 is so far away that few surfels are needed. The radius \
+              of a prefix is estimated from the first 1,000 surfels, as if each had the same share \
+              of the area [BJFM19, 4.1]. A few surfels on a curved surface do not.",
         swept: "surfels asked for",
         values: &[10_000.0, 1000.0, 300.0, 100.0, 30.0, 10.0, 3.0],
         error: "holes, per mille",
         limit: 5.0,
-        cure: "never fewer than 100 surfels: `p_min` of no paper; a smaller `--surfel-size` for what is small",
+        cure: "at least 100 surfels, a `p_min` that no paper has; or a smaller `--surfel-size` for \
+               small objects",
         at: short,
     },
     Failure {
         id: "blue-long",
         title: "Long objects have too many surfels far away",
-        why: "A bar seen along it, in discs of 8 px. An object has one prefix, chosen for its nearest point [BJFM19, 6].",
+        why: "A bar is seen along its length, in discs of 8 px. An object has one prefix, and its \
+              nearest point chooses the length of the prefix [BJFM19, 6].",
         swept: "length, widths",
         values: &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0],
         error: "surfels a pixel in the farthest eighth, by the nearest",
         limit: 3.0,
-        cure: "the bar as objects as long as it is wide",
+        cure: "split the bar into objects as long as they are wide",
         at: long,
     },
     Failure {
         id: "blue-controller",
         title: "The frame-time controller swings",
-        why: "Frames that take four times as long from one moment on, their times known some frames late. Each late time is answered \
-              again by a step of the size [BJFM19, 4.3]. Pictures: the sizes of the last 100 frames, a column each, light \
-              up to the size; the height of the picture is the largest size there may be.",
+        why: "From one moment on frames take four times as long, and their times are known some \
+              frames late. The controller answers each late time again with a step of the size \
+              [BJFM19, 4.3]. Pictures: the sizes of the last 100 frames, a column each, light up \
+              to the size; the height of the picture is the largest possible size.",
         swept: "frames until a time is known",
         values: &[0.0, 1.0, 2.0, 3.0, 4.0, 6.0],
         error: "largest size by smallest, of the last 100 of 1,000 frames",
@@ -82,7 +87,7 @@ fn blue() -> Method {
     blue::Settings::default().into()
 }
 
-/// The pictures of what a view draws, as it is and with the cure, against the triangles, by holes.
+/// Measures the holes in a view's picture against the triangles, without the cure and with it.
 fn against(drawn: [Scene; 2], whole: &Scene, camera: Camera, exec: &Exec) -> Result<[Found; 2]> {
     let [plain, cured] = drawn.map(|scene| Case { scene, camera, method: blue(), grouping: None });
     let truth = plain.truth(&[Surface::Triangles(whole.primitives.triangles.clone())], exec)?;
@@ -94,13 +99,13 @@ fn camera(eye: DVec3, side: u32, lens: Lens) -> Result<Camera> {
 }
 
 fn thin(gap: f64, exec: &Exec) -> Result<[Found; 2]> {
-    // 500 surfels on both sides, 8 units: about 0.136 apart.
+    // 500 surfels on both sides, 8 area units: about 0.136 apart.
     const APART: f64 = 0.136;
     let plate = cuboid(DVec3::new(1.0, 1.0, gap * APART / 2.0))?;
     let camera = camera(DVec3::new(0.0, 0.0, 5.0), 256, Lens::FieldOfView(30.0))?;
     let drawn = |order| {
         let objects = objects(geometry(order, Primitives::default())?, &[Similarity::IDENTITY])?;
-        // So small that all surfels are asked for, as large as they cover with.
+        // Small enough that all surfels are needed, and large enough that they cover the surface.
         seen(&objects, 0.125, &camera, exec)
     };
     let plain = drawn(order(&plate, &Directions::Cube, 384, 500, exec)?)?;
@@ -115,7 +120,7 @@ fn short(count: f64, exec: &Exec) -> Result<[Found; 2]> {
     let pose = DVec3::new(2.0, 3.0, 5.0);
     let camera = camera(pose, 256, Lens::Orthographic(3.2))?;
     let drawn = |count: f64| {
-        // r of the prefix asked for, as a size in this picture.
+        // The radius r of the chosen prefix, as a size in this picture.
         let radius = objects.geometries()[0].prefix().map_or(0.0, |prefix| {
             let estimate = prefix.estimate();
             f64::from(estimate.distance) * (f64::from(estimate.count) / count).sqrt()
@@ -131,7 +136,7 @@ fn long(length: f64, exec: &Exec) -> Result<[Found; 2]> {
     Ok([bar(length, 1, exec)?, bar(length, length as u32, exec)?])
 }
 
-/// A bar of so many pieces.
+/// A bar of this many pieces.
 fn bar(length: f64, pieces: u32, exec: &Exec) -> Result<Found> {
     let piece = length / f64::from(pieces);
     let bar = cuboid(DVec3::new(0.5, 0.5, piece / 2.0))?;
@@ -147,7 +152,8 @@ fn bar(length: f64, pieces: u32, exec: &Exec) -> Result<Found> {
     let pose = Pose { eye, target: DVec3::Z * (length / 2.0), up: DVec3::Y };
     let camera = Camera::new(256, 256, pose, Lens::FieldOfView(20.0))?;
     let scene = seen(&objects, 8.0, &camera, exec)?;
-    // A piece of a side between two depths has 1 / t^2 of its area in pixels, times one number for all.
+    // A piece of a side between two depths has 1 / t^2 of its area in pixels, times a common
+    // factor.
     let density = |near: bool| {
         let eighth = |z: f64| if near { z > 0.375 * length } else { z < -0.375 * length };
         let all = scene.surfels.position().iter().map(|p| f64::from(p.z));
@@ -161,12 +167,13 @@ fn bar(length: f64, pieces: u32, exec: &Exec) -> Result<Found> {
     Ok(Found { error, picture: frame.color("")?.clone(), time: Some(time) })
 }
 
-/// Surfels that take `s^-2` of the target's time at the size 1.25, and from frame 0 on four times as long.
+/// Simulates surfels that take `s^-2` of the target's time at the size 1.25, and four times as long
+/// from frame 0 on.
 fn swing(late: f64, _: &Exec) -> Result<[Found; 2]> {
     both(|cured| swings(late as usize, cured))
 }
 
-/// With the cure the controller is asked when the time of its last answer is known.
+/// With the cure, the controller is asked only when the time of its last answer is known.
 fn swings(late: usize, cured: bool) -> Result<Found> {
     let controller = Controller::new(1.0)?;
     let mut sizes = vec![1.25_f32; late + 1];
@@ -186,7 +193,7 @@ fn swings(late: usize, cured: bool) -> Result<Found> {
     Ok(Found { error, picture: columns(last, controller.sizes[1]), time: None })
 }
 
-/// Sizes as columns of light two pixels wide, as high as the picture where a size is `most`.
+/// Draws sizes as columns of light two pixels wide; the size `most` has the height of the picture.
 fn columns(sizes: &[f32], most: f32) -> Plane<[f32; 3]> {
     const HIGH: u32 = 96;
     let row = |y: u32| {
@@ -217,8 +224,8 @@ fn paddles(aspect: f64, exec: &Exec) -> Result<[Found; 2]> {
     Ok([plain, Case { scene: scene(facets), ..case }.against(&truth, "spill", exec)?])
 }
 
-/// A cylinder of the radius 1, about 3 high, of so many columns around, and as many rows as have triangles so
-/// many times as long as they are wide.
+/// A cylinder of radius 1, about 3 high, with this many columns around. The rows are chosen so that
+/// triangles are this many times as long as they are wide.
 fn cylinder(columns: u32, aspect: f64) -> Cloud {
     let width = std::f64::consts::TAU / f64::from(columns);
     let rows = (3.0 / (width * aspect)).round() as u32;
@@ -245,7 +252,7 @@ fn cylinder(columns: u32, aspect: f64) -> Cloud {
     cloud
 }
 
-/// A box around the origin, with normals of its faces.
+/// A box around the origin; vertices have the normals of its faces.
 fn cuboid(half: DVec3) -> Result<Scene> {
     let mut vertices = Vertices::default();
     let mut corners = Vec::new();

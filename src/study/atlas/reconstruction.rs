@@ -1,4 +1,4 @@
-//! Reconstruction in image space: pyramids, templates, tubes.
+//! Entries about reconstruction in image space: pyramids, templates, tubes.
 
 use super::case::{Case, SIZE, change, exact};
 use super::{Failure, Found};
@@ -16,34 +16,36 @@ pub(super) const FAILURES: [Failure; 5] = [
     Failure {
         id: "pyramid-shift",
         title: "The pyramid's picture crawls when the camera moves",
-        why: "A sphere of 10,000 surfels by pull and push [MKC08], the camera shifted by part of a pixel. Centres fall into \
-              other pixels, and these into other cells of the levels, whose averages change. What is measured is the \
-              change of the picture less the change of the true picture.",
+        why: "Pull and push draws a sphere of 10,000 surfels [MKC08], and the camera shifts by a \
+              fraction of a pixel. Centres then fall into other pixels, and pixels into other \
+              cells of the levels, so the averages change. The error is the change of the picture \
+              minus the change of the true picture.",
         swept: "shift, px",
         values: &[0.0, 0.03125, 0.0625, 0.125, 0.25, 0.5, 0.75],
         error: "change that is no motion, RMSE, linear RGB",
         limit: 0.005,
-        cure: "no setting of the pyramid; `--method ewa`",
+        cure: "none within the pyramid; use `--method ewa`",
         at: shift,
     },
     Failure {
         id: "pyramid-silhouette",
         title: "Averaged ellipses spill over the silhouette",
-        why: "A sphere of fewer and fewer surfels. In a cell of a higher level the centres of several ellipses are one, \
-              their average, which reaches beyond what either covers.",
+        why: "A sphere has fewer and fewer surfels. A cell of a higher level merges the centres of \
+              several ellipses into their average, which reaches beyond each of them.",
         swept: "radius of a surfel, px",
         values: &[1.0, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0],
         error: "spill, per mille",
         limit: 10.0,
-        cure: "no setting of the pyramid; `--method ewa`",
+        cure: "none within the pyramid; use `--method ewa`",
         at: silhouette,
     },
     Failure {
         id: "template-cover",
         title: "Regular holes in a plain sphere, at some sizes of the picture",
-        why: "A sphere of 2,500 surfels by templates of 5 x 5 at the level of the paper's words, D the projected radius \
-              [MOC08, eq. 1]. That level cuts ellipses to half their radius: just before a disc moves to the next \
-              level it does not reach its neighbours.",
+        why: "A sphere of 2,500 surfels is drawn by templates of 5 x 5, at the level in the \
+              paper's words, D the projected radius [MOC08, eq. 1]. That level cuts ellipses to \
+              half their radius: just before a disc moves to the next level, it does not reach its \
+              neighbours.",
         swept: "rows of the picture",
         values: &[150.0, 175.0, 200.0, 225.0, 250.0, 275.0, 300.0],
         error: "holes, per mille",
@@ -54,26 +56,29 @@ pub(super) const FAILURES: [Failure; 5] = [
     Failure {
         id: "template-mirror",
         title: "A mirrored scene gives another picture",
-        why: "Spheres of more and more surfels and the same mirrored. The ternary test of a template compares with \
-              what was gathered before [MOC08, 3.1], so the order decides among ellipses that overlap in depth.",
+        why: "Spheres of more and more surfels are compared with their mirror image. The ternary \
+              test of a template compares with the samples gathered before [MOC08, 3.1], so the \
+              order decides among ellipses that overlap in depth.",
         swept: "surfels",
         values: &[100.0, 300.0, 1000.0, 3000.0, 10_000.0, 30_000.0],
         error: "normals that turn by more than a degree, per mille",
         limit: 1.0,
-        cure: "no setting of the template; `--method ewa`",
+        cure: "none within the template; use `--method ewa`",
         at: mirror,
     },
     Failure {
         id: "tube-sign",
         title: "Tangents of alternating sign would cancel",
-        why: "Three quarters of a ring as a tube whose vertices carry tangents, every second one reversed. Averaged as they are [MKC08, 4.3], \
-              tangents of opposite signs are no direction. Here a tangent is an axis: each is turned to the foremost one's side before they \
-              are averaged, so the picture is that of tangents that agree. It must stay so.",
+        why: "Three quarters of a ring is drawn as a tube. Its vertices carry tangents, and every \
+              second tangent is reversed. Averaged as they are [MKC08, 4.3], tangents of opposite \
+              signs cancel. Here a tangent is an axis: each is turned to the foremost tangent's \
+              side before averaging, so the picture equals the picture with agreeing tangents. \
+              This entry must not break.",
         swept: "vertices",
         values: &[5.0, 9.0, 17.0, 33.0, 65.0, 129.0, 257.0],
         error: "RMSE, linear RGB, to the picture of tangents that agree",
         limit: 0.001,
-        cure: "none is needed: see `method::pyramid::pull`",
+        cure: "none is needed; see `method::pyramid::pull`",
         at: tube,
     },
 ];
@@ -106,9 +111,9 @@ fn shift(by: f64, exec: &Exec) -> Result<[Found; 2]> {
     Ok([found(pull_push())?, found(splatting())?])
 }
 
-/// How much more two pictures change than the true ones do.
+/// How much more two pictures change than the two true pictures.
 fn crawl(drawn: [&Frame<f32>; 2], truth: [&Frame<f32>; 2]) -> Result<f64> {
-    // Silhouettes jump in every picture that has one sample a pixel.
+    // Silhouettes jump in every picture with one sample a pixel.
     let inside = drawn.iter().chain(&truth).map(|frame| {
         let alpha = frame.scalar("A")?;
         Ok(regions(alpha.values(), frame.width as usize))
@@ -123,7 +128,7 @@ fn crawl(drawn: [&Frame<f32>; 2], truth: [&Frame<f32>; 2]) -> Result<f64> {
 }
 
 fn silhouette(pixels: f64, exec: &Exec) -> Result<[Found; 2]> {
-    // The radius of n surfels on the sphere is sqrt(4 pi / n).
+    // n surfels on the sphere have the radius sqrt(4 pi / n).
     let case = Case::of_shape(Shape::Sphere, 1000, pull_push())?;
     let radius = pixels * 4.0 / f64::from(case.camera.fy);
     let count = (4.0 * std::f64::consts::PI / (radius * radius)).round() as usize;
@@ -151,7 +156,7 @@ fn mirror(surfels: f64, exec: &Exec) -> Result<[Found; 2]> {
 
 fn mirrored(surfels: f64, method: Method, exec: &Exec) -> Result<Found> {
     let mut case = Case::of_shape(Shape::Sphere, surfels as usize, method)?;
-    // Cells of all levels mirror too.
+    // The cells of all levels are mirrored too.
     case.camera =
         Camera::new(256, 256, Shape::Sphere.default_pose(), Shape::Sphere.default_lens())?;
     let (upright, time) = case.draw(exec)?;
@@ -167,8 +172,8 @@ fn mirrored(surfels: f64, method: Method, exec: &Exec) -> Result<Found> {
     Ok(Found { error, picture: upright.color("")?.clone(), time: Some(time) })
 }
 
-/// Pixels whose normals, mirrored back, differ by more than a degree, or that one picture alone covers, per mille of
-/// those that either covers.
+/// The pixels whose mirrored normals differ by more than a degree, or that only one picture covers,
+/// per mille of the pixels that either covers.
 fn turned(upright: &Frame<f32>, mirrored: &Frame<f32>) -> Result<f64> {
     let normals = |frame: &Frame<f32>| -> Vec<DVec3> {
         let Some(Samples::Vector(plane)) = frame.plane("normal") else { return Vec::new() };
@@ -198,7 +203,8 @@ fn tube(vertices: f64, exec: &Exec) -> Result<[Found; 2]> {
     Ok([found(&alternating)?, found(&agreeing)?])
 }
 
-/// Three quarters of a ring as a tube of so many vertices; the tangent of every second one times `sign`.
+/// Three quarters of a ring as a tube with this many vertices; every second tangent is multiplied
+/// by `sign`.
 fn ring(count: u32, sign: f32) -> Result<Case> {
     let [width, height] = SIZE;
     let pose = Pose { eye: DVec3::Z * 5.0, target: DVec3::ZERO, up: DVec3::Y };

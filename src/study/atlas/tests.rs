@@ -1,4 +1,4 @@
-//! The page in `docs/` is what the command writes, and says what is measured.
+//! Compares the page in `docs/` with the page that the command writes, and with new measurements.
 
 use super::page::lasting;
 use super::*;
@@ -9,7 +9,7 @@ fn exec() -> Exec {
     Exec::new(2, 32).unwrap()
 }
 
-/// Where the page of the crate is.
+/// The folder of the crate's page.
 fn docs() -> &'static Path {
     Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/docs"))
 }
@@ -25,7 +25,8 @@ fn every_failure_has_a_name_and_a_sweep() {
     }
 }
 
-/// All that the page says of errors, and its charts; the page is blessed by `splatref study failures -o docs`.
+/// Checks every error on the page, and its charts; `splatref study failures -o docs` blesses the
+/// page.
 #[test]
 fn the_page_is_what_is_measured() {
     let curves = failures().into_iter().map(|failure| {

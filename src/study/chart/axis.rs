@@ -1,16 +1,16 @@
-//! Where values lie on the page.
+//! Linear axes: where values lie on the page.
 
-/// A linear axis: the values at its ends, and where these are in px.
+/// A linear axis: the values at its ends, and the places of the ends in px.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Axis {
     /// The value at the first end, and the value at the last, which is greater.
     pub values: [f64; 2],
-    /// Where they are.
+    /// The places of the ends.
     pub places: [f64; 2],
 }
 
 impl Axis {
-    /// An axis from 0 to at least a value: its end is a [tick](Self::ticks).
+    /// An axis from 0 that includes a value; its end is a [tick](Self::ticks).
     #[must_use]
     pub fn from_zero(most: f64, places: [f64; 2]) -> Self {
         let step = step(most);
@@ -18,7 +18,7 @@ impl Axis {
         Self { values: [0.0, if last > 0.0 && last.is_finite() { last } else { 1.0 }], places }
     }
 
-    /// Where a value lies.
+    /// The place of a value.
     #[must_use]
     pub fn at(&self, value: f64) -> f64 {
         let ([first, last], [from, to]) = (self.values, self.places);
@@ -34,7 +34,7 @@ impl Axis {
         (low..=high).map(|i| i as f64 * step).collect()
     }
 
-    /// A tick in words, with as many digits as the distance of ticks has.
+    /// The text of a tick, with as many digits as the distance between ticks needs.
     #[must_use]
     pub fn word(&self, tick: f64) -> String {
         let mut step = step(self.values[1] - self.values[0]);
@@ -47,8 +47,8 @@ impl Axis {
     }
 }
 
-/// The least of 1, 2 and 5 times a power of ten, from 1e-9 to 5e12, of which at most 10 are in a length; of a
-/// greater length a tenth.
+/// The smallest of 1, 2 and 5 times a power of ten, from 1e-9 to 5e12, that fits at most 10 times
+/// into a length; a tenth of a longer length.
 fn step(length: f64) -> f64 {
     let steps = (-9..=12).flat_map(|power| [1, 2, 5].map(|digit| format!("{digit}e{power}")));
     let mut steps = steps.filter_map(|step| step.parse::<f64>().ok());

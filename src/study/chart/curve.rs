@@ -1,4 +1,4 @@
-//! Errors over a sweep: a line for each series, its values at equal distances in their order.
+//! Charts of a sweep: one line for each series, with values at equal distances in their order.
 
 use super::axis::Axis;
 use super::{Anchor, COLORS, DASHES, Drawing, GRID, INK, Label, Stroke};
@@ -8,33 +8,33 @@ use super::{Anchor, COLORS, DASHES, Drawing, GRID, INK, Label, Stroke};
 pub struct Sweep {
     /// The title.
     pub title: String,
-    /// What is swept and what is measured, each with its unit.
+    /// The swept parameter and the measured error, each with its unit.
     pub axes: [String; 2],
-    /// The values that are swept, in words.
+    /// The swept values, as text.
     pub at: Vec<String>,
-    /// The lines, at most as many as there are [`COLORS`].
+    /// The lines, at most one for each of [`COLORS`].
     pub series: Vec<Series>,
-    /// Above this value is too much.
+    /// The limit; values above it are failures.
     pub limit: f64,
 }
 
 /// A line of a chart.
 #[derive(Clone, Debug)]
 pub struct Series {
-    /// Its name in the key.
+    /// Its name in the legend.
     pub name: String,
-    /// One for each that is swept.
+    /// One value for each swept value.
     pub values: Vec<f64>,
 }
 
-/// Width and height, and left, top, right and bottom of the plot.
+/// The width and height, and the left, top, right and bottom of the plot.
 const SIZE: [u32; 2] = [640, 320];
 const PLOT: [f64; 4] = [84.0, 66.0, 620.0, 256.0];
 const SMALL: f64 = 11.0;
 const KEY: f64 = 150.0;
 
 impl Sweep {
-    /// The chart. Values that are not finite are at the top.
+    /// Draws the chart. Values that are not finite are drawn at the top.
     #[must_use]
     pub fn draw(&self) -> Drawing {
         let [left, top, right, bottom] = PLOT;

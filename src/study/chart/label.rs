@@ -1,11 +1,12 @@
-//! Labels that do not collide: a greedy placement beside points.
+//! Places labels beside points so that they do not collide, greedily.
 //!
-//! Labels are placed in their order, each with the first of its texts that finds a place. The places are tried on rings of 9, 14, 21, 30, 42, 60
-//! and 84 px around its point, on each ring in 16 directions from the right, by turns below and
-//! above; the box of the text touches the ring on the side of the point. The first is taken whose
-//! box, with a px around it, lies within the bounds and meets no mark, no line and no box of before,
-//! and whose leader, the line from the point to the box, crosses no box and no mark of another
-//! point. A leader is drawn where the ring is over 14 px. What finds no place is not placed.
+//! Labels are placed in their order, each with the first of its texts that finds a place. The
+//! places lie on rings of 9, 14, 21, 30, 42, 60 and 84 px around the point. Each ring has 16
+//! directions, from the right, alternately below and above. The box of the text touches the ring on
+//! the side of the point. A place is taken if the box and a px around it lie within the bounds and
+//! meet no mark, no line and no earlier box, and if the leader crosses no box and no mark of
+//! another point. The leader is the line from the point to the box; it is drawn if the ring is over
+//! 14 px. A label that finds no place is left out.
 
 use super::mark::REACH;
 use super::text::width;
@@ -17,23 +18,23 @@ pub type Box = [f64; 4];
 /// A line between two points.
 pub type Segment = [[f64; 2]; 2];
 
-/// A label to be placed.
+/// A label to place.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Wanted {
-    /// Which of the points it belongs to.
+    /// The index of its point.
     pub point: usize,
-    /// What it may say, the best first.
+    /// Its possible texts, the best first.
     pub texts: Vec<String>,
 }
 
-/// Where a label is.
+/// The place of a label.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Placed {
     /// The box of its text.
     pub area: Box,
-    /// What it says.
+    /// The chosen text.
     pub text: String,
-    /// From the point to the box, if the two are far from each other.
+    /// The line from the point to the box, if they are far apart.
     pub leader: Option<Segment>,
 }
 
@@ -41,8 +42,8 @@ const RINGS: [f64; 7] = [9.0, 14.0, 21.0, 30.0, 42.0, 60.0, 84.0];
 const NEAR: f64 = 14.0;
 const DIRECTIONS: usize = 16;
 
-/// A place for each label, or none, see the [module](self): of texts of `size` px beside `points`
-/// with marks, clear of `lines`.
+/// Finds a place for each label, or none; see the [module](self). Texts of `size` px are placed
+/// beside `points` with marks, clear of `lines`.
 #[must_use]
 pub fn place(
     labels: &[Wanted],
@@ -78,17 +79,17 @@ pub fn place(
     labels.iter().map(place_one).collect()
 }
 
-/// The places that are tried of a text beside a point.
+/// The places to try for a text beside a point.
 fn places(at: [f64; 2], text: &str, size: f64) -> impl Iterator<Item = Placed> {
     let extent = [width(text, size), size];
     let ring = move |ring: f64| {
         (0..DIRECTIONS).map(move |i| {
-            // From the right, by turns below and above.
+            // From the right, alternately below and above.
             let turn = if i % 2 == 1 { i.div_ceil(2) } else { DIRECTIONS - i / 2 };
             let angle = TAU * turn as f64 / DIRECTIONS as f64;
             let away = [cos(angle), sin(angle)];
             let touch = [0, 1].map(|axis| at[axis] + ring * away[axis]);
-            // The nearest of the box to the point is the corner, or the middle of a side.
+            // The nearest place of the box is a corner, or the middle of a side.
             let start =
                 [0, 1].map(|axis| touch[axis] - extent[axis] * (0.5 - 0.5 * sign(away[axis])));
             let area = [start[0], start[1], start[0] + extent[0], start[1] + extent[1]];
@@ -98,7 +99,7 @@ fn places(at: [f64; 2], text: &str, size: f64) -> impl Iterator<Item = Placed> {
     RINGS.into_iter().flat_map(ring)
 }
 
-/// -1, 0 or 1, 0 of what is nearly straight across.
+/// -1, 0 or 1; 0 if the direction is nearly straight across.
 fn sign(away: f64) -> f64 {
     if away > 0.2 {
         1.0

@@ -2,17 +2,17 @@
 
 use crate::number::elementary::ln;
 
-/// A logarithmic axis: the values at its ends, and where these are in px.
+/// A logarithmic axis: the values at its ends, and the places of the ends in px.
 #[derive(Clone, Debug, PartialEq)]
 pub struct LogAxis {
-    /// 1, 2 or 5 times powers of ten, ascending; the first and the last are the ends.
+    /// 1, 2 or 5 times powers of ten, ascending; the first and the last are the ends of the axis.
     ticks: Vec<f64>,
     places: [f64; 2],
 }
 
 impl LogAxis {
-    /// The shortest axis of whole steps of 1, 2 and 5 around all values that are above 0 and
-    /// finite; from 1 to 10 if there are none. Values beyond 1e-12 and 1e12 lie beyond the ends.
+    /// The shortest axis of whole steps of 1, 2 and 5 around all values that are positive and
+    /// finite; 1 to 10 if there are none. Values beyond 1e-12 and 1e12 lie beyond the ends.
     #[must_use]
     pub fn around(values: impl Iterator<Item = f64>, places: [f64; 2]) -> Self {
         let values: Vec<f64> = values.filter(|v| *v > 0.0 && v.is_finite()).collect();
@@ -28,7 +28,7 @@ impl LogAxis {
         Self { ticks: steps[first..=last].to_vec(), places }
     }
 
-    /// Where a value above 0 lies.
+    /// The place of a positive value.
     #[must_use]
     pub fn at(&self, value: f64) -> f64 {
         let [first, last] = [self.ticks[0], self.ticks[self.ticks.len() - 1]];
@@ -36,13 +36,14 @@ impl LogAxis {
         from + ln(value / first) / ln(last / first) * (to - from)
     }
 
-    /// Values at which there are lines, from end to end.
+    /// The values of the grid lines, from end to end.
     #[must_use]
     pub fn ticks(&self) -> &[f64] {
         &self.ticks
     }
 
-    /// A tick in words: all are said where there are few, else powers of ten and the ends.
+    /// The text of a tick. If there are few, all have one; otherwise only powers of ten and the
+    /// ends.
     #[must_use]
     pub fn word(&self, tick: f64) -> Option<String> {
         let is_end = tick == self.ticks[0] || tick == self.ticks[self.ticks.len() - 1];
@@ -50,7 +51,7 @@ impl LogAxis {
     }
 }
 
-/// A value as it is read best: `0.002`, `50`, `1e6`.
+/// A value in its most readable form: `0.002`, `50`, `1e6`.
 fn short(value: f64) -> String {
     if (1e-4..1e5).contains(&value) { value.to_string() } else { format!("{value:e}") }
 }
@@ -60,7 +61,7 @@ fn digit(value: f64) -> u32 {
     format!("{value:e}").chars().next().and_then(|c| c.to_digit(10)).unwrap_or(0)
 }
 
-/// 1, 2 and 5 times powers of ten, as the decimal numbers that are printed.
+/// 1, 2 and 5 times powers of ten, as the decimals that are printed.
 fn steps() -> Vec<f64> {
     let all = (-12..=12).flat_map(|power| [1, 2, 5].map(|digit| format!("{digit}e{power}")));
     all.filter_map(|step| step.parse().ok()).collect()

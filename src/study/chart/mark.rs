@@ -1,14 +1,14 @@
-//! Marks of points: each series has a shape and a colour, so that neither is alone.
+//! Marks of points: each series has a shape and a colour, so that either alone tells series apart.
 
 use super::{COLORS, Drawing, Rgb, Stroke};
 use crate::number::elementary::{cos, sin};
 use std::f64::consts::TAU;
 
-/// How far a mark reaches from its point, in px.
+/// The radius of a mark in px.
 pub const REACH: f64 = 5.0;
 
-/// Corners on a circle, of which every other is nearer to the centre in stars, and the angle of the
-/// first in turns, from the right downwards.
+/// The corners on a circle, and the angle of the first in turns, from the right downwards. In a
+/// star every other corner is nearer to the centre.
 const SHAPES: [(usize, f64, f64); 11] = [
     (24, 0.0, 1.0),   // disc
     (4, 0.125, 1.0),  // square
@@ -23,7 +23,7 @@ const SHAPES: [(usize, f64, f64); 11] = [
     (3, 0.5, 1.0),    // triangle to the left
 ];
 
-/// As many series as there are pairs of a shape and a colour, no two alike: 66.
+/// The number of series: 66 pairs of a shape and a colour, all different.
 pub const MOST_SERIES: usize = SHAPES.len() * COLORS.len();
 
 /// The colour of a series.
@@ -32,7 +32,7 @@ pub fn color(series: usize) -> Rgb {
     COLORS[series % COLORS.len()]
 }
 
-/// Draws the mark of a series, `filled` or as its outline.
+/// Draws the mark of a series, filled or as an outline.
 pub fn draw(out: &mut Drawing, [x, y]: [f64; 2], series: usize, filled: bool) {
     let (corners, first, inner) = SHAPES[series % SHAPES.len()];
     let corner = |i: usize| {

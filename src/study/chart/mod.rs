@@ -1,22 +1,22 @@
-//! Drawings: paths and texts, written as SVG and as PNG.
+//! Charts: paths and texts, written as SVG and as PNG.
 //!
-//! A [`Drawing`] is a list of shapes in px, y downwards, each over those before it, on white. Both
-//! files are made of this list, so that they are one picture; the PNG has [`SCALE`] pixels a px.
-//! Coordinates are rounded to 1/16 px, `floor(16 v + 1/2) / 16`, when a shape is added. Every shape
-//! is opaque.
+//! A [`Drawing`] is a list of shapes in px with y downwards, on white; each shape covers those
+//! before it. Both files are made from this list, so they show the same picture; the PNG has
+//! [`SCALE`] pixels a px. Coordinates are rounded to 1/16 px, `floor(16 v + 1/2) / 16`, when a
+//! shape is added. Every shape is opaque.
 //!
-//! Letters are those of DejaVu Sans, which is part of the crate, without kerning. In an SVG a text
-//! stays a text, with its width beside it, so that another font takes as much room. A character that
-//! the font lacks is an empty box in a PNG.
+//! The font is DejaVu Sans, which is part of the crate, without kerning. An SVG stores a text as
+//! text with its width, so that another font takes the same room. A character that the font lacks
+//! is an empty box in a PNG.
 //!
-//! - [`axis`]: where values lie, and round numbers for ticks.
+//! - [`axis`]: linear axes, with round numbers for ticks.
 //! - [`curve`]: errors over a sweep.
 //! - [`label`]: labels that do not collide.
 //! - [`log`]: logarithmic axes.
 //! - [`mark`]: shapes and colours of points.
 //! - [`scatter`]: points on two logarithmic axes, with their front.
-//! - [`text`]: how wide texts are.
-//! - [`violin`]: how values are spread.
+//! - [`text`]: widths of texts.
+//! - [`violin`]: distributions of values.
 
 pub mod axis;
 pub mod curve;
@@ -32,15 +32,15 @@ pub mod violin;
 pub use raster::{Picture, SCALE};
 pub use svg::escaped;
 
-/// Red, green and blue, as sRGB has them.
+/// Red, green and blue in sRGB.
 pub type Rgb = [u8; 3];
 
-/// Text and axes.
+/// The colour of text and axes.
 pub const INK: Rgb = [0x24, 0x29, 0x2f];
-/// Lines of a grid.
+/// The colour of grid lines.
 pub const GRID: Rgb = [0xd8, 0xde, 0xe4];
-/// Colours that differ in lightness as well as in hue \[Okabe, Ito 2008\], so that they are told apart
-/// by the colour-blind; a chart has a dash or a name beside each.
+/// Colours that differ in lightness as well as in hue \[Okabe, Ito 2008\], so that the colour-blind
+/// can tell them apart. A chart adds a dash or a name to each.
 pub const COLORS: [Rgb; 6] = [
     [0x00, 0x72, 0xb2],
     [0xd5, 0x5e, 0x00],
@@ -49,11 +49,11 @@ pub const COLORS: [Rgb; 6] = [
     [0xe6, 0x9f, 0x00],
     [0x56, 0xb4, 0xe9],
 ];
-/// A dash for each of [`COLORS`]: lengths in px, drawn and left out in turn.
+/// A dash for each of [`COLORS`]: lengths in px, alternately drawn and left out.
 pub const DASHES: [&[f32]; 6] =
     [&[], &[8.0, 3.0], &[2.0, 3.0], &[10.0, 3.0, 2.0, 3.0], &[5.0, 5.0], &[14.0, 4.0]];
 
-/// The colour of a surface that is this far, from 0 to 1, from white to a colour.
+/// The colour at this position, from 0 to 1, between white and a colour.
 #[must_use]
 pub fn tint(color: Rgb, share: f64) -> Rgb {
     color.map(|c| (255.0 - (255.0 - f64::from(c)) * share + 0.5) as u8)
@@ -69,18 +69,18 @@ pub struct Drawing {
     shapes: Vec<Shape>,
 }
 
-/// How a line is drawn.
+/// The style of a line.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Stroke {
     /// The colour.
     pub color: Rgb,
     /// The width in px.
     pub width: f32,
-    /// As those of [`DASHES`].
+    /// The dash, as in [`DASHES`].
     pub dash: &'static [f32],
 }
 
-/// Which place of a text is at the point that is given.
+/// The part of a text that lies at the given point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Anchor {
     /// Its left end.
@@ -91,20 +91,20 @@ pub enum Anchor {
     End,
 }
 
-/// A text on its base line.
+/// A text on its baseline.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Label<'a> {
-    /// What it says, in one line.
+    /// The text, one line.
     pub text: &'a str,
-    /// The size of the font in px.
+    /// The font size in px.
     pub size: f64,
-    /// Where on the base line the point is.
+    /// Where on the baseline the point is.
     pub anchor: Anchor,
-    /// Whether it is read from below to above.
+    /// Whether the text reads upwards.
     pub turned: bool,
 }
 
-/// What can be drawn.
+/// A shape.
 #[derive(Clone, Debug, PartialEq)]
 enum Shape {
     Path { points: Vec<[f64; 2]>, closed: bool, fill: Option<Rgb>, stroke: Option<Stroke> },
@@ -113,7 +113,7 @@ enum Shape {
 }
 
 impl Stroke {
-    /// A line without gaps.
+    /// A solid line.
     #[must_use]
     pub fn solid(color: Rgb, width: f32) -> Self {
         Self { color, width, dash: &[] }
@@ -121,7 +121,7 @@ impl Stroke {
 }
 
 impl<'a> Label<'a> {
-    /// A text of 13 px that is not turned.
+    /// A horizontal text of 13 px.
     #[must_use]
     pub fn new(text: &'a str, anchor: Anchor) -> Self {
         Self { text, size: 13.0, anchor, turned: false }
@@ -129,7 +129,7 @@ impl<'a> Label<'a> {
 }
 
 impl Drawing {
-    /// Nothing yet. Programs that read pages aloud say the title and what it is about.
+    /// An empty drawing. Screen readers read the title and the description.
     #[must_use]
     pub fn new(size: [u32; 2], title: &str, about: &str) -> Self {
         Self { size, title: title.to_owned(), about: about.to_owned(), shapes: Vec::new() }
@@ -140,7 +140,7 @@ impl Drawing {
         self.path(points, false, None, Some(stroke));
     }
 
-    /// A surface within points, and its edge.
+    /// A filled polygon with its edge.
     pub fn surface(
         &mut self,
         points: impl IntoIterator<Item = [f64; 2]>,
@@ -157,8 +157,8 @@ impl Drawing {
         self.shapes.push(Shape::Text { text, at: at.map(rounded), size, anchor, turned });
     }
 
-    /// A disc that is not seen: in an SVG it says a title to who points at it, and which of the
-    /// things that are shown it belongs to, for pages that answer a click.
+    /// An invisible disc. In an SVG it shows a title to the pointer, and gives the index of the
+    /// thing that it belongs to, for pages that answer a click.
     pub fn spot(&mut self, at: [f64; 2], reach: f64, index: usize, title: &str) {
         self.shapes.push(Shape::Spot {
             at: at.map(rounded),

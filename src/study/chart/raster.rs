@@ -1,24 +1,24 @@
-//! A drawing as pixels.
+//! Rasterizes a drawing.
 
 use super::{Anchor, Drawing, INK, Rgb, Shape, Stroke, text};
 use tiny_skia::{FillRule, Paint, Path, PathBuilder, Pixmap, StrokeDash, Transform};
 
-/// Pixels of a [`Picture`] along a px of its drawing: sharp on dense screens and in print.
+/// Pixels of a [`Picture`] for each px of its drawing: sharp on dense screens and in print.
 pub const SCALE: u32 = 2;
 
 /// Pixels of 8 bits a channel, row by row from the top.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Picture {
-    /// Pixels along a row.
+    /// The number of columns.
     pub width: u32,
-    /// Rows.
+    /// The number of rows.
     pub height: u32,
-    /// Red, green and blue of each pixel, as sRGB has them.
+    /// Red, green and blue of each pixel, in sRGB.
     pub pixels: Vec<u8>,
 }
 
 impl Drawing {
-    /// The pixels; none if the drawing has no area, or too much for 32 bits.
+    /// The pixels; `None` if the drawing has no area, or too many pixels for 32 bits.
     #[must_use]
     pub fn picture(&self) -> Option<Picture> {
         let [width, height] = self.size.map(|side| side.saturating_mul(SCALE));
@@ -27,7 +27,7 @@ impl Drawing {
         for shape in &self.shapes {
             draw(&mut map, shape);
         }
-        // Nothing is transparent.
+        // Every shape is opaque.
         let pixels = map.pixels().iter().flat_map(|p| [p.red(), p.green(), p.blue()]).collect();
         Some(Picture { width, height, pixels })
     }
@@ -66,7 +66,7 @@ fn draw(map: &mut Pixmap, shape: &Shape) {
                 Anchor::End => width,
             };
             let size = *size as f32 / units;
-            // From the units of the font to the base line in px, upwards, then to the pixels.
+            // From font units to px upwards from the baseline, then to pixels.
             let line = Transform::from_row(size, 0.0, 0.0, -size, -before, 0.0);
             let quarter = Transform::from_row(0.0, -1.0, 1.0, 0.0, 0.0, 0.0);
             let line = if *turned { line.post_concat(quarter) } else { line };
@@ -82,7 +82,7 @@ fn paint([r, g, b]: Rgb) -> Paint<'static> {
     paint
 }
 
-/// The outline of a text, and the size of its font in the same units; none of blanks.
+/// The outline of a text, and the font size in the same units; `None` for blanks.
 fn letters(text: &str) -> Option<(Path, f32)> {
     let mut letters = Letters(PathBuilder::new());
     let units = text::outline(text, &mut letters);

@@ -1,10 +1,11 @@
-//! Points on two logarithmic axes with their spread, a front, and a list that names each.
+//! Scatter charts: points on two logarithmic axes with their spread, a front, and a list of all
+//! names.
 //!
-//! Less is better across and up. The marks of a series have one shape and one colour; those on the
-//! front are filled, and joined by steps. Beside a point of the front stands what it is called, and
-//! beside the others their number, where there is room. The list at the right says number, mark, name
-//! and values of all. What has no place on a logarithmic axis, such as an error of 0, is in the list
-//! alone.
+//! On both axes less is better. The marks of a series share a shape and a colour. Marks on the
+//! front are filled, and joined by steps. A point on the front has its name beside it, and other
+//! points their number if there is room. The list at the right shows the number, mark, name and
+//! values of every point. A value without a place on a logarithmic axis, such as an error of 0,
+//! appears only in the list.
 
 use super::label::{self, Placed, Segment, Wanted};
 use super::log::LogAxis;
@@ -16,46 +17,46 @@ use crate::study::front::front;
 /// A point of a [`Scatter`].
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
-    /// What it is called in the list.
+    /// Its name in the list.
     pub name: String,
-    /// What it is called beside its mark.
+    /// Its name beside its mark.
     pub short: String,
-    /// Which series it belongs to.
+    /// The index of its series.
     pub series: usize,
-    /// Its values across and up.
+    /// Its values on the x and the y axis.
     pub at: [f64; 2],
-    /// From where to where the value across is spread.
+    /// The range of the x value.
     pub spread: [f64; 2],
 }
 
-/// What a chart shows.
+/// The content of a chart.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Scatter {
-    /// Above the chart.
+    /// The title above the chart.
     pub title: String,
-    /// Below it, line by line.
+    /// The notes below it, line by line.
     pub notes: Vec<String>,
-    /// What is across and what is up, with units.
+    /// The labels of the x and the y axis, with units.
     pub axes: [String; 2],
     /// The points, in the order of the list.
     pub points: Vec<Point>,
 }
 
-/// Left, top and right of the plot.
+/// The left, top and right of the plot.
 const PLOT: [f64; 3] = [76.0, 48.0, 676.0];
-/// How high the plot is, at least and at most: the list chooses it.
+/// The least and the largest height of the plot; the list chooses between them.
 const HEIGHT: [f64; 2] = [480.0, 720.0];
-/// From the plot to the notes below it.
+/// The distance from the plot to the notes below it.
 const BELOW: f64 = 62.0;
 const NOTE: f64 = 16.0;
 const SMALL: f64 = 10.0;
-/// A row of the list.
+/// The height of a row in the list.
 const ROW: f64 = 14.0;
-/// How far from a point it is pointed at.
+/// The radius in which a point answers the pointer.
 const SPOT: f64 = 8.0;
-/// Where the list has its numbers, marks and names, from the right edge of the plot.
+/// The places of the numbers, marks and names in the list, from the right edge of the plot.
 const COLUMNS: [f64; 3] = [44.0, 58.0, 70.0];
-/// The most room of a name, and the room of each value behind it.
+/// The largest width of a name, and the width of each value behind it.
 const NAME: f64 = 330.0;
 const VALUE: f64 = 64.0;
 const GRID_LINE: Stroke = Stroke { color: GRID, width: 1.0, dash: &[] };
@@ -63,7 +64,7 @@ const FRAME: Stroke = Stroke { color: INK, width: 1.0, dash: &[] };
 const FRONT: Stroke = Stroke { color: INK, width: 1.0, dash: &[5.0, 3.0] };
 
 impl Scatter {
-    /// The chart.
+    /// Draws the chart.
     #[must_use]
     pub fn draw(&self) -> Drawing {
         let [left, top, right, bottom] = self.plot();
@@ -91,13 +92,13 @@ impl Scatter {
         out
     }
 
-    /// The indices of the points on the front, by ascending value across.
+    /// The indices of the points on the front, by ascending x value.
     #[must_use]
     pub fn front(&self) -> Vec<usize> {
         front(&self.points.iter().map(|point| point.at).collect::<Vec<_>>())
     }
 
-    /// Left, top, right and bottom of the plot: as high as leaves the notes beside the list.
+    /// The left, top, right and bottom of the plot; its height keeps the notes beside the list.
     fn plot(&self) -> [f64; 4] {
         let ([left, top, right], [least, most]) = (PLOT, HEIGHT);
         let room = self.list_end() - top - BELOW - NOTE * self.notes.len() as f64;
@@ -105,7 +106,7 @@ impl Scatter {
         [left, top, right, top + if high < most { high } else { most }]
     }
 
-    /// Where the list ends.
+    /// The bottom of the list.
     fn list_end(&self) -> f64 {
         PLOT[1] + ROW * (self.points.len() + 1) as f64
     }
@@ -210,7 +211,7 @@ fn small(text: &str, anchor: Anchor) -> Label<'_> {
     Label { size: SMALL, ..Label::new(text, anchor) }
 }
 
-/// What a point is called beside its mark.
+/// The name of a point beside its mark.
 fn number(index: usize) -> String {
     (index + 1).to_string()
 }
@@ -237,7 +238,7 @@ mod tests {
     use super::*;
     use crate::number::random::unit;
 
-    /// As many points as a study has, in the crowd that they make.
+    /// As many points as a study has, as crowded as there.
     fn crowd(count: usize) -> Scatter {
         let random = |stream: u64, i: usize| f64::from(unit(stream, i as u64));
         let point = |i: usize| {

@@ -1,10 +1,10 @@
-//! A drawing as SVG.
+//! Writes a drawing as SVG.
 
 use super::{Anchor, Drawing, INK, Rgb, Shape, text};
 use std::fmt::Write;
 
 impl Drawing {
-    /// The whole file. It refers to nothing outside.
+    /// The whole file. It loads nothing from outside.
     #[must_use]
     pub fn svg(&self) -> String {
         let [width, height] = self.size;
@@ -24,7 +24,7 @@ impl Drawing {
     }
 }
 
-/// An element on a line of its own. A `String` takes whatever is written.
+/// Writes an element on a line of its own. Writing into a `String` cannot fail.
 fn element(out: &mut String, shape: &Shape) {
     match shape {
         Shape::Path { points, closed, fill, stroke } => {
@@ -81,7 +81,7 @@ fn hexadecimal([r, g, b]: Rgb) -> String {
     format!("#{r:02x}{g:02x}{b:02x}")
 }
 
-/// Text that is no markup, of XML and of HTML.
+/// Escapes text for XML and HTML.
 #[must_use]
 pub fn escaped(text: &str) -> String {
     let mut out = String::with_capacity(text.len());
@@ -91,7 +91,7 @@ pub fn escaped(text: &str) -> String {
             '<' => out.push_str("&lt;"),
             '>' => out.push_str("&gt;"),
             '"' => out.push_str("&quot;"),
-            // XML has no other control characters, nor these two.
+            // XML allows no other control characters, nor these two.
             c if c.is_control() || matches!(c, '\u{fffe}' | '\u{ffff}') => out.push('\u{fffd}'),
             c => out.push(c),
         }

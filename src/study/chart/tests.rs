@@ -4,7 +4,7 @@ use super::*;
 use crate::number::elementary::exp;
 
 impl Drawing {
-    /// The texts, and the box of each: left, top, right and bottom.
+    /// The texts, with the left, top, right and bottom of each.
     pub(crate) fn boxes(&self) -> Vec<(&str, [f64; 4])> {
         let of = |shape| match shape {
             &Shape::Text { ref text, at: [x, y], size, anchor, turned } => {
@@ -29,7 +29,7 @@ impl Drawing {
         self.shapes.iter().filter_map(of).collect()
     }
 
-    /// Asserts that texts lie within the drawing and apart.
+    /// Asserts that texts lie inside the drawing and do not overlap.
     pub(crate) fn assert_readable(&self) {
         let boxes = self.boxes();
         let [width, height] = self.size.map(f64::from);
@@ -94,7 +94,7 @@ fn texts_are_no_markup_and_nothing_is_loaded() {
     assert!(!svg.contains('\u{1b}'));
 }
 
-/// The letter l of DejaVu Sans is an upright bar; turned it lies.
+/// The letter l of DejaVu Sans is an upright bar; a turned l lies flat.
 #[test]
 fn letters_stand_on_their_line_and_are_turned() {
     let ink = |turned, anchor| {

@@ -1,20 +1,20 @@
-//! The letters of charts: how wide they are, and their outlines.
+//! The font of charts: widths and outlines of texts.
 
 use std::sync::LazyLock;
 use ttf_parser::{Face, GlyphId};
 
-/// Its licence is in the file `LICENSE.dejavu` beside it.
+/// Its licence is the file `LICENSE.dejavu` beside it.
 static FACE: LazyLock<Face<'static>> = LazyLock::new(|| {
     Face::parse(include_bytes!("dejavu-sans.ttf"), 0).expect("a font that the tests have read")
 });
 
-/// The width of a text in px, of a font of `size` px: the sum of its letters' advances.
+/// The width of a text in px at a font size of `size` px: the sum of its advances.
 #[must_use]
 pub fn width(text: &str, size: f64) -> f64 {
     text.chars().map(|c| advance(c, size)).sum()
 }
 
-/// The text, or as much of its start as is at most `room` px wide with an ellipsis behind it.
+/// The text, or as much of its start as fits into `room` px with an ellipsis behind it.
 #[must_use]
 pub fn shortened(text: &str, size: f64, room: f64) -> String {
     if width(text, size) <= room {
@@ -33,13 +33,13 @@ fn advance(c: char, size: f64) -> f64 {
     f64::from(units) * size / f64::from(FACE.units_per_em())
 }
 
-/// The glyph of a character; 0 is the box of one that the font lacks.
+/// The glyph of a character; 0 is the box for a character that the font lacks.
 fn glyph(c: char) -> GlyphId {
     FACE.glyph_index(c).unwrap_or(GlyphId(0))
 }
 
-/// Builds the outline of a text whose base line begins at the origin, y upwards, in units of which
-/// the size of the font has so many.
+/// Builds the outline of a text. Its baseline begins at the origin, y points up, and the unit is
+/// the font's.
 pub(super) fn outline(text: &str, builder: &mut impl ttf_parser::OutlineBuilder) -> f32 {
     let mut x = 0.0;
     for c in text.chars() {
@@ -49,7 +49,7 @@ pub(super) fn outline(text: &str, builder: &mut impl ttf_parser::OutlineBuilder)
     f32::from(FACE.units_per_em())
 }
 
-/// An outline that begins further to the right.
+/// Moves the start of the outline to the right.
 struct Moved<'a, B> {
     to: &'a mut B,
     x: f32,

@@ -1,4 +1,4 @@
-//! Violins: the density of values as the width of a surface, with a box of quartiles in it.
+//! Violins: the width of a surface shows the density of values; a box inside shows the quartiles.
 //!
 //! Of n ascending values x, in f64:
 //!
@@ -20,7 +20,7 @@ use crate::number::elementary::{exp, pow};
 /// Places at which a density is taken.
 const PLACES: usize = 129;
 
-/// The quantile of ascending values of which there is at least one, see the [module](self).
+/// The quantile of ascending values; see the [module](self).
 ///
 /// # Panics
 /// If there is no value.
@@ -30,7 +30,7 @@ pub fn quantile(ascending: &[f64], share: f64) -> f64 {
     ascending[rank.min(ascending.len() - 1)]
 }
 
-/// Values and their densities, the greatest density 1; none of equal values or of none.
+/// The values and their densities; the largest density is 1. Empty for equal values, or for none.
 #[must_use]
 pub fn density(ascending: &[f64]) -> Vec<[f64; 2]> {
     let ([least, .., greatest], n) = (ascending, ascending.len() as f64) else {
@@ -56,8 +56,8 @@ pub fn density(ascending: &[f64]) -> Vec<[f64; 2]> {
     found.into_iter().map(|[v, d]| [v, d / most]).collect()
 }
 
-/// Draws a violin around x, at most `half` px to each side: its surface, a line from the least to the
-/// greatest value, a box between the quartiles, and the median as a white line across it.
+/// Draws a violin around x, at most `half` px to each side: a surface, a line from the least to the
+/// largest value, a box between the quartiles, and the median as a white line.
 pub fn draw(out: &mut Drawing, ascending: &[f64], (y, x, half): (&Axis, f64, f64), color: Rgb) {
     let (Some(&least), Some(&greatest)) = (ascending.first(), ascending.last()) else { return };
     let edge = Stroke::solid(color, 1.25);

@@ -1,4 +1,4 @@
-//! \[ZP06\]: groups, Voronoi depth, transparency.
+//! Claims of \[ZP06\]: groups, Voronoi depth, transparency.
 
 use super::subject::{Subject, colors, groups};
 use super::{Claim, Measured};
@@ -144,7 +144,7 @@ pub(super) const CLAIMS: [Claim; 13] = [
 
 const RELAXED: f32 = 0.4;
 
-/// *Hardly any* pixels are so many per cent, *virtually none* so many.
+/// The limits for *hardly any* pixels and for *virtually none*, in per cent.
 const HARDLY: f64 = 5.0;
 const VIRTUALLY_NONE: f64 = 1.0;
 
@@ -193,7 +193,7 @@ fn counts(subject: &Subject<'_>) -> Result<Measured> {
     Ok(Measured { numbers: [count(RELAXED)?, count(1.0)?], pictures: Vec::new() })
 }
 
-/// Four groups that cover the surface by added splats.
+/// Four groups that cover the surface, by added splats.
 const ADDED: Extension = Extension::Add { most: 0.5 };
 
 fn added(subject: &Subject<'_>) -> Result<Measured> {
@@ -203,8 +203,8 @@ fn added(subject: &Subject<'_>) -> Result<Measured> {
     Ok(Measured { numbers: [added as f64, surfels.len() as f64], pictures: Vec::new() })
 }
 
-/// A number of 8 groups, and of 4: of what all groups cover and the area of all splats, both as parts of the surface, and
-/// of how many groups there may be.
+/// A figure of 8 groups and of 4. It is computed from the area that all groups cover and the area
+/// of all splats, both as fractions of the surface, and from the number of groups.
 fn by_groups(subject: &Subject<'_>, of: fn(f64, f64, f64) -> f64) -> Result<Measured> {
     let surfels = &subject.scene.surfels;
     let numbers = [8, 4].map(|count| {
@@ -219,7 +219,7 @@ fn by_groups(subject: &Subject<'_>, of: fn(f64, f64, f64) -> f64) -> Result<Meas
     Ok(Measured { numbers: [first?, second?], pictures: Vec::new() })
 }
 
-/// The bins of all groups begin where those of the paper do.
+/// The bins of all groups begin where the paper's do.
 const AS_PUBLISHED: transparent::Settings = transparent::Settings {
     splats: ewa::Settings::BOTH_SIDES,
     bins: BinCount::Epsilon,
@@ -227,7 +227,7 @@ const AS_PUBLISHED: transparent::Settings = transparent::Settings {
     holes: Holes::Skipped,
 };
 
-/// Algorithms 3 and 2 and peeling of so many layers, each of both sides.
+/// Algorithms 3 and 2, and peeling of this many layers, with both sides drawn.
 fn transparencies(count: u32) -> [Method; 3] {
     let splats = ewa::Settings::BOTH_SIDES;
     [
@@ -238,7 +238,8 @@ fn transparencies(count: u32) -> [Method; 3] {
     ]
 }
 
-/// The errors of two pictures of the subject, seen through, to that of peeling; each by a method and its groups.
+/// The errors of two transparent pictures of the subject against peeling, each by a method and its
+/// groups.
 fn to_peeling(subject: &Subject<'_>, drawn: [(Method, Grouping); 2]) -> Result<Measured> {
     let subject = subject.transparent()?;
     let [.., peeling] = transparencies(64);

@@ -1,4 +1,4 @@
-//! \[GBP04\]: only what is visible is splatted.
+//! Claims of \[GBP04\]: only visible surfels are splatted.
 
 use super::subject::{Subject, colors, quiet};
 use super::{Claim, Measured};
@@ -91,7 +91,7 @@ pub(super) const CLAIMS: [Claim; 7] = [
     },
 ];
 
-/// The points of the paper's head.
+/// The number of points of the paper's head.
 const HEAD: usize = 285_000;
 
 fn culled(subject: &Subject<'_>) -> Result<Measured> {
@@ -113,10 +113,10 @@ fn speed(subject: &Subject<'_>) -> Result<Measured> {
     Ok(Measured { numbers, pictures: Vec::new() })
 }
 
-/// The degrees of a turn.
+/// The angle of the turn, in degrees.
 const TURN: f64 = 32.0;
 
-/// The camera as if the scene were turned about +y around its middle.
+/// Moves the camera as if the scene were turned about +y around its middle.
 fn turned(subject: &Subject<'_>, degrees: f64) -> Camera {
     let (middle, _) = subject.scene.surfels.bounding_sphere();
     let turn = DMat4::from_mat3(rotation(DVec3::Y, degrees));
@@ -125,8 +125,8 @@ fn turned(subject: &Subject<'_>, degrees: f64) -> Camera {
     Camera { view_from_world: view.as_mat4(), ..subject.camera }
 }
 
-/// Two frames from before a turn, that of the turn and the next, each of the last two beside `ewa`. Both sides of
-/// surfels are drawn: what is hidden is the far side.
+/// Draws two frames before a turn, the frame of the turn and the next, and compares the last two
+/// with `ewa`. Both sides of surfels are drawn, because the far side is hidden.
 fn frames(subject: &Subject<'_>, second: bool) -> Result<[Frame<f32>; 3]> {
     let splats = ewa::Settings::BOTH_SIDES;
     let settings = deferred::Settings { splats, flags: 1, second, ..Default::default() };
@@ -167,10 +167,10 @@ fn negligible(subject: &Subject<'_>) -> Result<Measured> {
     Ok(Measured { numbers, pictures: Vec::new() })
 }
 
-/// The surfels of a shape with more than one a pixel.
+/// The surfels of a shape with more than one surfel a pixel.
 const DENSE: usize = 60_000;
 
-/// The subject in more surfels and with checks of a pixel, perhaps with mipmaps.
+/// The subject with more surfels and with checks of a pixel, and optionally with mipmaps.
 fn dense<'e>(subject: &Subject<'e>, smooth: bool) -> Result<Subject<'e>> {
     let (middle, _) = subject.scene.surfels.bounding_sphere();
     let distance = -subject.camera.view_from_world.as_dmat4().transform_point3(middle).z;

@@ -1,4 +1,4 @@
-//! \[MKC08\] and \[MOC08\]: reconstruction in image space.
+//! Claims of \[MKC08\] and \[MOC08\]: reconstruction in image space.
 
 use super::subject::{Subject, colors};
 use super::{Claim, Measured};
@@ -194,7 +194,7 @@ fn times(subject: &Subject<'_>, [first, second]: [Method; 2]) -> Result<Measured
     Ok(Measured { numbers, pictures: Vec::new() })
 }
 
-/// The medians of the times of the pyramid's projection and of its pull and push, over nine frames, in ms.
+/// The median times of the pyramid's projection and of its pull and push, over nine frames, in ms.
 fn parts(subject: &Subject<'_>, order: fn(f64, f64) -> [f64; 2]) -> Result<Measured> {
     let mut session = subject.session(pyramid(), None)?;
     let [projection, all] = subject.laps(&mut session, [&["projection"], &["pull", "push"]])?;

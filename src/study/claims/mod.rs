@@ -1,17 +1,19 @@
-//! What the five papers claim, measured.
+//! The claims of the five papers, measured.
 //!
-//! A [`Claim`] says that one number is at most a part of another, or at most a limit. Each is measured on nine
-//! cases: three [shapes](SHAPES) in pictures of three [sizes](ROWS). A claim *holds* if it does in all nine, *fails* if
-//! in none, and else holds in so many of them. Scans are cases too, where somebody has some.
+//! A [`Claim`] says that one number is at most a multiple of another, or at most a limit. Each
+//! claim is measured in nine cases: three [shapes](SHAPES) in pictures of three [sizes](ROWS). A
+//! claim *holds* if it does in all nine cases, and *fails* if it does in none; otherwise the page
+//! says in how many it holds. Scans are more cases, if you have some.
 //!
-//! `Decided:` a claim that has no number in its paper is read as weakly as its words allow: "better" is less
-//! error. Where words say "nearly as" or "similar", the limit is of this page, and stands in the claim.
+//! `Decided:` a claim without a number in its paper is read as weakly as its words allow: "better"
+//! means less error. For "nearly as" or "similar" the page sets a limit, and the claim shows it.
 //!
-//! Claims about pictures of shapes are judged in storage [formats](FORMATS) of the papers' time too: the methods draw in them, and
-//! are compared with the same true picture, or with the same reference in `f32`.
+//! Claims about pictures of shapes are also judged in the storage [formats](FORMATS) of the papers'
+//! time. The methods draw in these formats; the true picture, or the reference in `f32`, stays the
+//! same.
 //!
-//! The page is `docs/claims.md`, made by `splatref study claims -o docs`. Errors are the same on every
-//! machine, and a test holds the page against them; numbers that are times are not held.
+//! `splatref study claims -o docs` writes the page, `docs/claims.md`. Errors are the same on every
+//! machine, and a test compares the page with them; times are not compared.
 
 mod blending;
 mod frames;
@@ -32,29 +34,29 @@ use crate::progress::Progress;
 use crate::source::Shape;
 use subject::Subject;
 
-/// What is drawn, in a picture of so many rows, 4/3 as many columns.
+/// The subject of a picture with this many rows and 4/3 as many columns.
 #[derive(Clone, Debug)]
 pub struct Case {
-    /// What is drawn.
+    /// The scene to draw.
     pub of: Drawn,
     /// The rows of the picture.
     pub rows: u32,
 }
 
-/// What is drawn.
+/// The scene to draw.
 #[derive(Clone, Debug)]
 pub enum Drawn {
-    /// A shape in so many surfels.
+    /// A shape with this many surfels.
     Shape(Shape, usize),
-    /// The surfels of a scene, as it draws them: a scan.
+    /// A scan: the surfels of a scene, as it draws them.
     Scan(Box<SceneFile>),
 }
 
-/// The shapes of the first cases, each of [`COUNT`] surfels.
+/// The shapes of the first cases, with [`COUNT`] surfels each.
 pub const SHAPES: [Shape; 3] = [Shape::Sphere, Shape::Torus, Shape::Cluster];
-/// The surfels of a shape.
+/// The number of surfels of a shape.
 pub const COUNT: usize = 10_000;
-/// The rows of the pictures, of each shape and each scan.
+/// The rows of the pictures, for each shape and each scan.
 pub const ROWS: [u32; 3] = [120, 180, 300];
 
 /// The cases of every claim: the shapes, then some scans, each in pictures of all sizes.
@@ -65,51 +67,52 @@ fn cases(scans: &[SceneFile]) -> Vec<Case> {
     all.flat_map(|of| ROWS.map(|rows| Case { of: of.clone(), rows })).collect()
 }
 
-/// Formats that the papers' GPUs had, and what they are called.
+/// Formats of the papers' GPUs, with their names.
 pub const FORMATS: [(&str, Formats); 3] = [
     ("f16, 24 bits", Formats { buffers: Buffers::F16, depth: DepthBuffer::Unorm24 }),
     ("f16, f16", Formats { buffers: Buffers::F16, depth: DepthBuffer::F16 }),
     ("unorm8, 16 bits", Formats { buffers: Buffers::Unorm8, depth: DepthBuffer::Unorm16 }),
 ];
 
-/// What a paper says.
+/// A claim of a paper.
 #[derive(Clone, Copy, Debug)]
 pub struct Claim {
-    /// How it is called: its picture's name.
+    /// Its short name, which its picture has too.
     pub id: &'static str,
-    /// The paper, and where in it.
+    /// The paper, and the place in it.
     pub from: &'static str,
-    /// Its words, or what they come to.
+    /// The claim, in the paper's words or shortened.
     pub says: &'static str,
     /// The two numbers, with their unit.
     pub measured: &'static str,
-    /// It holds where the first number is at most this part of the second.
+    /// The claim holds if the first number is at most this multiple of the second.
     pub at_most: f64,
     /// Whether the numbers are times, which differ from machine to machine.
     pub timed: bool,
-    /// The page that has more of it, under `docs/`.
+    /// The page under `docs/` with more about it.
     pub more: &'static str,
     /// Measures a case.
     of: fn(&Subject<'_>) -> Result<Measured>,
 }
 
-/// What is found of a case.
+/// The measurements of a case.
 #[derive(Clone, Debug)]
 pub struct Measured {
     /// The two numbers.
     pub numbers: [f64; 2],
-    /// Their pictures, linear RGB; none where they are of no pictures.
+    /// Their pictures in linear RGB; empty if the numbers do not come from pictures.
     pub pictures: Vec<Plane<[f32; 3]>>,
 }
 
-/// A claim, measured.
+/// A measured claim.
 #[derive(Clone, Debug)]
 pub struct Verdict {
-    /// Of which claim.
+    /// The claim.
     pub of: &'static Claim,
-    /// What was found of each shape in each size, then of each scan in each size.
+    /// The measurements of each shape in each size, then of each scan in each size.
     pub found: Vec<Measured>,
-    /// In how many cases of shapes it holds in each of [`FORMATS`]; none of a claim that is not about pictures.
+    /// In how many cases of shapes the claim holds in each of [`FORMATS`]; empty if the claim is
+    /// not about pictures.
     pub stored: Vec<usize>,
 }
 
@@ -121,11 +124,12 @@ pub fn claims() -> Vec<&'static Claim> {
     rooms.into_iter().flatten().collect()
 }
 
-/// Measures claims in every case, in `f32` and, those about pictures of shapes, in each of some formats. `progress` is
-/// told of which claim, and how many measurements are done.
+/// Measures claims in every case in `f32`, and claims about pictures of shapes in each of `formats`
+/// too. `progress` gets the claim, and how many measurements are done.
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] if a scan is not of surfels alone; else as drawing the scenes.
+/// [`crate::Error::Invalid`] if a scan does not consist of surfels; otherwise as drawing the
+/// scenes.
 pub fn verdicts(
     claims: &[&'static Claim],
     (scans, formats): (&[SceneFile], &[(&str, Formats)]),
@@ -135,7 +139,7 @@ pub fn verdicts(
     let none = |of: &&'static Claim| Verdict { of, found: Vec::new(), stored: Vec::new() };
     let mut all: Vec<Verdict> = claims.iter().map(none).collect();
     let cases = cases(scans);
-    // What is no scan is known before minutes have passed.
+    // A wrong scan is refused now, before minutes have passed.
     for case in cases.iter().skip(SHAPES.len() * ROWS.len()).step_by(ROWS.len()) {
         Subject::new(case.clone(), exec)?;
     }
@@ -144,7 +148,7 @@ pub fn verdicts(
     let mut last: Option<Subject<'_>> = None;
     for (i, case) in cases.into_iter().enumerate() {
         let formats = if matches!(case.of, Drawn::Shape(..)) { formats } else { &[] };
-        // What the claims share of a case is made once, and what its sizes share too.
+        // Claims share what they need of a case, and the sizes of a case share it too.
         let mut subject = Subject::new(case, exec)?;
         if let Some(other_size) = last.filter(|_| i % ROWS.len() > 0) {
             subject.share(&other_size);
@@ -175,19 +179,19 @@ impl Verdict {
         Ok(())
     }
 
-    /// In how many of some cases it holds.
+    /// In how many of some cases the claim holds.
     fn holds(&self, found: &[Measured]) -> usize {
         found.iter().filter(|found| self.of.holds(found)).count()
     }
 
-    /// What was found of shapes, and of scans.
+    /// The measurements of shapes, and of scans.
     fn parts(&self) -> (&[Measured], &[Measured]) {
         self.found.split_at(SHAPES.len() * ROWS.len())
     }
 }
 
 impl Claim {
-    /// Whether it holds.
+    /// Whether the claim holds in this case.
     fn holds(&self, found: &Measured) -> bool {
         let [first, second] = found.numbers;
         first <= self.at_most * second

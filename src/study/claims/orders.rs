@@ -1,4 +1,4 @@
-//! \[BJFM19\]: prefixes of orders.
+//! Claims of \[BJFM19\]: prefixes of orders.
 
 use super::subject::{Subject, colors, median, quiet};
 use super::{Claim, Measured};
@@ -81,14 +81,14 @@ fn points(subject: &Subject<'_>) -> Result<Vec<Vec3>> {
     Ok(subject.of_count(count)?.scene.surfels.position().to_vec())
 }
 
-/// Progressive sampling as the paper says.
+/// Progressive sampling as in the paper.
 fn progressive() -> Progressive {
     Progressive { start: Start::Index(0), seed: 0, schedule: Schedule::Paper }
 }
 
 const EXACT: Greedy = Greedy { start: Start::Index(0) };
 
-/// The greatest distance of a point to a prefix.
+/// The largest distance of any point to a prefix.
 fn covering(points: &[Vec3], prefix: &[u32], exec: &Exec) -> Result<f64> {
     Ok(f64::from(quality(points, prefix, exec)?.covering).sqrt())
 }
@@ -122,7 +122,7 @@ fn quarter(subject: &Subject<'_>) -> Result<Measured> {
     Ok(Measured { numbers: [ratio, 1.0], pictures: Vec::new() })
 }
 
-/// The points in the greedy order, as what the view asks of them in discs of a size, pixels.
+/// The points in the greedy order, as many as the view needs with discs of this size in pixels.
 fn discs<'e>(subject: &Subject<'e>, size: f32) -> Result<Subject<'e>> {
     let surfels = subject.of_count(100 * subject.case.rows as usize)?.scene.surfels;
     let count = surfels.len();

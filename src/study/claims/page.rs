@@ -11,36 +11,38 @@ pub const PICTURES: &str = "claims";
 const INTRODUCTION: &str = "\
 # What the five papers claim, measured
 
-Every claim is a comparison of two numbers: the first is to be at most the second, or at most so many times the second where the
-row says so; the second may be a limit. Each is measured on nine cases: a sphere, a torus and a cluster of spheres, of 10,000 surfels unless the
-claim is about more, in pictures of 120, 180 and 300 rows. *Holds* tells in how many of the nine; scans have a table below. The numbers are the
-pair of each shape at 180 rows. A claim that has no number in its paper is read as weakly as its words allow: better is
-less error. Where the words are *similar*, *slightly* or *hardly*, the limit is of this page, and stands in the row. A pixel is
-*inside* if it and its neighbours are covered, and *visibly off* if R, G or B differs by more than 8/255 as sRGB.
+This page measures what five papers claim. Every claim compares two numbers: the first must be at most the second, or at most
+a multiple of it that the row names; the second may be a limit.
 
-The numbers and *holds* are of buffers in `f32`. The columns after it judge the claim once more with buffers that the papers'
-GPUs had: half floats with depths of 24 bits, half floats with depths in half floats as [MOC08, 4] has them, and 8 bits with
-depths of 16. Only the methods draw into them; what they are compared with
-stays the same. A claim that is not about single pictures has a dash. Algorithms 2 and 3 of [ZP06] have the bins of its
-equation 6 in all groups, `--bin-edges common`.
+- Each claim is measured in nine cases: a sphere, a torus and a cluster of spheres, in pictures of 120, 180 and 300 rows. The
+  shapes have 10,000 surfels unless the claim is about more. Scans have a table below.
+- *Holds* says in how many of the nine cases the claim holds. The numbers are the pair of each shape at 180 rows.
+- A claim without a number in its paper is read as weakly as its words allow: *better* means less error. For *similar*,
+  *slightly* and *hardly* this page sets a limit, which the row shows.
+- A pixel is *inside* if it and its neighbours are covered. It is *visibly off* if R, G or B differs by more than 8/255 in sRGB.
 
-This page is made by `splatref study claims bunny.ply igea.ply fandisk.ply -o docs`. Errors are the same on every machine, and a test holds the page
-against them. Rows with *ms* are times of the machine that made the page, on a CPU with two threads; the papers' were
-of GPUs. The pages in the last column have more settings, and the times that the papers print.
+The numbers and *holds* are for buffers in `f32`. The columns after *holds* judge the claim again with buffer formats of the
+papers' GPUs: half floats with 24-bit depths, half floats with half-float depths as in [MOC08, 4], and 8 bits with 16-bit
+depths. Only the methods draw into these formats; the pictures to compare with stay the same. A dash marks a claim that is not
+about single pictures. Algorithms 2 and 3 of [ZP06] use the bins of its equation 6 in all groups, `--bin-edges common`.
+
+The command `splatref study claims bunny.ply igea.ply fandisk.ply -o docs` writes this page. Errors are the same on every
+machine, and a test compares the page with them. Rows with *ms* are times of the machine that wrote the page, on a CPU with
+two threads; the papers used GPUs. The pages in the last column have more settings, and the times in the papers.
 
 ";
 
-/// What the page is made of.
+/// The files of the page.
 #[derive(Clone, Debug)]
 pub struct Files {
-    /// The page, Markdown.
+    /// The page in Markdown.
     pub text: String,
-    /// Pictures side by side, linear RGB, by the names of claims: those of the two numbers and, where there is one,
-    /// the true one.
+    /// Pictures side by side in linear RGB, by the names of claims: a picture for each number and,
+    /// if there is one, the true picture.
     pub pictures: Vec<(&'static str, Plane<[f32; 3]>)>,
 }
 
-/// The page of some claims, measured of the shapes and of these scans.
+/// Writes the page of some claims, measured on the shapes and on these scans.
 #[must_use]
 pub fn page(verdicts: &[Verdict], scans: &[&str]) -> Files {
     let mut text = INTRODUCTION.to_owned();
@@ -82,12 +84,12 @@ pub fn page(verdicts: &[Verdict], scans: &[&str]) -> Files {
 const SCANS: &str = "
 ## Scans
 
-The same claims of scans, as they are: a surfel a triangle, the triangles are the truth. The numbers are in the order of
-the table above, those of 180 rows.
+These are the same claims for scans: each triangle becomes a surfel, and the triangles are the truth. The numbers are in the
+order of the table above, for 180 rows.
 
 ";
 
-/// The table of the scans.
+/// Appends the table of the scans.
 fn of_scans(verdicts: &[Verdict], scans: &[&str], text: &mut String) {
     text.push_str(SCANS);
     let _ = writeln!(text, "| claim | measured | {} | holds |", scans.join(" | "));
@@ -100,7 +102,7 @@ fn of_scans(verdicts: &[Verdict], scans: &[&str], text: &mut String) {
     }
 }
 
-/// The pairs of numbers of the middle size, as cells.
+/// The pairs of numbers at the middle size, as cells.
 fn pairs(found: &[Measured]) -> String {
     let of = found.chunks(ROWS.len()).map(|sizes| {
         let [first, second] = sizes[MIDDLE].numbers;
@@ -109,10 +111,10 @@ fn pairs(found: &[Measured]) -> String {
     of.collect::<Vec<_>>().join(" | ")
 }
 
-/// The size whose numbers are shown.
+/// The index of the size whose numbers are shown.
 const MIDDLE: usize = 1;
 
-/// In how many of the cases of shapes it holds, in words.
+/// In how many cases of shapes the claim holds, in words.
 #[must_use]
 pub fn outcome(verdict: &Verdict) -> String {
     let (shapes, _) = verdict.parts();
@@ -127,7 +129,7 @@ fn in_words(holds: usize, of: usize) -> String {
     }
 }
 
-/// A page without rows of times.
+/// The page without the rows of times.
 #[cfg(test)]
 pub(super) fn lasting(page: &str) -> String {
     page.lines().filter(|line| !line.contains("| ms")).collect::<Vec<_>>().join("\n")

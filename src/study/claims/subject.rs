@@ -1,4 +1,4 @@
-//! A case as a scene: its picture by a method, its true picture, its time.
+//! A case as a scene: its pictures by methods, its true picture, its times.
 
 use super::{Case, Drawn};
 use crate::compare::metrics::{Flicker, Metric};
@@ -16,31 +16,31 @@ use std::cell::{OnceCell, RefCell};
 use std::rc::Rc;
 use std::time::Instant;
 
-/// Progress that nobody sees.
+/// Ignores progress.
 pub(super) fn quiet(_: &str, _: u64, _: u64) {}
 
-/// A scene before a camera.
+/// A scene with its camera.
 pub(super) struct Subject<'e> {
     pub(super) case: Case,
-    /// How passes store what they leave.
+    /// The formats in which passes store their results.
     pub(super) formats: Formats,
     pub(super) scene: Scene,
     pub(super) camera: Camera,
     pub(super) exec: &'e Exec,
     truth: OnceCell<Frame<f32>>,
-    /// Pictures that a claim has asked for: another may ask, too.
+    /// Pictures that a claim asked for; another claim may ask for them too.
     pictures: Kept<(Method, Option<Grouping>, Formats), Frame<f32>>,
-    /// Groups of the surfels, of any opacity.
+    /// Groups of the surfels, for any opacity.
     groups: Rc<Kept<Grouping, Grouped>>,
 }
 
-/// What has been made, by what it was made of.
+/// Results by the settings that they were made with.
 type Kept<K, V> = RefCell<Vec<(K, V)>>;
 
 /// Groups, and how they were extended.
 type Grouped = (Groups, Option<Extended>);
 
-/// What is kept of something, or what is made of it now.
+/// The cached value, or a new one that is cached now.
 fn kept<K: PartialEq, V: Clone>(
     all: &Kept<K, V>,
     of: K,
@@ -54,7 +54,7 @@ fn kept<K: PartialEq, V: Clone>(
     Ok(made)
 }
 
-/// Groups of the overlap c; a given number of them, or as many as that takes.
+/// Groups with the overlap c: a given number of them, or as many as c needs.
 pub(super) fn groups(overlap: f32, count: Option<usize>, extension: Extension) -> Grouping {
     Grouping { rules: Rules { overlap, opposite: true, coplanar: None }, count, extension }
 }
@@ -73,7 +73,7 @@ impl<'e> Subject<'e> {
                 let file = SceneFile { camera, ..(**file).clone() };
                 let Ready { loaded, camera, .. } = file.ready(exec, &quiet)?;
                 if loaded.scene.objects.is_some() || !loaded.scene.primitives.is_empty() {
-                    let what = format!("{}: claims are of scenes of surfels alone", file.name);
+                    let what = format!("{}: claims need scenes of surfels", file.name);
                     return Err(Error::Invalid(what));
                 }
                 (loaded.scene, camera)
@@ -84,7 +84,7 @@ impl<'e> Subject<'e> {
         Ok(Self { case, formats, scene, camera, exec, truth, pictures, groups })
     }
 
-    /// Takes the groups of the same surfels in another size of the picture.
+    /// Takes over the groups of the same surfels from another size of the picture.
     pub(super) fn share(&mut self, other: &Self) {
         self.groups = Rc::clone(&other.groups);
     }
@@ -101,7 +101,7 @@ impl<'e> Subject<'e> {
         }
     }
 
-    /// The same shape of another count; a scan as it is.
+    /// The same shape with another count; a scan does not change.
     pub(super) fn of_count(&self, count: usize) -> Result<Self> {
         Ok(self.with(match self.case.of {
             Drawn::Shape(shape, _) => shape.surfels(count, 0)?,
@@ -109,7 +109,7 @@ impl<'e> Subject<'e> {
         }))
     }
 
-    /// The same, seen through.
+    /// The same scene, transparent.
     pub(super) fn transparent(&self) -> Result<Self> {
         let cloud = self.scene.surfels.clone().into_cloud();
         let opacity = Some(vec![0.4; cloud.position.len()]);
@@ -135,7 +135,7 @@ impl<'e> Subject<'e> {
         }
     }
 
-    /// The picture, in the formats.
+    /// The picture, in the storage formats.
     pub(super) fn draw(&self, method: Method, groups: Option<&Grouping>) -> Result<Frame<f32>> {
         if self.formats.keep_all() {
             return self.reference(method, groups);
@@ -145,7 +145,7 @@ impl<'e> Subject<'e> {
         })
     }
 
-    /// The picture in `f32`, which others are compared with.
+    /// The picture in `f32`, as a reference.
     pub(super) fn reference(
         &self,
         method: Method,
@@ -156,7 +156,7 @@ impl<'e> Subject<'e> {
         })
     }
 
-    /// The true picture: of a shape the exact one.
+    /// The true picture; exact for a shape.
     pub(super) fn truth(&self) -> Result<&Frame<f32>> {
         if let Some(known) = self.truth.get() {
             return Ok(known);
@@ -175,14 +175,14 @@ impl<'e> Subject<'e> {
         Ok(self.truth.get_or_init(|| truth.frame))
     }
 
-    /// An error of a picture, by the name of a metric.
+    /// The error of a picture, by the name of a metric.
     pub(super) fn error(&self, frame: &Frame<f32>, truth: &Frame<f32>, name: &str) -> Result<f64> {
         let error = Metric::named(name)?.between(frame, truth, self.exec)?;
         error.ok_or_else(|| Error::Invalid(format!("{name}: the true picture is empty")))
     }
 
-    /// How much a session's pictures change from one of eight to another, the scene moved by eighths of a
-    /// pixel: the [flicker](mod@crate::compare::metrics::flicker) beside black.
+    /// How much a session's pictures change while the scene moves by eighths of a pixel, eight
+    /// times: the [flicker](mod@crate::compare::metrics::flicker) against black.
     pub(super) fn flicker(&self, mut session: Session<'_>) -> Result<f64> {
         let cameras = shifted(&self.camera);
         let [width, height] = self.camera.size();
@@ -194,14 +194,14 @@ impl<'e> Subject<'e> {
         Ok(flicker.spectrum(self.exec)?.flicker)
     }
 
-    /// What some stages take of a picture, and what others take: medians of nine, in ms.
+    /// The times of some stages of a picture, and of other stages: medians of nine, in ms.
     pub(super) fn laps(&self, session: &mut Session<'_>, stages: [&[&str]; 2]) -> Result<[f64; 2]> {
         let mut times = [Vec::new(), Vec::new()];
         for turn in 0..10 {
             let laps = &session.render(&self.camera)?.timings;
             for (names, times) in stages.iter().zip(&mut times) {
                 let of = laps.iter().filter(|(name, _)| names.contains(name));
-                // The first one fills what is kept.
+                // The first picture fills the caches.
                 if turn > 0 {
                     times.push(of.map(|(_, time)| time.as_secs_f64() * 1e3).sum::<f64>());
                 }
@@ -210,14 +210,14 @@ impl<'e> Subject<'e> {
         Ok(times.map(median))
     }
 
-    /// The medians of times of one picture by each of two sessions, of nine by turns, in ms.
+    /// The median times of a picture by each of two sessions, nine by turns, in ms.
     pub(super) fn times(&self, mut sessions: [Session<'_>; 2]) -> Result<[f64; 2]> {
         let mut times = [Vec::new(), Vec::new()];
         for turn in 0..10 {
             for (session, times) in sessions.iter_mut().zip(&mut times) {
                 let start = Instant::now();
                 session.render(&self.camera)?;
-                // The first one fills what is kept.
+                // The first picture fills the caches.
                 if turn > 0 {
                     times.push(start.elapsed().as_secs_f64() * 1e3);
                 }

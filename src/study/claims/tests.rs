@@ -1,4 +1,4 @@
-//! The page in `docs/` says what is measured.
+//! Compares the page in `docs/` with new measurements.
 
 use super::page::lasting;
 use super::*;
@@ -26,12 +26,12 @@ fn of_errors() -> Vec<&'static Claim> {
     claims().into_iter().filter(|claim| !claim.timed).collect()
 }
 
-/// The page without what is said of scans.
+/// The page without its part about scans.
 fn of_shapes(page: &str) -> &str {
     page.split("\n## Scans").next().unwrap().trim_end()
 }
 
-/// The scans of the page, if they are there.
+/// The scans of the page, if the files exist.
 fn scans() -> Option<Vec<SceneFile>> {
     let folder = std::env::var("SPLATREF_MODELS").unwrap_or_else(|_| "../shared/models".into());
     let scan = |name: &str| {

@@ -1,11 +1,11 @@
-//! The chart: time against error, with the front.
+//! The chart of a study: time against error, with the front.
 
 use crate::study::chart::Drawing;
 use crate::study::chart::scatter::{Point, Scatter};
 use crate::study::run::{Loss, Record, Study};
 
-/// The points of a study, in the order of its candidates: those that were timed and measured. The
-/// first of each is the index of the candidate.
+/// The points of a study in the order of its candidates: those that were timed and measured. Each
+/// comes with the index of its candidate.
 #[must_use]
 pub fn points(study: &Study, loss: &Loss) -> Vec<(usize, Point)> {
     let mut methods: Vec<&str> = Vec::new();
@@ -25,7 +25,7 @@ pub fn points(study: &Study, loss: &Loss) -> Vec<(usize, Point)> {
     study.candidates.iter().enumerate().filter_map(point).collect()
 }
 
-/// The chart of a study.
+/// Draws the chart of a study.
 #[must_use]
 pub fn chart(study: &Study, loss: &Loss) -> Drawing {
     let [width, height] = study.of.size;

@@ -1,13 +1,12 @@
-//! The table: comma-separated values (RFC 4180), a row a candidate.
+//! The table of a study: comma-separated values (RFC 4180), a row for each candidate.
 
 use crate::study::run::{Record, Study};
 use std::fmt::Write;
 
-/// The table of a study, with a column for each figure of these names. What is not known is empty.
+/// The table of a study, with a column for each figure of these names. Unknown values are empty.
 ///
-/// The columns before them are `options`, `method`, `surfels`, `prepare_ms` (groups and order,
-/// once), `pictures` (how many were timed), and `quartile1_ms`, `median_ms`, `quartile3_ms` of a
-/// picture.
+/// The first columns are `options`, `method`, `surfels`, `prepare_ms` (groups and order, once),
+/// `pictures` (how many were timed), and `quartile1_ms`, `median_ms`, `quartile3_ms` of a picture.
 #[must_use]
 pub fn csv(study: &Study, figures: &[&str]) -> String {
     let head = [
@@ -47,7 +46,7 @@ fn cells(record: &Record, figures: &[&str]) -> Vec<String> {
     cells
 }
 
-/// A cell, in quotes where its text needs them.
+/// A cell, quoted if its text needs it.
 fn quoted(cell: &str) -> String {
     if cell.contains([',', '"', '\r', '\n']) {
         format!("\"{}\"", cell.replace('"', "\"\""))

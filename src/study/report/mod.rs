@@ -1,8 +1,8 @@
-//! A study as files: a table, a chart and a page.
+//! The files of a study: a table, a chart and a page.
 //!
-//! - [`csv`]: a row a candidate.
+//! - [`csv`]: a row for each candidate.
 //! - [`mod@chart`]: time against error, with the front.
-//! - [`page`]: the chart, where a click on a point shows its picture beside the truth.
+//! - [`page`]: the chart; a click on a point shows its picture beside the truth.
 
 pub mod chart;
 pub mod csv;

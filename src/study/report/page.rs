@@ -1,6 +1,6 @@
-//! The page: the chart, where a click on a point shows its picture beside the truth and the
-//! difference, with zoom, blink and slider. It asks nothing of the network, and its policy says so to
-//! the browser.
+//! The page of a study: a click on a point of the chart shows its picture beside the truth and the
+//! difference, with zoom, blink and slider. The page loads nothing from the network, and its policy
+//! tells the browser so.
 
 use super::chart::points;
 use crate::study::chart::Drawing;
@@ -10,13 +10,13 @@ use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use serde::Serialize;
 
-/// What the script is given.
+/// The data of the script.
 #[derive(Serialize)]
 struct Data<'a> {
     size: [u32; 2],
     truth: String,
     columns: Vec<&'a str>,
-    /// Which candidate is shown first.
+    /// The index of the candidate to show first.
     first: usize,
     candidates: Vec<CandidateRow<'a>>,
 }
@@ -29,8 +29,9 @@ struct CandidateRow<'a> {
     picture: String,
 }
 
-/// The page of a study: of what was timed and measured, with its chart and these figures. The truth
-/// and the picture of each candidate, one that is not shown may be empty, are files in PNG.
+/// Writes the page of a study: its chart and these figures of all candidates that were timed and
+/// measured. The truth and the picture of each candidate are PNG files; the picture of a candidate
+/// that is not shown may be empty.
 #[must_use]
 pub fn page(
     study: &Study,
@@ -58,7 +59,7 @@ pub fn page(
         first: front.first().and_then(|i| shown.iter().position(|s| s == i)).unwrap_or(0),
         candidates: shown.iter().map(candidate).collect(),
     };
-    // Nothing in a script may look like its end; serde_json writes no other `<`.
+    // Nothing in the script may look like its end tag; serde_json writes no other `<`.
     let data = serde_json::to_string(&data).unwrap_or_default().replace('<', "\\u003c");
     let title = format!("{}: speed against accuracy", study.of.scene);
     let about = format!("Truth: {}. Times: {}.", study.of.truth, study.machine);
@@ -77,12 +78,12 @@ fn values(record: &Record, figures: &[&str]) -> Vec<Option<f64>> {
     [median].into_iter().chain(figures.iter().map(|name| record.figure(name))).collect()
 }
 
-/// A PNG as the address of an image.
+/// A PNG as a data URL.
 fn inline(png: &[u8]) -> String {
     format!("data:image/png;base64,{}", STANDARD.encode(png))
 }
 
-/// A template with texts in the places of their names, `{{name}}`; what is put in is not looked at
+/// Fills in a template: `{{name}}` becomes the text of that name. Inserted text is not searched
 /// again.
 fn filled(template: &str, texts: &[(&str, String)]) -> String {
     let mut parts = template.split("{{");

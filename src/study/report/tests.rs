@@ -1,4 +1,4 @@
-//! The files of a study that is known: readable, and the same bytes everywhere.
+//! The files of a known study are readable, and have the same bytes everywhere.
 
 use super::chart::chart;
 use super::{csv, page};
@@ -9,7 +9,8 @@ use std::fmt::Write;
 
 const FIGURE: &str = "rmse";
 
-/// Seven methods of five settings, near each other in pairs, some on a line: what labels collide in.
+/// Seven methods with five settings each. Pairs of points are close, and some lie on a line, so
+/// that labels collide.
 fn study() -> Study {
     let method = |m: u32| {
         (0..5_u32).map(move |s| {
@@ -53,7 +54,7 @@ fn sha256(bytes: &[u8]) -> String {
     })
 }
 
-/// Blessed after a look at the chart: a change of these bytes is to be seen by somebody.
+/// Blessed after a look at the chart; look at it again if these bytes change.
 #[test]
 fn the_files_of_a_known_study_have_known_bytes() {
     let loss = Loss { title: "RMSE".into(), figure: FIGURE, of: |v| v };

@@ -1,4 +1,4 @@
-//! Candidates, loaded once for all that share a scene, and drawn by turns.
+//! Loads candidates, once for all that share a scene, and draws them by turns.
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;
@@ -11,20 +11,20 @@ use crate::scene::objects::detail::refine::Refinement;
 use crate::study::sweep::Candidate;
 use std::time::{Duration, Instant};
 
-/// Scenes and groups of candidates.
+/// The scenes and groups of the candidates.
 #[derive(Debug)]
 pub struct Bench<'e> {
     exec: &'e Exec,
-    /// Scenes of objects as they were read, which candidates at several levels of detail share.
+    /// Scenes of objects as they were read; candidates at several levels of detail share them.
     files: Vec<(SceneFile, Loaded)>,
     loads: Vec<Load>,
     groups: Vec<Grouped>,
 }
 
-/// A scene that is loaded.
+/// A loaded scene.
 #[derive(Debug)]
 struct Load {
-    /// What was loaded, and whether as objects.
+    /// The scene, and whether it was loaded as objects.
     key: (SceneFile, bool),
     ready: Ready,
 }
@@ -39,7 +39,7 @@ impl Load {
     }
 }
 
-/// Groups of a scene.
+/// The groups of a scene.
 #[derive(Debug)]
 struct Grouped {
     load: usize,
@@ -50,20 +50,20 @@ struct Grouped {
 /// A method that cannot draw the scene, and why.
 pub type LeftOut = (&'static str, String);
 
-/// What is ready to be drawn.
+/// A candidate that is ready to be drawn.
 #[derive(Debug)]
 pub struct Visit<'a> {
     /// The session of the candidate.
     pub session: Session<'a>,
-    /// Where the scene is seen from.
+    /// The camera.
     pub ready: &'a Ready,
-    /// How long the session took to prepare, without groups that had been made before.
+    /// How long the session took to prepare, without groups that already existed.
     pub prepared: Duration,
 }
 
 impl<'e> Bench<'e> {
-    /// Loads the scenes of candidates; those that their methods cannot draw are left out, and why. Those
-    /// that need opacities are dropped where there are none.
+    /// Loads the scenes of candidates. Candidates whose methods cannot draw the scene are left out,
+    /// with the reason. Candidates that need opacities are dropped if there are none.
     ///
     /// # Errors
     /// As [`SceneFile::ready`] if no candidate can be drawn.
@@ -94,7 +94,7 @@ impl<'e> Bench<'e> {
         }
     }
 
-    /// The scene of a candidate, of those that are loaded if it is among them.
+    /// The scene of a candidate: one that is already loaded, if it is the same.
     fn scene(&mut self, candidate: &Candidate, progress: Progress<'_>) -> Result<usize> {
         let method = candidate.file.method.method()?;
         let plain = SceneFile {
@@ -119,7 +119,8 @@ impl<'e> Bench<'e> {
         Ok(self.loads.len() - 1)
     }
 
-    /// What a scene of objects is made of, read once whatever is asked of its levels of detail; geometries are shared.
+    /// The content of a scene of objects, read once for all levels of detail; geometries are
+    /// shared.
     fn file(&mut self, plain: &SceneFile, progress: Progress<'_>) -> Result<Loaded> {
         let all = SceneFile { refinement: Refinement::default(), ..plain.clone() };
         if let Some((_, loaded)) = self.files.iter().find(|(file, _)| *file == all) {
@@ -130,7 +131,7 @@ impl<'e> Bench<'e> {
         Ok(loaded)
     }
 
-    /// A session of a candidate that is loaded.
+    /// Prepares a session of a loaded candidate.
     ///
     /// # Errors
     /// As [`Session::prepare`].
@@ -145,7 +146,7 @@ impl<'e> Bench<'e> {
         Ok(Visit { session, ready, prepared: start.elapsed() })
     }
 
-    /// The groups of a method that draws some, made on the first visit.
+    /// The groups for a method that draws groups, made on its first visit.
     fn known_groups(
         &mut self,
         load: usize,

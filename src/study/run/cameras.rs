@@ -1,21 +1,21 @@
-//! From where flicker is looked at: [`FRAMES`] pictures each.
+//! The cameras for flicker: [`FRAMES`] pictures each.
 
 use crate::scene::Camera;
 use glam::{DMat4, DVec3};
 
 /// How many pictures flicker is measured on.
 pub const FRAMES: u32 = 8;
-/// How far the camera turns from picture to picture along its path, in degrees.
+/// The camera's turn from picture to picture along its path, in degrees.
 pub const DEGREES: f64 = 0.25;
 
-/// Shifts by less than a pixel, in eighths: frame i by i to the right and 3 i mod 8 down, so that
-/// each eighth comes once in either direction.
+/// Shifts below a pixel, in eighths. Frame i moves by i to the right and by 3 i mod 8 down, so each
+/// eighth occurs once in either direction.
 #[must_use]
 pub fn shifts() -> Vec<[u32; 2]> {
     (0..FRAMES).map(|i| [i, 3 * i % FRAMES]).collect()
 }
 
-/// The camera under these shifts.
+/// The camera, shifted.
 #[must_use]
 pub fn shifted(camera: &Camera) -> Vec<Camera> {
     let eighths = |k: u32| k as f32 / 8.0;
@@ -27,11 +27,11 @@ pub fn shifted(camera: &Camera) -> Vec<Camera> {
     shifts().into_iter().map(shift).collect()
 }
 
-/// The camera on its way around what it looks at: frame i turned by [`DEGREES`] i about the vertical axis of the
-/// picture through the point 1024 times as far away as the near plane, which is the target of a
-/// camera that was made by [`Camera::new`]. In f64, rounded once.
+/// The camera on a path around its target. Frame i is turned by [`DEGREES`] i about the vertical
+/// axis of the picture, through the point 1024 times as far away as the near plane. For a camera
+/// from [`Camera::new`] this point is its target. Computed in f64, rounded once.
 ///
-/// For an orthographic camera the axis is the same.
+/// An orthographic camera uses the same axis.
 #[must_use]
 pub fn path(camera: &Camera) -> Vec<Camera> {
     let target = DVec3::new(0.0, 0.0, -1024.0 * f64::from(camera.near));
@@ -79,7 +79,7 @@ mod tests {
             assert!((at - DVec3::new(0.0, 0.0, -distance)).length() < 1e-5, "{at}");
             camera.check().unwrap();
         }
-        // A point in front of the target moves on a circle: 7 steps of a quarter of a degree.
+        // A point in front of the target moves on a circle, 7 steps of a quarter of a degree.
         let eye = all.iter().map(|camera| seen(camera, DVec3::new(1.0, 2.0, 6.0)));
         let eyes: Vec<DVec3> = eye.collect();
         let chord = 2.0 * distance * crate::number::elementary::sin((1.75_f64 / 2.0).to_radians());

@@ -2,14 +2,14 @@
 
 use super::record::Record;
 
-/// What is up in a chart: a figure as a loss, of which less is better.
+/// A figure on the y axis, as a loss: smaller is better.
 #[derive(Clone, Debug)]
 pub struct Loss {
-    /// What it is called, with its unit.
+    /// Its title, with its unit.
     pub title: String,
     /// The name of the figure.
     pub figure: &'static str,
-    /// The loss of a value of it.
+    /// Turns a value of the figure into a loss.
     pub of: fn(f64) -> f64,
 }
 

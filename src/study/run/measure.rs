@@ -1,4 +1,4 @@
-//! The errors of a candidate.
+//! Measures the errors of a candidate.
 
 use super::bench::{Bench, Visit};
 use super::cameras;
@@ -22,14 +22,14 @@ use std::time::Instant;
 const FLICKERS: [(&str, &str); 2] =
     [("flicker-shift", "flicker under shifts"), ("flicker-path", "flicker along a path")];
 
-/// Every figure as a loss, in the order of tables.
+/// Every figure as a loss, in the order of the tables.
 #[must_use]
 pub fn losses() -> Vec<Loss> {
     let of = |metric: &Metric| {
         let Metric { name, title, unit, better, .. } = *metric;
         let (before, of): (&str, fn(f64) -> f64) = match better {
             Better::Less => ("", |v| v),
-            // The RMSE of a PSNR; SSIM has no unit.
+            // A PSNR is shown as its RMSE; SSIM has no unit.
             Better::More if unit == "dB" => ("RMSE of the ", |v| pow(10.0, -v / 20.0)),
             Better::More => ("1 - ", |v| 1.0 - v),
             Better::NearOne => ("difference from 1 of ", |v| (v - 1.0).abs()),
@@ -51,7 +51,7 @@ fn drawn(ready: &Ready) -> u64 {
     scene.objects.as_ref().map_or(scene.surfels.len() as u64, Objects::drawn_total)
 }
 
-/// An error of the second of two pictures of a candidate, and how long that took in ms.
+/// The error of the second of two pictures of a candidate, and its time in ms.
 ///
 /// # Errors
 /// As [`measure`].
@@ -68,10 +68,10 @@ pub fn picture_error(
     Ok((metric.between(&picture.frame, &truth.frame, exec)?, time))
 }
 
-/// The second of two pictures of a candidate, and how long that took in ms.
+/// The second of two pictures of a candidate, and its time in ms.
 ///
 /// # Errors
-/// Of the drawing.
+/// As drawing.
 pub fn second<'v>(
     visit: &'v mut Visit<'_>,
     candidate: &Candidate,
@@ -83,15 +83,15 @@ pub fn second<'v>(
     Ok((start.elapsed().as_secs_f64() * 1e3, picture))
 }
 
-/// Draws a candidate and measures its errors; the picture, too.
+/// Draws a candidate and measures its errors; returns the picture too.
 ///
-/// The picture is the second of two of one camera: `deferred` shows what it has come to where
-/// nothing moves. Flicker is measured on the pictures of [`cameras`], in their order, of which each
-/// goes on from the one before; not in f64 nor in formats that are imitated, whose pictures differ from
-/// those in f32 by rounding alone and take many times as long.
+/// The picture is the second of two from one camera, because `deferred` needs a frame to settle.
+/// Flicker is measured on the pictures of [`cameras`] in their order; each continues from the state
+/// after the one before. It is not measured in f64, nor in emulated formats, because those pictures
+/// differ from f32 only by rounding and take many times as long.
 ///
 /// # Errors
-/// As [`Bench::visit`] and of the drawing.
+/// As [`Bench::visit`] and as drawing.
 pub fn measure(
     bench: &mut Bench<'_>,
     candidate: &Candidate,
@@ -102,7 +102,7 @@ pub fn measure(
     let mut visit = bench.visit(candidate, &|_, _, _| ())?;
     let camera = visit.ready.camera;
     if candidate.imitates {
-        // Only what the first picture saw counts.
+        // Only the state after the first picture counts.
         visit.session.render(&camera)?;
     } else {
         output.draw(&mut visit.session, &camera)?;
@@ -111,7 +111,7 @@ pub fn measure(
     let errors = Errors::measure(&frame, &truths.still.frame, exec)?;
     let mut known = BTreeMap::new();
     let mut know = |name: &str, value: Option<f64>| {
-        // Of equal pictures the PSNR is infinite, which no file holds.
+        // Equal pictures have an infinite PSNR, which JSON cannot hold.
         known.extend(value.filter(|value| value.is_finite()).map(|value| (name.to_owned(), value)));
     };
     for metric in &METRICS {

@@ -1,11 +1,11 @@
-//! A study of a scene: its candidates measured against the truth, and timed by turns.
+//! A study of a scene: measures its candidates against the truth, and times them by turns.
 //!
-//! 1. [`Bench::load`] loads what the [candidates](crate::study::sweep) draw.
+//! 1. [`Bench::load`] loads the scenes of the [candidates](crate::study::sweep).
 //! 2. [`measure`] takes the errors of one candidate after the other.
 //! 3. [`time::turn`] takes times, round by round.
 //!
-//! What is known so far is a [`Study`]. The errors are a function of the scene, the camera and the
-//! settings; times are not.
+//! A [`Study`] holds the results so far. The errors depend only on the scene, the camera and the
+//! settings; times do not.
 
 mod bench;
 pub mod cameras;

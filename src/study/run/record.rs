@@ -1,4 +1,4 @@
-//! What is known so far: kept in `study.json`, so that a study that was stopped goes on.
+//! The results so far, saved in `study.json`, so that a stopped study can be resumed.
 
 use crate::error::{Error, Result};
 use crate::study::chart::violin::quantile;
@@ -7,74 +7,74 @@ use crate::study::sweep::Candidate;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// A study, finished or not.
+/// A study, complete or not.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Study {
-    /// What it is a study of. Two studies of the same have the same errors on every machine.
+    /// The subject. Two studies of the same subject have the same errors on every machine.
     pub of: Subject,
-    /// What the candidates, in their order, have given so far.
+    /// The results of the candidates, in their order.
     pub candidates: Vec<Record>,
     /// The methods that cannot draw the scene, and why.
     pub left_out: Vec<(String, String)>,
-    /// On what the times were measured.
+    /// The machine that measured the times.
     pub machine: String,
 }
 
-/// What a study is of.
+/// The subject of a study.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Subject {
     /// The version of the program.
     pub splatref: String,
-    /// What the scene is called.
+    /// The name of the scene.
     pub scene: String,
-    /// The SHA-256 of the scene as it is given.
+    /// The SHA-256 of the scene as loaded.
     pub scene_sha256: String,
     /// Width and height of the picture in pixels.
     pub size: [u32; 2],
-    /// Where it is seen from: all numbers of the camera.
+    /// The camera: all its numbers.
     pub camera: String,
-    /// What is taken for the truth, in a sentence.
+    /// How the truth was computed, in a sentence.
     pub truth: String,
     /// The SHA-256 of the true picture.
     pub truth_sha256: String,
 }
 
-/// What is known of a candidate.
+/// The results of a candidate.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Record {
-    /// The options that make it of the scene.
+    /// The options that turn the scene into this candidate.
     pub options: String,
     /// The name of its method.
     pub method: String,
-    /// Its errors, once they are measured.
+    /// Its errors, if they are measured.
     pub measured: Option<Measured>,
-    /// How long its pictures took, in ms, in the order in which they were timed.
+    /// The times of its pictures in ms, in the order in which they were taken.
     pub times: Vec<f64>,
 }
 
-/// The errors of a candidate; a figure that cannot be said is absent.
+/// The errors of a candidate; an undefined figure is absent.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Measured {
-    /// How many surfels it was given.
+    /// How many surfels its scene has.
     pub surfels: u64,
     /// How long the first session took to prepare, in ms.
     pub prepared: f64,
     /// The figures by their names.
     pub figures: BTreeMap<String, f64>,
-    /// The power of flicker by frequency: under shifts, and along the path; empty of what was not
+    /// The power of flicker by frequency: under shifts, and along the path; empty if it was not
     /// measured.
     pub spectra: [Vec<f64>; 2],
 }
 
 impl Record {
-    /// Of a candidate nothing is known yet.
+    /// A candidate without results.
     #[must_use]
     pub fn new(candidate: &Candidate) -> Self {
         let (options, method) = (candidate.options.clone(), candidate.method.to_owned());
         Self { options, method, measured: None, times: Vec::new() }
     }
 
-    /// A name for its files: the options, with `-` for what names of files may not have.
+    /// The name of its files: the options, with `-` for characters that file names cannot have.
     #[must_use]
     pub fn file_name(&self) -> String {
         let plain = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' };
@@ -88,7 +88,7 @@ impl Record {
         times
     }
 
-    /// The quartiles of the times in ms: a quarter, the half, and three quarters; none before the
+    /// The quartiles of the times in ms: the first, the median and the third; `None` before the
     /// first time.
     #[must_use]
     pub fn quartiles(&self) -> Option<[f64; 3]> {
@@ -104,8 +104,8 @@ impl Record {
 }
 
 impl Study {
-    /// The front of median time and an error, of the candidates that have both: indices by
-    /// ascending time. `loss` is what is the less the better.
+    /// The front of median time and an error, among candidates that have both: indices by ascending
+    /// time. A smaller `loss` is better.
     #[must_use]
     pub fn front(&self, loss: impl Fn(&Record) -> Option<f64>) -> Vec<usize> {
         let point = |record: &Record| {
@@ -115,14 +115,14 @@ impl Study {
         front(&self.candidates.iter().map(point).collect::<Vec<_>>())
     }
 
-    /// This study with what another of the same has measured already.
+    /// Adds the results of an earlier study with the same subject.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the other is of something else.
+    /// [`Error::Invalid`] if the other study has another subject.
     pub fn resumed(mut self, before: Self) -> Result<Self> {
         if before.of != self.of {
             return Err(Error::Invalid(
-                "the study to go on with is of another scene, camera, truth or version: leave out \
+                "the study to resume has another scene, camera, truth or version; leave out \
                  --resume, or give another -o"
                     .into(),
             ));

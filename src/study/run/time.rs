@@ -1,4 +1,4 @@
-//! How long pictures take: by turns, so that the drift of a busy machine meets all candidates alike.
+//! Times pictures by turns, so that a busy machine affects all candidates alike.
 
 use super::bench::Bench;
 use crate::error::Result;
@@ -7,18 +7,18 @@ use crate::number::random::below;
 use crate::study::sweep::Candidate;
 use std::time::{Duration, Instant};
 
-/// How many rounds there are if nobody says: in each every candidate has its turn.
+/// The default number of rounds; in each round every candidate has a turn.
 pub const ROUNDS: u64 = 5;
-/// At most so many pictures are timed in a turn,
+/// At most this many pictures are timed in a turn,
 const PICTURES: usize = 3;
-/// and none begins when those of the turn have taken so long.
+/// and none begins after the turn has taken this long.
 const TURN: Duration = Duration::from_millis(150);
-/// A picture that takes so long needs no other to warm it up, and has its turn in the first
-/// [`SLOW_ROUNDS`] rounds alone.
+/// A picture that takes this long needs no warm-up, and has a turn only in the first
+/// [`SLOW_ROUNDS`] rounds.
 const SLOW: f64 = 1000.0;
 const SLOW_ROUNDS: u64 = 3;
 
-/// The processor, as far as the system tells, and how many threads draw.
+/// The name of the processor, if the system tells it, and the number of threads.
 #[must_use]
 pub fn machine(exec: &Exec) -> String {
     let known = std::fs::read_to_string("/proc/cpuinfo").unwrap_or_default();
@@ -27,22 +27,23 @@ pub fn machine(exec: &Exec) -> String {
     format!("{}, {threads} threads", name.map_or(std::env::consts::ARCH, |(_, name)| name))
 }
 
-/// The order of candidates in a round: a permutation that depends on both numbers alone.
+/// The order of candidates in a round: a permutation that depends only on these two numbers.
 #[must_use]
 pub fn order(round: u64, count: usize) -> Vec<usize> {
     let mut order: Vec<usize> = (0..count).collect();
-    // From the last to the first, each with one of those up to it [Durstenfeld 1964].
+    // From the last to the first, swap each with one of those up to it [Durstenfeld 1964].
     for i in (1..count).rev() {
         order.swap(i, below(round, i as u64, i as u64 + 1) as usize);
     }
     order
 }
 
-/// The turn of a candidate in a round: draws one picture that is not timed, and up to three that are;
-/// from the scene to shaded planes, in the memory of the picture before. Adds their times in ms.
+/// Runs the turn of a candidate in a round: draws one picture without timing it, and up to three
+/// with timing, from the scene to shaded planes, in the memory of the picture before. Adds the
+/// times in ms.
 ///
 /// # Errors
-/// As [`Bench::visit`] and of the drawing.
+/// As [`Bench::visit`] and as drawing.
 pub fn turn(
     bench: &mut Bench<'_>,
     candidate: &Candidate,

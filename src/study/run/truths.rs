@@ -1,12 +1,12 @@
-//! What is taken for the truth of a scene.
+//! The truth of a scene.
 //!
-//! - Of procedural shapes their exact surfaces; of meshes, and of a tree, their triangles, whatever a
-//!   candidate draws of them: also where a mesh is drawn as points, or a prefix of them.
-//! - Where no surface is known, as of points alone, all points by the converged picture of
-//!   [`truth::of_points`], and the reason.
+//! - Procedural shapes use their exact surfaces. Meshes and trees use their triangles, whatever a
+//!   candidate draws: even if it draws the mesh as points, or a prefix of them.
+//! - If no surface is known, as for points, all points are drawn by [`truth::of_points`], and the
+//!   reason is kept.
 //!
-//! `Decided:` the truth of a scene of which a part has no surface is that of its points: a picture of
-//! two kinds of truth would be neither.
+//! `Decided:` if a part of the scene has no surface, the truth of the whole scene comes from its
+//! points, because a picture of two kinds of truth would be neither.
 
 use super::cameras;
 use crate::error::Result;
@@ -18,13 +18,13 @@ use crate::scene::{Camera, Scene, Surfels};
 use crate::setting::{Fields, Value};
 use crate::study::truth::{self, Surface, Truth};
 
-/// What the true picture is of.
+/// The content of the true picture.
 #[derive(Clone, Debug)]
 pub struct Known {
     /// The lights, and the surfels if there are no surfaces.
     scene: Scene,
     surfaces: Vec<Surface>,
-    /// Whether what is seen from behind is passed through.
+    /// Whether back faces are culled.
     cull: bool,
     /// Why no surface is known.
     unknown: Option<String>,
@@ -33,19 +33,19 @@ pub struct Known {
 /// The true pictures of a study.
 #[derive(Clone, Debug)]
 pub struct Truths {
-    /// Of the picture itself, and its colours under the [shifts](cameras::shifted).
+    /// The picture itself, and its colours under the [shifts](cameras::shifted).
     pub still: Truth,
-    /// The colours along the [path](cameras::path), the first those of the picture itself; none where
-    /// no surface is known.
+    /// The colours along the [path](cameras::path); the first are those of the picture itself.
+    /// Empty if no surface is known.
     pub path: Vec<Plane<[f32; 3]>>,
 }
 
 impl Known {
-    /// What is known of a scene, under the lights and before the environment of a loaded one: its own,
-    /// or that whose truth it is.
+    /// Collects the truth of a scene, with the lights and the environment of a loaded one: the
+    /// scene itself, or a scene that was sampled from it.
     ///
     /// # Errors
-    /// As [`SceneFile::ready`] where not even points can be drawn.
+    /// As [`SceneFile::ready`] if not even points can be drawn.
     pub fn about(
         file: &SceneFile,
         lit: &Scene,
@@ -101,8 +101,8 @@ impl Known {
         self.picture((camera, &[]), exec, progress)
     }
 
-    /// The true pictures of a study that looks from a camera. Those along the path are not made of
-    /// points alone, where each takes as long as a study.
+    /// The true pictures of a study from a camera. Scenes of points have none along the path,
+    /// because each would take as long as a study.
     ///
     /// # Errors
     /// As [`truth::of_surfaces`] and [`truth::of_points`].
@@ -112,7 +112,7 @@ impl Known {
         if self.unknown.is_none() {
             path.push(still.frame.color("")?.clone());
             for (i, camera) in cameras::path(camera).iter().enumerate().skip(1) {
-                progress("the truth along a path", i as u64, cameras::FRAMES.into());
+                progress("rendering the truth along a path", i as u64, cameras::FRAMES.into());
                 let truth = self.picture((camera, &[]), exec, &|_, _, _| ())?;
                 path.push(truth.frame.color("")?.clone());
             }
@@ -121,14 +121,14 @@ impl Known {
     }
 }
 
-/// The surfaces of a scene, or why there are none.
+/// The surfaces of a scene, or the reason why there are none.
 fn surfaces(
     file: &SceneFile,
     exec: &Exec,
     progress: Progress<'_>,
 ) -> std::result::Result<Vec<Surface>, String> {
     if file.hierarchy.is_some() {
-        return Err("a hierarchy shows what its nodes hold".into());
+        return Err("the triangles of a hierarchy are in its nodes".into());
     }
     let is_shape = |source: &Source| matches!(source, Source::Shape { .. });
     if let Some(geometry) = file.geometries.iter().find(|one| is_shape(&one.model.source)) {
@@ -151,13 +151,13 @@ fn surfaces(
     let scene =
         drawn(&meshes, |_| Draw::Polygons, exec, progress).map_err(|error| error.to_string())?;
     if !scene.surfels.is_empty() {
-        return Err("a part of the scene is points alone".into());
+        return Err("a part of the scene has only points".into());
     }
     all.push(Surface::Triangles(scene.primitives.triangles));
     Ok(all)
 }
 
-/// The whole scene with all that it has, each model drawn as `draw` says of its draw, flat.
+/// The whole scene with all its content, flat; `draw` maps the draw of each model.
 fn drawn(
     file: &SceneFile,
     draw: impl Fn(Draw) -> Draw,
@@ -184,7 +184,7 @@ mod tests {
     use crate::io::scene_file::EnvironmentChoice;
     use crate::study::truth::How;
 
-    /// What is taken for the truth of a shape, with what is changed of its scene.
+    /// The truth of a shape, after a change to its scene.
     fn known(change: impl Fn(&mut SceneFile)) -> (Known, Truth) {
         let exec = Exec::sequential();
         let mut file = SceneFile::open("sphere").unwrap();

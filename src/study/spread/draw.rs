@@ -1,4 +1,5 @@
-//! The chart: for each prefix a panel of violins, and below it, if they were measured, the spectra.
+//! Draws the chart: a panel of violins for each prefix and, if they were measured, the spectra
+//! below.
 
 use super::{AtPrefix, Spread};
 use crate::error::{Error, Result};
@@ -7,42 +8,42 @@ use crate::study::chart::axis::Axis;
 use crate::study::chart::text::{shortened, width};
 use crate::study::chart::{Anchor, COLORS, DASHES, Drawing, GRID, INK, Label, Stroke, violin};
 
-/// As many orders as there are colours.
+/// The largest number of orders: one for each colour.
 pub const MOST_ORDERS: usize = COLORS.len();
-/// Panels beside each other.
+/// The largest number of panels side by side.
 pub const MOST_PREFIXES: usize = 8;
-/// What is longer would leave nothing to see of the rest.
+/// The longest relative length; a longer one would squeeze the rest.
 pub const MOST_UNITS: f64 = 1e4;
 
 const LEFT: f64 = 76.0;
 const RIGHT: f64 = 20.0;
-/// Between panels.
+/// The gap between panels.
 const GAP: f64 = 24.0;
-/// The room of a violin, at least and at most: names choose it.
+/// The least and the largest width of a violin; names choose between them.
 const SLOT: [f64; 2] = [84.0, 140.0];
-/// Half the width of a violin, and how far beside its middle the covering radius is shown.
+/// Half the width of a violin, and the distance of the covering radius from its middle.
 const HALF: f64 = 28.0;
 const BESIDE: f64 = 35.0;
-/// A panel is at least so wide, with a spectrum and without.
+/// The least width of a panel, with a spectrum and without.
 const LEAST: [f64; 2] = [220.0, 150.0];
 const TOP: f64 = 64.0;
 const HEIGHT: f64 = 250.0;
-/// From the violins' panels to those of spectra.
+/// The gap between the panels of violins and of spectra.
 const BETWEEN: f64 = 120.0;
 const SPECTRUM: f64 = 170.0;
-/// The size of the names of violins, and of what is said below.
+/// The font size of the names of violins, and of the notes below.
 const SMALL: f64 = 11.0;
 const GRID_LINE: Stroke = Stroke { color: GRID, width: 1.0, dash: &[] };
 const FRAME: Stroke = Stroke { color: INK, width: 1.0, dash: &[] };
 
-/// Where a panel is from left to right, and what it shows.
+/// The left and the right of a panel, and its content.
 type Panel<'a> = ([f64; 2], &'a AtPrefix);
 
-/// The chart of some prefixes of the same orders.
+/// Draws the chart of some prefixes of the same orders.
 ///
 /// # Errors
-/// [`Error::Invalid`] if there are more than [`MOST_PREFIXES`] prefixes or [`MOST_ORDERS`] orders, none of
-/// one, if a unit is 0, or if a length is over [`MOST_UNITS`].
+/// [`Error::Invalid`] if there are more than [`MOST_PREFIXES`] prefixes or [`MOST_ORDERS`] orders,
+/// or none; if a unit is 0; or if a length exceeds [`MOST_UNITS`].
 pub fn chart(found: &[AtPrefix]) -> Result<Drawing> {
     let orders = found.first().map_or(0, |at| at.spreads.len());
     if !(1..=MOST_PREFIXES).contains(&found.len()) || !(1..=MOST_ORDERS).contains(&orders) {
@@ -52,12 +53,12 @@ pub fn chart(found: &[AtPrefix]) -> Result<Drawing> {
         )));
     }
     if let Some(at) = found.iter().find(|at| !(at.unit > 0.0)) {
-        let what = "every order has two points at one place, so that no distance is relative";
+        let what = "every order has two points at one place, so no distance is relative";
         return Err(Error::Invalid(format!("prefix {}: {what}", at.prefix)));
     }
     if let Some(at) = found.iter().find(|at| !(greatest(at) <= MOST_UNITS)) {
         let what = format!("a distance is over {MOST_UNITS} times the largest least distance");
-        return Err(Error::Invalid(format!("prefix {}: {what}, which no chart shows", at.prefix)));
+        return Err(Error::Invalid(format!("prefix {}: {what}, too much for a chart", at.prefix)));
     }
     let spectra = found.iter().all(|at| at.spreads.iter().all(|s| s.spectrum.is_some()));
     let least = LEAST[usize::from(!spectra)];
@@ -110,14 +111,14 @@ fn larger(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
-/// The largest length of a prefix, in its units.
+/// The largest length of a prefix, in its unit.
 fn greatest(at: &AtPrefix) -> f64 {
     let nearest = |s: &Spread| s.nearest.last().copied().unwrap_or(0.0);
     let lengths = at.spreads.iter().flat_map(|s| [s.covering, nearest(s)]);
     lengths.fold(0.0, larger) / at.unit
 }
 
-/// The upper row.
+/// Draws the upper row.
 fn violins(out: &mut Drawing, panels: &[Panel<'_>]) {
     let most = panels.iter().map(|(_, at)| greatest(at)).fold(0.0, larger);
     let axis = Axis::from_zero(most, [TOP + HEIGHT, TOP]);
@@ -141,7 +142,7 @@ fn violins(out: &mut Drawing, panels: &[Panel<'_>]) {
     }
 }
 
-/// The lower row, with a sample of each line above it.
+/// Draws the lower row, with a sample of each line above it.
 fn curves(out: &mut Drawing, panels: &[Panel<'_>]) {
     let top = TOP + HEIGHT + BETWEEN;
     let spectra = |at: &AtPrefix| at.spreads.iter().filter_map(|s| s.spectrum.clone()).collect();
@@ -168,7 +169,7 @@ fn curves(out: &mut Drawing, panels: &[Panel<'_>]) {
         let one = axis.at(1.0);
         out.line([[*left, one], [*right, one]], Stroke::solid([0x80; 3], 1.0));
         for ((spectrum, color), dash) in spectra.iter().zip(COLORS).zip(DASHES) {
-            // Below 0 is rounding, and the estimate of the density.
+            // Values below 0 come from rounding, and from the estimate of the density.
             let at = |(f, p): (f64, &f64)| [across.at(f), axis.at(if *p < 0.0 { 0.0 } else { *p })];
             let points = Spectrum::frequencies().zip(&spectrum.power).map(at);
             out.line(points, Stroke { color, width: 1.75, dash });
@@ -176,7 +177,7 @@ fn curves(out: &mut Drawing, panels: &[Panel<'_>]) {
     }
 }
 
-/// A sample of the line of each order, with its name, as many as there is room for.
+/// Draws a sample of each order's line with its name, as many as fit.
 fn legend(out: &mut Drawing, panels: &[Panel<'_>], y: f64) {
     let (Some((_, at)), Some(([_, right], _))) = (panels.first(), panels.last()) else { return };
     let share = (right - LEFT) / at.spreads.len() as f64;
@@ -191,7 +192,7 @@ fn legend(out: &mut Drawing, panels: &[Panel<'_>], y: f64) {
     }
 }
 
-/// The lines of a grid through all panels of a row, their numbers and the title of the axis.
+/// Draws the grid lines through all panels of a row, their numbers and the title of the axis.
 fn rows(out: &mut Drawing, axis: &Axis, panels: &[Panel<'_>], title: &str) {
     for tick in axis.ticks() {
         let y = axis.at(tick);

@@ -1,13 +1,15 @@
-//! How evenly prefixes of several orders are spread: a table, and the violins of \[BJFM19, Fig. 3\].
+//! How evenly prefixes of several orders cover a surface: a table, and the violins of \[BJFM19,
+//! Fig. 3\].
 //!
-//! What is measured is defined by [`mod@crate::source::sampler::quality`] and
-//! [`mod@crate::source::sampler::spectrum`]; lengths here are the square roots in f64. Quantiles are those of
-//! [`super::chart::violin`].
+//! [`mod@crate::source::sampler::quality`] and [`mod@crate::source::sampler::spectrum`] define the
+//! measures; lengths here are the square roots in f64. [`super::chart::violin`] defines the
+//! quantiles.
 //!
-//! The figure has the "minimum relative point distances"; to what they are relative is not said. `Decided:` the
-//! unit of a prefix is the largest least distance that one of the orders has there. So it is the distance that no
-//! two points of the best order are below: of the exact greedy order, if that is among them, which is what the
-//! text compares with. Where the unit is 0 there are no relative lengths.
+//! The figure shows the "minimum relative point distances", but the paper does not say what they
+//! are relative to. `Decided:` the unit of a prefix is the largest least distance among the orders,
+//! so no two points of the best order are closer. If the exact greedy order is among them, the unit
+//! is its least distance, and the text compares with that order. If the unit is 0, there are no
+//! relative lengths.
 
 mod draw;
 #[cfg(test)]
@@ -22,41 +24,41 @@ use crate::progress::Progress;
 use crate::source::sampler::{Spectrum, quality, spectrum};
 use glam::Vec3;
 
-/// Points in an order, and what they are called.
+/// Points in an order, with a name.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ordered {
-    /// A word for tables and charts.
+    /// The name for tables and charts.
     pub name: String,
     /// The points.
     pub points: Vec<Vec3>,
 }
 
-/// How the first points of an order are spread. Lengths are in world units.
+/// How evenly the first points of an order are spread. Lengths are in world units.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spread {
-    /// What the order is called.
+    /// The name of the order.
     pub name: String,
-    /// The distance of each point to the nearest other, ascending.
+    /// The distance of each point to its nearest neighbour, ascending.
     pub nearest: Vec<f64>,
-    /// The largest distance of any point to the nearest of the prefix.
+    /// The covering radius: the largest distance of any point to the prefix.
     pub covering: f64,
-    /// The spectrum, if it was asked for.
+    /// The spectrum, if it was requested.
     pub spectrum: Option<Spectrum>,
 }
 
-/// The spreads of all orders at a prefix.
+/// The results of all orders at one prefix.
 #[derive(Clone, Debug, PartialEq)]
 pub struct AtPrefix {
-    /// How many points it has.
+    /// The number of points.
     pub prefix: usize,
-    /// The largest least distance, in world units: the unit of what is relative.
+    /// The largest least distance in world units: the unit of relative lengths.
     pub unit: f64,
-    /// One for each order.
+    /// One result for each order.
     pub spreads: Vec<Spread>,
 }
 
 impl Spread {
-    /// The least distance of two points.
+    /// The least distance between two points.
     #[must_use]
     pub fn least(&self) -> f64 {
         self.nearest.first().copied().unwrap_or(f64::INFINITY)
@@ -70,8 +72,8 @@ impl Spread {
     }
 }
 
-/// Measures prefixes of orders. Each covers its own points, or those `of` which all were chosen.
-/// `progress` is told the name of a step, how many prefixes of orders are done, and of how many.
+/// Measures prefixes of orders. Each prefix covers its own points, or the points `of` if they are
+/// given. `progress` gets the name of a step, how many prefixes are done, and how many there are.
 ///
 /// # Errors
 /// [`Error::Invalid`] if a prefix has fewer than 2 points or more than an order, and as
@@ -123,7 +125,7 @@ impl Ordered {
             other => other,
         };
         let first = &self.points[..prefix];
-        // A prefix covers itself, so that its points may stand before those that it is to cover.
+        // A prefix covers itself, so its points may precede the points to cover.
         let joined = of.map(|all| [first, all].concat());
         let indices: Vec<u32> = (0..prefix as u32).collect();
         let all = joined.as_deref().unwrap_or(&self.points);

@@ -72,7 +72,7 @@ fn what_cannot_be_measured_or_drawn_is_refused() {
     assert!(chart(&of(&orders, &[3], false).unwrap()).is_err(), "infinitely far in f32");
 }
 
-/// From one order at one prefix to the most that there is room for, with names of any length.
+/// From one order at one prefix to as many as fit, with names of any length.
 #[test]
 fn no_label_covers_another() {
     let two = orders(600);

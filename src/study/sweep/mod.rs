@@ -1,20 +1,20 @@
-//! What a study tries: every method, and every setting that trades time for quality.
+//! The candidates of a study: every method, and every setting that trades time for quality.
 //!
-//! A [`Candidate`] is the scene with some options on top, and is called by these options. The
-//! candidates of a scene, in this order, no two alike:
+//! A [`Candidate`] is the scene with some options applied; these options are its name. The
+//! candidates of a scene, in this order, all different:
 //!
-//! 1. each method of the table of methods, with what the scene has set that means something to it, as the
-//!    option `--method` has it;
-//! 2. each of them at every other [level of detail](DETAILS) that the scene has: points in an order
-//!    at other sizes of surfels, shapes of fewer surfels;
-//! 3. each method with one setting at another [value](TRADES), setting by setting, and for each
-//!    setting method by method.
+//! 1. each method of the table of methods, with those settings of the scene that apply to it, as
+//!    with the option `--method`;
+//! 2. each of them at every other [level of detail](DETAILS) of the scene: ordered points at other
+//!    surfel sizes, shapes with fewer surfels;
+//! 3. each method with one setting at another [value](TRADES), setting by setting, and method by
+//!    method for each setting.
 //!
-//! In a scene without opacities a method that [blends](Method::blends) layers is tried as in 1 alone,
-//! unless it is the one that is asked for: there are no layers to see.
+//! A scene without opacities has no layers to see, so a method that [blends](Method::blends) layers
+//! is tried only as in 1, unless it is the requested method.
 //!
 //! `Decided:` one setting at a time. All combinations would be thousands of pictures, and the study
-//! names which setting buys what.
+//! shows what each setting buys.
 
 #[cfg(test)]
 mod tests;
@@ -27,29 +27,29 @@ use crate::io::scene_file::{Choice, GroupChoice, MethodChoice, OutputSettings, S
 use crate::method::Method;
 use crate::setting::{Fields, Setting};
 
-/// A scene and how it is drawn.
+/// A scene and the way to draw it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Candidate {
-    /// The options of the command line that make it of the scene, such as
-    /// `--method ewa --outline raycast`.
+    /// The command-line options that turn the scene into this candidate, such as `--method ewa
+    /// --outline raycast`.
     pub options: String,
     /// The name of the method.
     pub method: &'static str,
     /// The scene with these options.
     pub file: SceneFile,
-    /// Whether it is tried in scenes with opacities alone.
+    /// Whether it is tried only in scenes with opacities.
     pub needs_opacity: bool,
-    /// Whether it imitates [formats](crate::method::buffer_formats) that the scene does not ask for: its errors are those of
-    /// a GPU that has them, its times are of no use.
+    /// Whether it emulates [formats](crate::method::buffer_formats) that the scene does not ask for.
+    /// Its errors are those on a GPU with these formats; its times mean nothing.
     pub imitates: bool,
 }
 
-/// The candidates of a scene; of one method alone if one is `only` asked for.
+/// The candidates of a scene; with `only`, those of one method.
 ///
-/// Whether a method can draw the scene is known when the scene is loaded.
+/// Whether a method can draw the scene is known only when the scene is loaded.
 ///
 /// # Errors
-/// [`Error::Invalid`] if a setting of the scene is out of range or not of its method.
+/// [`Error::Invalid`] if a setting of the scene is out of range, or does not belong to its method.
 pub fn candidates(scene: &SceneFile, only: Option<&str>) -> Result<Vec<Candidate>> {
     let methods = Method::all().into_iter().map(|method| method.name());
     let methods = methods.filter(|name| only.is_none_or(|only| only == *name));
@@ -77,7 +77,7 @@ fn start(scene: &SceneFile, name: &'static str) -> Result<Candidate> {
     let groups = file.method.method()?.grouping();
     file.groups.settings =
         groups.map_or_else(Choice::default, |groups| file.groups.settings.fitting(groups));
-    // What else is kept or how is no question of this study.
+    // A study does not vary what else is stored, or how.
     file.output = OutputSettings {
         number: scene.output.number,
         formats: scene.output.formats,
@@ -117,7 +117,8 @@ fn details(start: &Candidate) -> Vec<Candidate> {
         .collect()
 }
 
-/// The same with another value of a setting; none if it has no such setting, or this value already.
+/// The same with another value of a setting; `None` if it has no such setting, or has this value
+/// already.
 fn traded(start: &Candidate, trade: &Trade, value: &str) -> Result<Option<Candidate>> {
     let mut file = start.file.clone();
     let method = file.method.method()?;

@@ -6,7 +6,7 @@ fn shape(name: &str) -> SceneFile {
     SceneFile::open(name).unwrap()
 }
 
-/// The names of all settings there are.
+/// The names of all settings.
 fn settings() -> BTreeSet<&'static str> {
     let rows = [MethodChoice::rows(), GroupChoice::rows(), OutputSettings::rows()];
     rows.iter().flatten().map(|row| row.name).collect()

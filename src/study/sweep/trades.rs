@@ -1,37 +1,37 @@
-//! Which settings are traded, and their values.
+//! The settings that a study varies, and their values.
 
-/// A setting and what a study tries of it.
+/// A setting, and the values to try.
 #[derive(Clone, Copy, Debug)]
 pub struct Trade {
     /// The name of the setting, a row of [`crate::setting`].
     pub setting: &'static str,
-    /// Whose setting it is.
+    /// The owner of the setting.
     pub of: Of,
-    /// The values, as on the command line. The default may be among them.
+    /// The values, as on the command line. They may include the default.
     pub values: &'static [&'static str],
 }
 
-/// Whose a setting is.
+/// The owner of a setting.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Of {
-    /// Of methods.
+    /// A method.
     Method,
-    /// Of groups.
+    /// The groups.
     Groups,
-    /// Of the picture.
+    /// The output.
     Output,
 }
 
-/// Levels of detail that are tried.
+/// The levels of detail to try.
 #[derive(Clone, Copy, Debug)]
 pub struct Details {
-    /// Of points in an order: sizes of discs in px, see [`crate::scene::objects::detail::refine`].
+    /// For ordered points: sizes of discs in px; see [`crate::scene::objects::detail::refine`].
     pub surfel_sizes: &'static [f32],
-    /// Of a scene of one shape: its count divided by these.
+    /// For a scene of one shape: divisors of its count.
     pub parts: &'static [usize],
 }
 
-/// See [`Details`].
+/// The levels of detail to try; see [`Details`].
 pub const DETAILS: Details = Details { surfel_sizes: &[1.0, 2.0, 4.0, 8.0], parts: &[4, 16] };
 
 const fn of_method(setting: &'static str, values: &'static [&'static str]) -> Trade {
@@ -68,21 +68,22 @@ pub const TRADES: &[Trade] = &[
     },
 ];
 
-/// The settings that are not traded, and why not: with [`TRADES`] these are all there are.
+/// The settings that a study does not vary, and why. Together with [`TRADES`] these are all
+/// settings.
 pub const NOT_TRADED: &[(&str, &str)] = &[
-    ("kernel", "sets the outline, the cut-off and the filter, which are tried one by one"),
-    ("low_pass", "belongs to the sharpness that a person wants"),
-    ("cull", "says which surfaces are shown"),
-    ("share", "leaves objects out that a person can see"),
-    ("bins", "a picture of one frame shows no difference but arcs"),
-    ("bin_edges", "says how arcs are spread over groups, at no cost"),
-    ("refraction", "says what the surface is made of"),
-    ("bends", "says what the surface is made of"),
-    ("occluded", "differs where a surface lies just behind another"),
-    ("subpixel_bits", "says which hardware is imitated"),
-    ("opposite", "a rule of groups for thin parts"),
-    ("coplanar", "a rule of groups for flat parts"),
-    ("most", "belongs to what groups are extended by"),
-    ("stages", "says what is written"),
-    ("compression", "says how it is written"),
+    ("kernel", "sets outline, cut-off and filter together, which are tried one by one"),
+    ("low_pass", "sets the sharpness, which is a matter of taste"),
+    ("cull", "chooses which surfaces are shown"),
+    ("share", "leaves out objects that a person can see"),
+    ("bins", "changes nothing but arcs in a picture of one frame"),
+    ("bin_edges", "spreads arcs over groups, at no cost"),
+    ("refraction", "describes the material"),
+    ("bends", "describes the material"),
+    ("occluded", "matters only where a surface lies just behind another"),
+    ("subpixel_bits", "chooses the emulated hardware"),
+    ("opposite", "sets a rule of groups for thin parts"),
+    ("coplanar", "sets a rule of groups for flat parts"),
+    ("most", "belongs to the extension of groups"),
+    ("stages", "chooses what is written"),
+    ("compression", "chooses how it is written"),
 ];

@@ -1,4 +1,4 @@
-//! Surfaces along rays, tile by tile.
+//! Casts rays at surfaces, tile by tile.
 
 use super::caster::Caster;
 use super::tile::{Seen, Tile};
@@ -9,12 +9,12 @@ use crate::memory;
 use crate::progress::Progress;
 use crate::scene::{Camera, Scene};
 
-/// The true picture of surfaces under the lights of a scene, and its colours under shifts by eighths of a
-/// pixel, each 0 to 7; see the [module](super).
+/// The true picture of surfaces under the lights of a scene, and its colours under shifts by
+/// eighths of a pixel, each 0 to 7; see the [module](super).
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] as [`Camera::check`] and [`crate::scene::Similarity::check`], if a parameter of a
-/// shape is out of range, or if the process may not hold what it takes.
+/// [`crate::Error::Invalid`] as [`Camera::check`] and [`crate::scene::Similarity::check`], if a
+/// parameter of a shape is out of range, or if the memory limit is too low.
 pub fn of_surfaces(
     surfaces: &[Surface],
     scene: &Scene,
@@ -26,7 +26,7 @@ pub fn of_surfaces(
     camera.check()?;
     let grid = exec.grid(camera.width, camera.height);
     let mut all: Vec<(usize, Rect)> = grid.rects().into_iter().enumerate().collect();
-    // Some at a time, so that progress is seen and what they leave is put away.
+    // A few tiles at a time, so that progress is seen and results are stored early.
     let some = SOME.max(4 * exec.threads());
     ask(camera, shifts.len(), grid.side, exec)?;
     let caster = Caster::new(surfaces, scene, cull, camera, exec)?;
@@ -48,12 +48,13 @@ pub fn of_surfaces(
     Ok(Truth { frame: frame(color, alpha, depth, Some(normal)), how, shifted })
 }
 
-/// What the work is called while it goes on.
-pub(super) const STEP: &str = "the true picture";
-/// Tiles between two reports of progress, at least.
+/// The name of the step in progress reports.
+pub(super) const STEP: &str = "rendering the true picture";
+/// The least number of tiles between two progress reports.
 const SOME: usize = 64;
 
-/// Whether the process may hold the planes, and the samples of the tiles that are worked on at once.
+/// Checks that the memory limit allows the planes, and the samples of the tiles that are computed
+/// at once.
 fn ask(camera: &Camera, shifts: usize, [wide, high]: [u32; 2], exec: &Exec) -> Result<()> {
     let pixels = u64::from(camera.width) * u64::from(camera.height);
     let planes = pixels * (32 + 12 * shifts as u64);
@@ -64,9 +65,9 @@ fn ask(camera: &Camera, shifts: usize, [wide, high]: [u32; 2], exec: &Exec) -> R
     })
 }
 
-/// Bytes of a sample: the nearest surface, of shapes with its normal and colour, and the colour.
+/// Bytes of a sample: the nearest surface, with normal and colour for shapes, and the colour.
 const OF_A_SAMPLE: u64 = 192;
-/// The planes of the picture, its colours as they are and under each shift.
+/// The planes of the picture, with its colours and those under each shift.
 struct Planes {
     colors: Vec<Plane<[f32; 3]>>,
     alpha: Plane<f32>,
@@ -96,7 +97,7 @@ impl Planes {
     }
 }
 
-/// Writes the values of the pixels of a rectangle, row by row.
+/// Writes the values of the pixels in a rectangle, row by row.
 fn put<T, U>(plane: &mut Plane<U>, rect: &Rect, values: &[T], of: impl Fn(&T) -> U) {
     let width = plane.width() as usize;
     for (y, row) in (rect.y0 as usize..).zip(values.chunks(rect.columns())) {

@@ -12,7 +12,7 @@ use crate::source::procedural::Tracer;
 use crate::splat::View;
 use glam::{DMat3, DMat4, DVec3, Vec3};
 
-/// Bytes of a triangle while it is listed: twice its number and its bounds, and the tiles it is in.
+/// Bytes of a triangle while it is listed: its number twice, its bounds, and its tiles.
 const OF_A_TRIANGLE: u64 = 112;
 
 /// What the tiles share.
@@ -27,23 +27,23 @@ pub(super) struct Caster<'a> {
     pub(super) world_from_view: DMat4,
 }
 
-/// A surface made ready to be seen.
+/// A surface, prepared for rays.
 pub(super) enum Solid<'a> {
     Shape(Turned),
     Triangles {
         triangles: &'a Triangles,
         /// The numbers of those that may be seen, ascending.
         listed: Vec<u32>,
-        /// The tiles in which they may be.
+        /// The tiles in which they may be seen.
         bins: Bins,
     },
 }
 
-/// A shape in its place.
+/// A shape at its place.
 pub(super) struct Turned {
     pub(super) tracer: Tracer,
     pub(super) shape_from_view: DMat4,
-    /// Of directions.
+    /// Transforms directions.
     pub(super) world_from_shape: DMat3,
     /// Its one colour, if it has one.
     pub(super) color: Option<DVec3>,
@@ -106,7 +106,7 @@ impl<'a> Caster<'a> {
         Ok(Solid::Triangles { triangles, listed, bins })
     }
 
-    /// The pixels that may see a triangle, under a shift or none; none if no pixel may.
+    /// The pixels that may see a triangle, with or without a shift; `None` if no pixel may.
     fn rect(&self, placed: &Placed) -> Option<Rect> {
         let [left, top, right, bottom] = placed.bounds(&self.view)?;
         let from_behind = || placed.lines(self.reach).is_some_and(|lines| !lines.front);
@@ -115,7 +115,7 @@ impl<'a> Caster<'a> {
             if v > 0.0 { if v < f64::from(room) { v as u32 } else { room } } else { 0 }
         };
         let (width, height) = (self.camera.width, self.camera.height);
-        // Under a shift a pixel has samples of those to the left and above.
+        // Under a shift, a pixel takes samples of the pixels to the left and above.
         let x = [place(left, width), place(right + 2.0, width)];
         let y = [place(top, height), place(bottom + 2.0, height)];
         let rect = Rect { x0: x[0], y0: y[0], x1: x[1], y1: y[1] };
@@ -124,5 +124,5 @@ impl<'a> Caster<'a> {
     }
 }
 
-/// Triangles of one job.
+/// Triangles in one job.
 const CHUNK: usize = 1 << 14;

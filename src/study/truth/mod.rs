@@ -1,33 +1,34 @@
 //! The true picture of a scene, against which errors are measured.
 //!
-//! [`of_surfaces`] sees surfaces along rays, in f64:
+//! [`of_surfaces`] casts rays at surfaces, in f64:
 //!
 //! - Each pixel has 8 x 8 samples ([`SAMPLES`]), at ((i + 1/2) / 8, (j + 1/2) / 8) within it. A
 //!   sample shows the nearest surface beyond the near plane, t > near, shaded by
-//!   [`crate::shade::phong`] at its own point and normal, or what is behind: the environment in the
-//!   direction of the sample's ray, or black. The colour of the pixel is their mean: the sum over
-//!   j, and within over i, both ascending, divided by 64, rounded to `f32` once.
-//! - `A` (1 where a surface or the environment is seen, else 0), `Z` (depth) and `normal` (world space)
-//!   are those of the ray through the pixel's centre. `Decided:` they are not averaged; a mean of depths
-//!   is the depth of nothing.
-//! - Shapes are met exactly ([`crate::source::Shape::trace`]) along rays taken back through their place.
-//!   Triangles are met as [`triangles`] says. Of surfaces at one depth the first in order wins; of the
-//!   triangles of one surface the lower index.
-//! - With `cull`, what is seen from behind is passed through, as by methods that cull; else its
-//!   normal is reversed. From behind a shape is seen where n . d > 0, d the direction of the ray (with
-//!   `cull` where n . d >= 0); which side of a triangle is the front its corners say. `Decided:` their
-//!   order, and not the normals, as where polygons are drawn.
+//!   [`crate::shade::phong`] at its own point and normal. Without a surface it shows the
+//!   environment in the direction of the sample's ray, or black. The colour of the pixel is the
+//!   mean: the sum over j, and within over i, both ascending, divided by 64, rounded to `f32` once.
+//! - `A` (1 where a surface or the environment is seen, else 0), `Z` (depth) and `normal` (world
+//!   space) come from the ray through the pixel's centre. `Decided:` they are not averaged, because
+//!   a mean of depths is the depth of no surface.
+//! - Shapes are met exactly ([`crate::source::Shape::trace`]) along rays that are transformed back
+//!   into their space. [`triangles`] says how triangles are met. Of surfaces at one depth the first
+//!   in order wins; of the triangles of one surface the lower index.
+//! - With `cull`, rays pass through back faces, as in methods that cull. Without it, the normal of
+//!   a back face is reversed. The back of a shape is seen where n . d > 0, with d the direction of
+//!   the ray (with `cull` where n . d >= 0). The corners of a triangle say which side is its front.
+//!   `Decided:` their order decides, not the normals, as where polygons are drawn.
 //! - A surface without a colour has the material's.
 //!
-//! [`of_points`] has no surface to look at. It takes the picture of [`mod@crate::method::ewa`] in f64, of
-//! [`mod@crate::method::peeling`] where surfels have opacities, both with their default settings, at 8 times
-//! the size, and the mean of its 8 x 8 pixels as above. `A`, `Z` and `normal` are those of that
-//! picture at its own size. That is what EWA splatting comes to without the limits of a pixel; it
-//! favours methods that are like it.
+//! [`of_points`] has no surface to look at. It draws the picture of [`mod@crate::method::ewa`] in
+//! f64, or of [`mod@crate::method::peeling`] if surfels have opacities, both with default settings,
+//! at 8 times the size. The colour of a pixel is the mean of its 8 x 8 pixels as above. `A`, `Z`
+//! and `normal` come from the same picture at its own size. This is the limit of EWA splatting
+//! without pixels, so it favours methods that are like EWA.
 //!
-//! A camera that is shifted by whole eighths of a pixel sees the same samples in other pixels. So
-//! both give the colours under such shifts at once: by [kx, ky] eighths to the right and down, the
-//! pixel x has the samples 8 x - kx to 8 x - kx + 7 of the picture that is not shifted.
+//! A camera that is shifted by whole eighths of a pixel sees the same samples in other pixels, so
+//! both functions return the colours under such shifts at once. Under a shift by [kx, ky] eighths
+//! to the right and down, pixel x has the samples 8 x - kx to 8 x - kx + 7 of the unshifted
+//! picture.
 
 mod cast;
 mod caster;
@@ -50,19 +51,19 @@ use std::fmt;
 /// Samples along each side of a pixel.
 pub const SAMPLES: u32 = 8;
 
-/// What is seen.
+/// A surface.
 #[derive(Clone, Debug)]
 pub enum Surface {
     /// An exact shape.
     Shape {
-        /// Which.
+        /// The shape.
         shape: Shape,
-        /// Where it is put.
+        /// Its place.
         place: Similarity,
-        /// Linear RGB for all of it; its own if absent.
+        /// One linear RGB colour for all of it; its own colours if absent.
         color: Option<Vec3>,
     },
-    /// Triangles: normals and colours are interpolated.
+    /// Triangles; normals and colours are interpolated.
     Triangles(Triangles),
 }
 
@@ -71,22 +72,22 @@ pub enum Surface {
 pub struct Truth {
     /// The planes of a picture: the colour, `A`, `Z` and `normal`.
     pub frame: Frame<f32>,
-    /// Where it comes from.
+    /// How it was computed.
     pub how: How,
-    /// The colours under shifts, in the order in which these were asked for.
+    /// The colours under shifts, in the order of the request.
     pub shifted: Vec<Plane<[f32; 3]>>,
 }
 
-/// Where a true picture comes from.
+/// How a true picture was computed.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum How {
-    /// Exact shapes alone.
+    /// From exact shapes.
     Exact,
-    /// Triangles, and maybe shapes.
+    /// From triangles, and maybe shapes.
     Triangles,
-    /// Points alone.
+    /// From points.
     Points,
-    /// Points with opacities.
+    /// From points with opacities.
     Layers,
 }
 
@@ -119,7 +120,7 @@ fn frame(
     Frame { width, height, planes }
 }
 
-/// The mean colour of the samples of a pixel: the first sample is at [x, y] of rows of `width`.
+/// The mean colour of a pixel's samples; the first sample is at [x, y] in rows of `width`.
 fn mean(samples: &[[f64; 3]], width: usize, [x, y]: [usize; 2]) -> [f32; 3] {
     let side = SAMPLES as usize;
     let mut sum = [0.0; 3];

@@ -1,4 +1,4 @@
-//! What EWA splatting comes to without the limits of a pixel.
+//! The limit of EWA splatting without pixels.
 
 use super::cast::STEP;
 use super::{How, SAMPLES, Truth, frame, mean};
@@ -10,16 +10,16 @@ use crate::progress::Progress;
 use crate::scene::{Camera, Primitives, Scene};
 use std::borrow::Cow;
 
-/// The true picture of a scene of surfels alone, and its colours under shifts by eighths of a pixel, each 0
-/// to 7; see the [module](super). Primitives are not shown.
+/// The true picture of a scene of surfels, and its colours under shifts by eighths of a pixel, each
+/// 0 to 7; see the [module](super). Primitives are not shown.
 ///
-/// The samples are drawn in blocks of 127 x 127 pixels, counted from the top left, each by a camera of its
-/// own. Its scale is 8 times that of the camera, its centre is at 8 cx - 8 (x0 - 1) and likewise in y,
-/// rounded to `f32`, with x0 the first column of the block. So samples may be off their places by up to
-/// width / 2^24 px; they are where they belong if cx and cy are multiples of 1/16.
+/// The samples are drawn in blocks of 127 x 127 pixels, counted from the top left, each by a camera
+/// of its own. Its scale is 8 times the camera's, and its centre is at 8 cx - 8 (x0 - 1) and
+/// likewise in y, rounded to `f32`, with x0 the first column of the block. Samples may therefore be
+/// off by up to width / 2^24 px; they are exact if cx and cy are multiples of 1/16.
 ///
 /// # Errors
-/// As [`Session::define`], and [`crate::Error::Invalid`] if the process may not hold what it takes.
+/// As [`Session::define`], and [`crate::Error::Invalid`] if the memory limit is too low.
 pub fn of_points(
     scene: &Scene,
     (camera, shifts): (&Camera, &[[u32; 2]]),
@@ -69,7 +69,7 @@ pub fn of_points(
     Ok(Truth { frame: frame(colors.remove(0), alpha, depth, normal), how, shifted })
 }
 
-/// The scene without all that is not surfels.
+/// The scene with nothing but its surfels.
 fn of_surfels(scene: &Scene) -> Cow<'_, Scene> {
     if scene.primitives.is_empty() && scene.objects.is_none() {
         return Cow::Borrowed(scene);
@@ -78,10 +78,10 @@ fn of_surfels(scene: &Scene) -> Cow<'_, Scene> {
     Cow::Owned(surfels)
 }
 
-/// The most pixels of the picture along a side of a block, of which there is one more before.
+/// The largest number of pixels along a side of a block; one more comes before them.
 const SIDE: u32 = 127;
 
-/// A picture in parts.
+/// A picture in blocks.
 fn blocks(camera: &Camera) -> Vec<Rect> {
     let part = |size: u32| {
         let starts = (0..size).step_by(SIDE as usize);
@@ -92,7 +92,7 @@ fn blocks(camera: &Camera) -> Vec<Rect> {
         .collect()
 }
 
-/// The camera that sees a block, with the pixels before it, at the large size.
+/// The camera that sees a block and the pixels before it, at the large size.
 fn enlarged(camera: &Camera, block: &Rect) -> Camera {
     let side = SAMPLES as f32;
     let center = |center: f32, from: u32| {

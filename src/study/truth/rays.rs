@@ -4,11 +4,11 @@ use super::triangles::Reach;
 use crate::frame::Rect;
 use crate::scene::Camera;
 
-/// Rays in rows: at so many places along each side of a pixel, and so many more before the first
-/// pixel to the left and above.
+/// Rays in rows: this many places along each side of a pixel, and more before the first pixel to
+/// the left and above.
 ///
-/// Ray i of n places a pixel, with m before, is at the place X = X0 + (i - m + 1/2) / n of pixels that begin at
-/// X0, and its x is (X - cx) / fx; its y is -(Y - cy) / fy.
+/// Ray i of n places a pixel, with m before, is at the place X = X0 + (i - m + 1/2) / n of pixels
+/// that begin at X0. Its x is (X - cx) / fx, and its y is -(Y - cy) / fy.
 #[derive(Clone, Debug)]
 pub(super) struct Rays {
     /// Ascending.
@@ -49,7 +49,7 @@ impl Rays {
         Self { x, y, columns, rows }
     }
 
-    /// How far the rays of a picture reach, with those before it.
+    /// How far the rays of a picture reach, with the rays before it.
     pub(super) fn reach(camera: &Camera) -> Reach {
         let most = |size: u32, focal: f32, center: f32| {
             let [focal, center] = [focal, center].map(f64::from);
@@ -62,12 +62,12 @@ impl Rays {
         }
     }
 
-    /// How many there are.
+    /// The number of rays.
     pub(super) fn len(&self) -> usize {
         self.x.len() * self.y.len()
     }
 
-    /// x and y of each ray and its number, row by row.
+    /// x and y of each ray, and its number, row by row.
     pub(super) fn each(&self) -> impl Iterator<Item = (usize, [f64; 2])> {
         let rows = self.y.iter().flat_map(|&y| self.x.iter().map(move |&x| [x, y]));
         rows.enumerate()
@@ -85,7 +85,7 @@ impl Rays {
         within([place(low), place(high)], [0, self.y.len()])
     }
 
-    /// Those of some columns whose x is in a range.
+    /// The rays of some columns whose x is in a range.
     #[inline(always)]
     pub(super) fn span(&self, range: [f64; 2], columns: [usize; 2]) -> [usize; 2] {
         let axis = &self.columns;
@@ -100,14 +100,14 @@ impl Axis {
         (place - self.center) / self.focal
     }
 
-    /// The number, with a fraction, of the ray at a place in px.
+    /// The fractional number of the ray at a place in px.
     #[inline(always)]
     fn place(&self, px: f64) -> f64 {
         (px - self.from) * self.samples + self.before - 0.5
     }
 }
 
-/// The integers of a range that are within these numbers, or less than [`SLACK`] beyond.
+/// The integers of a range between these numbers, or less than [`SLACK`] beyond.
 #[inline(always)]
 fn within([low, high]: [f64; 2], [first, end]: [usize; 2]) -> [usize; 2] {
     let (low, high) = (-(SLACK - low).floor(), (high + SLACK).floor() + 1.0);
@@ -118,7 +118,7 @@ fn within([low, high]: [f64; 2], [first, end]: [usize; 2]) -> [usize; 2] {
     [low, high]
 }
 
-/// What rounding moves no place by, in places.
+/// Rounding moves no place by this much, in places.
 const SLACK: f64 = 1.0 / 1024.0;
 
 #[cfg(test)]

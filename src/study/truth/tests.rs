@@ -28,7 +28,7 @@ fn see(surfaces: &[Surface], scene: &Scene, cull: bool, camera: &Camera) -> Trut
     of_surfaces(surfaces, scene, cull, (camera, &[]), &exec, &|_, _, _| ()).unwrap()
 }
 
-/// Triangles of positions, with a normal of their own each, white.
+/// White triangles at these positions, each with its own normal.
 fn mesh(triangles: &[[[f32; 3]; 3]]) -> Surface {
     let (mut position, mut direction) = (Vec::new(), Vec::new());
     for corners in triangles {
@@ -48,7 +48,7 @@ fn mesh(triangles: &[[[f32; 3]; 3]]) -> Surface {
     Surface::Triangles(Triangles::new(vertices, corners).unwrap().0)
 }
 
-/// A sphere of radius 1 as a mesh of `n` by `2 n` quads, with its own normals or those of the sphere.
+/// A sphere of radius 1 as a mesh of `n` by `2 n` quads, with the mesh's normals or the sphere's.
 fn globe(n: u32) -> Surface {
     let at = |i: u32, j: u32| {
         let polar = std::f64::consts::PI * f64::from(i) / f64::from(n);
@@ -80,7 +80,7 @@ fn colors(truth: &Truth) -> Vec<f32> {
     truth.frame.color("").unwrap().values().iter().flatten().copied().collect()
 }
 
-/// The area that is covered, in px, of what is white before black.
+/// The covered area of a white surface before black, in px.
 fn area(truth: &Truth) -> f64 {
     colors(truth).iter().step_by(3).map(|v| f64::from(*v)).sum()
 }
@@ -98,7 +98,7 @@ fn the_area_of_a_triangle_is_that_of_its_corners() {
         });
         let [a, b, c] = on_screen;
         let expected = 0.5 * ((b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]));
-        // Each of about 300 pixels on the outline is off by less than a hundredth in the mean.
+        // Each of about 300 pixels on the outline is off by less than a hundredth on average.
         assert!((area(&truth) - expected).abs() < 1.5, "{} {expected}", area(&truth));
         assert_eq!(truth.how, How::Triangles);
         let behind = see(&[mesh(&[[corners[0], corners[2], corners[1]]])], &unlit, true, &camera);
@@ -151,12 +151,12 @@ fn a_finer_mesh_is_nearer_to_the_sphere() {
         let found = see(&[globe(n)], &scene, true, &camera);
         rmse(&colors(&found), &exact)
     });
-    // The sagitta of an edge falls with its square; the outline, which the mesh cuts, falls with it.
+    // The sagitta of an edge falls with its square, and so does the outline, which the mesh cuts.
     assert!(errors.windows(2).all(|two| two[1] < 0.4 * two[0]), "{errors:?}");
     assert!(errors[3] < 2e-3, "{errors:?}");
 }
 
-/// The shape scaled, turned and moved is what the camera moved the other way sees.
+/// The shape, scaled, turned and moved, looks the same as from a camera moved the other way.
 #[test]
 fn a_shape_in_its_place() {
     let scene = lights("torus", vec![]);
@@ -176,7 +176,7 @@ fn a_shape_in_its_place() {
         &plain,
     );
     let b = see(&[Surface::Shape { shape, place, color: None }], &scene, true, &moved);
-    // A sample on the outline may fall to the other side, as cameras are rounded.
+    // A sample on the outline may fall to the other side, because cameras are rounded.
     assert!(rmse(&colors(&a), &colors(&b)) < 2e-3);
     let of = |truth: &Truth| truth.frame.scalar("Z").unwrap().values().to_vec();
     let pairs = of(&a).into_iter().zip(of(&b)).filter(|(a, b)| a.is_finite() && b.is_finite());
@@ -184,7 +184,7 @@ fn a_shape_in_its_place() {
     assert!(off < 8, "{off}");
 }
 
-/// Each sample against each triangle, by another formula [Moeller, Trumbore 1997].
+/// Compares each sample with each triangle by another formula [Moeller, Trumbore 1997].
 fn brute(triangles: &[[[f32; 3]; 3]], camera: &Camera) -> Vec<f64> {
     let world = camera.view_from_world.as_dmat4().inverse();
     let origin = world.transform_point3(DVec3::ZERO);
@@ -224,7 +224,7 @@ fn triangles_through_the_camera_are_those_of_brute_force() {
         let random = |i: u64| 6.0 * unit(seed, i) - 3.0;
         let corner = |i: u64| [random(3 * i), random(3 * i + 1), random(3 * i + 2) + 2.0];
         let soup: Vec<_> = (0..8).map(|i| [0, 1, 2].map(|k| corner(3 * i + k))).collect();
-        // The near plane is 3 / 1024 before the eye, and triangles reach behind it.
+        // The near plane is 3 / 1024 in front of the eye, and triangles reach behind it.
         let camera = camera([40, 30], 3.0, Lens::FieldOfView(80.0));
         let truth = see(&[mesh(&soup)], &unlit, false, &camera);
         let found = colors(&truth);
@@ -239,7 +239,8 @@ fn triangles_through_the_camera_are_those_of_brute_force() {
     }
 }
 
-/// Edges through samples and centres: each is in exactly one of two triangles or in both, never in none.
+/// Edges pass through samples and centres; each sample is in exactly one of two triangles or in
+/// both, never in none.
 #[test]
 fn nothing_shows_through_a_closed_mesh() {
     let unlit = lights("cube", vec![]);
@@ -252,7 +253,7 @@ fn nothing_shows_through_a_closed_mesh() {
         let inside: Vec<usize> =
             (0..regions.len()).filter(|&i| regions[i] == Region::Interior).collect();
         assert!(inside.len() > 500);
-        // Of one colour, the material's: whatever shines through would be darker.
+        // All have the material's colour; a hole would be darker.
         let open = inside.iter().filter(|&&i| color[i][0] != unlit.material.color.x);
         assert_eq!(open.count(), 0);
     }
@@ -314,7 +315,7 @@ fn points_come_to_what_their_splats_cover() {
         true,
         &camera,
     );
-    // The splats reach a radius of 1/20 beyond the outline and are smooth within.
+    // The splats reach 1/20 of the radius beyond the outline, and are smooth inside.
     assert!(rmse(&colors(&found), &colors(&exact)) < 0.06);
     let moved = Camera { cx: camera.cx + 0.5, cy: camera.cy + 0.25, ..camera };
     let moved = of_points(&scene, (&moved, &[]), &exec, &|_, _, _| ()).unwrap();

@@ -1,4 +1,4 @@
-//! What the rays of a tile see.
+//! The surfaces that the rays of a tile see.
 
 use super::caster::{Caster, Solid, Turned};
 use super::rays::Rays;
@@ -15,36 +15,36 @@ type V = Vector3<f64>;
 
 /// A tile of the picture, row by row.
 pub(super) struct Tile {
-    /// The colours as they are, and under each shift.
+    /// The colours, and those under each shift.
     pub(super) colors: Vec<Vec<[f32; 3]>>,
-    /// What the rays through the centres see.
+    /// The results of the rays through the centres.
     pub(super) seen: Vec<Seen>,
 }
 
-/// What the ray through the centre of a pixel sees.
+/// The result of the ray through the centre of a pixel.
 #[derive(Clone, Copy)]
 pub(super) struct Seen {
     pub(super) alpha: f32,
-    /// +inf of nothing.
+    /// +inf if it meets nothing.
     pub(super) depth: f32,
-    /// In world space, turned to the side that is seen.
+    /// In world space, turned towards the viewer.
     pub(super) normal: [f32; 3],
 }
 
 /// The nearest surface along each ray so far.
 struct Nearest {
-    /// Its depth, +inf of nothing.
+    /// Its depth; +inf if there is none.
     t: Vec<f64>,
-    /// Which surface, and of triangles which, of a shape which of `hits`.
+    /// The surface, and its triangle or its entry in `hits`.
     what: Vec<[u32; 2]>,
-    /// Normals, turned to the side that is seen, and colours of hits on shapes.
+    /// Normals, turned towards the viewer, and colours of hits on shapes.
     hits: Vec<(V, [f64; 3])>,
 }
 
 impl Caster<'_> {
-    /// The tile of a number, with these pixels.
+    /// The tile of this number, with these pixels.
     pub(super) fn tile(&self, tile: usize, rect: &Rect, shifts: &[[u32; 2]]) -> Tile {
-        // Shifts show what is a pixel to the left and above.
+        // Shifts take samples of a pixel to the left and above.
         let before = if shifts.is_empty() { 0 } else { SAMPLES };
         let rays = Rays::new(self.camera, rect, SAMPLES, before);
         let colors = self.colors(&rays, &self.nearest(tile, &rays));
@@ -60,7 +60,7 @@ impl Caster<'_> {
         Tile { colors, seen: self.seen(&centers, &found) }
     }
 
-    /// What each ray of a tile sees.
+    /// Finds the nearest surface along each ray of a tile.
     fn nearest(&self, tile: usize, rays: &Rays) -> Nearest {
         let (t, what) = (vec![f64::INFINITY; rays.len()], vec![[u32::MAX; 2]; rays.len()]);
         let mut nearest = Nearest { t, what, hits: Vec::new() };
@@ -75,7 +75,7 @@ impl Caster<'_> {
         nearest
     }
 
-    /// The nearest of a triangle and of what is before it.
+    /// Keeps the nearer of a triangle and the surface so far.
     #[inline(always)]
     fn meet(&self, placed: &Placed, what: [u32; 2], rays: &Rays, nearest: &mut Nearest) {
         let Some([left, top, right, bottom]) = placed.bounds(&self.view) else { return };
@@ -104,7 +104,7 @@ impl Caster<'_> {
         }
     }
 
-    /// The nearest of a shape and of what is before it.
+    /// Keeps the nearer of a shape and the surface so far.
     fn trace(&self, shape: &Turned, surface: u32, rays: &Rays, nearest: &mut Nearest) {
         for (i, at) in rays.each() {
             let (origin, direction) = self.ray(at);
@@ -131,7 +131,7 @@ impl Caster<'_> {
         }
     }
 
-    /// The ray of (x, y) in view space: its parameter is depth.
+    /// The ray of (x, y) in view space; its parameter is depth.
     fn ray(&self, [x, y]: [f64; 2]) -> (DVec3, DVec3) {
         if self.view.perspective {
             (DVec3::ZERO, DVec3::new(x, y, -1.0))
@@ -161,7 +161,7 @@ impl Caster<'_> {
         colors
     }
 
-    /// The normal, turned to the side that is seen, and the colour of what a ray sees, none of nothing;
+    /// The normal, turned towards the viewer, and the colour at a ray; `None` if it meets nothing.
     /// `last` is the triangle of the ray before.
     #[inline(always)]
     fn surface(
@@ -195,14 +195,14 @@ impl Caster<'_> {
         }
     }
 
-    /// What is behind everything.
+    /// The background.
     fn behind(&self, at: [f64; 2]) -> [f64; 3] {
         let Some(environment) = &self.scene.environment else { return [0.0; 3] };
         let DVec3 { x, y, z } = self.world_from_view.transform_vector3(self.ray(at).1);
         environment.radiance(Vector3::new(x, y, z))
     }
 
-    /// What the rays through the centres of the pixels of a rectangle see.
+    /// The results of the rays through the centres of the pixels in a rectangle.
     fn seen(&self, rays: &Rays, nearest: &Nearest) -> Vec<Seen> {
         let behind = if self.scene.environment.is_some() { 1.0 } else { 0.0 };
         let mut last = None;
@@ -219,7 +219,7 @@ impl Caster<'_> {
 }
 
 vectorized!(
-    /// The nearest of the triangles of a tile and of what is before them.
+    /// Keeps the nearest of the triangles of a tile and the surfaces so far.
     fn draw(
         caster: &Caster<'_>,
         triangles: &Triangles,
@@ -237,7 +237,7 @@ vectorized!(
     }
 );
 
-/// A triangle and what its corners have.
+/// A triangle with the attributes of its corners.
 struct Facet {
     placed: Placed,
     normals: [V; 3],
@@ -245,7 +245,8 @@ struct Facet {
 }
 
 impl Facet {
-    /// The normal, turned to the side that is seen, and the colour where the ray of (x, y) meets it.
+    /// The normal, turned towards the viewer, and the colour where the ray of (x, y) meets the
+    /// triangle.
     #[inline(always)]
     fn at(&self, x: f64, y: f64, near: f64) -> Option<(V, [f64; 3])> {
         let met = self.placed.meet(x, y, near)?;
@@ -256,7 +257,7 @@ impl Facet {
     }
 }
 
-/// Surfaces that are shaded side by side.
+/// Surface points that are shaded together.
 struct Batch {
     count: usize,
     /// The rays that see them.
@@ -286,7 +287,7 @@ impl Batch {
         self.count += 1;
     }
 
-    /// Puts the colours where they belong; nothing is left.
+    /// Writes the colours to their places, and empties the batch.
     fn shade(&mut self, shader: &Shader<f64>, to: &mut [[f64; 3]]) {
         let lit = shaded(shader, self);
         for (i, &ray) in self.rays[..self.count].iter().enumerate() {

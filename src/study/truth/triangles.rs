@@ -1,14 +1,14 @@
 //! Where rays meet triangles.
 //!
-//! A corner v in view space ([`View::point`], in f64) has the depth t = -v.z, and w = t under a
-//! perspective camera, w = 1 under an orthographic one. Seen along the ray of a sample, whose point at
-//! the depth t is (x w, y w, -t), the corner is at
+//! A corner v in view space ([`View::point`], in f64) has the depth t = -v.z. It has w = t under a
+//! perspective camera, and w = 1 under an orthographic one. The ray of a sample has the point
+//! (x w, y w, -t) at the depth t. Seen along this ray, the corner is at
 //!
 //! ```text
 //!   p = (v.x - x w, v.y - y w)
 //! ```
 //!
-//! and with p0, p1, p2 those of the corners, each e twice an area,
+//! Let the three corners be at p0, p1 and p2. Each e is twice an area:
 //!
 //! ```text
 //!   e0 = p1.x p2.y - p1.y p2.x    e1 = p2.x p0.y - p2.y p0.x    e2 = p0.x p1.y - p0.y p1.x
@@ -16,19 +16,21 @@
 //!   t  = (b0 t0 + b1 t1) + b2 t2
 //! ```
 //!
-//! The ray meets the triangle if no two of the three e have opposite signs, and not all are 0, and
-//! t is > near. The front is seen, the corners counter-clockwise, where s > 0.
+//! The ray meets the triangle if no two of the three e have opposite signs, not all are 0, and
+//! t > near. The front, with its corners counter-clockwise, is seen where s > 0.
 //!
-//! **Nothing falls between two triangles.** An e is the difference of the two rounded products; where
-//! these are equal it is the difference of what the roundings took away, each exactly \[Dekker: A
-//! Floating-Point Technique for Extending the Available Precision, 1971\]. So an e has the sign of the exact
-//! difference, and a zero is exact. A corner has one p, whichever triangle it is looked at in. What a
-//! ray meets is thus what is there exactly, of corners that are off by a rounding: a ray through
-//! the inside of a surface meets a triangle, one through an edge both of its triangles.
+//! **No ray falls between two triangles.** An e is the difference of two rounded products. If the
+//! products are equal, e is the difference of their rounding errors, which are computed exactly
+//! \[Dekker: A Floating-Point Technique for Extending the Available Precision, 1971\]. So an e has
+//! the sign of the exact difference, and a zero is exact. A corner has the same p in every triangle.
+//! For corners that are off by one rounding, a ray therefore meets exactly what is there: a ray
+//! through the inside of a surface meets a triangle, and a ray through an edge meets both of its
+//! triangles.
 //!
-//! The normal is that of the corners, (b0 n0 + b1 n1) + b2 n2 divided by its length; if that length
-//! is 0 it is that of corner 0. Colours are interpolated likewise. As polygons are drawn, see
-//! [`mod@crate::method::projection`], the corners alone say which side is the front.
+//! The normal interpolates the corners' normals, (b0 n0 + b1 n1) + b2 n2 divided by its length; if
+//! the length is 0, it is the normal of corner 0. Colours are interpolated likewise. The corners
+//! alone say which side is the front, as where polygons are drawn; see
+//! [`mod@crate::method::projection`].
 
 use crate::number::Vector3;
 use crate::scene::Triangles;
@@ -45,7 +47,7 @@ pub(super) struct Placed {
     t: [f64; 3],
 }
 
-/// Where a ray meets a triangle.
+/// The place where a ray meets a triangle.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Met {
     pub(super) t: f64,
@@ -53,7 +55,7 @@ pub(super) struct Met {
     pub(super) front: bool,
 }
 
-/// Where the rays are that may meet a triangle: those with `a x + b y + c >= 0` for each of three lines.
+/// The rays that may meet a triangle: those with `a x + b y + c >= 0` for each of three lines.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Lines {
     lines: [[f64; 3]; 3],
@@ -61,7 +63,7 @@ pub(super) struct Lines {
     pub(super) front: bool,
 }
 
-/// What the rays of a picture have in common.
+/// What the rays of a picture share.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Reach {
     /// The largest magnitudes of x and y.
@@ -79,17 +81,18 @@ impl Placed {
         Self { x: v.map(|v| v.x), y: v.map(|v| v.y), w, t }
     }
 
-    /// Where the triangle may be seen, in px: left, top, right and bottom; none if it is nowhere
+    /// Where the triangle may be seen, in px: left, top, right and bottom; `None` if no part is
     /// beyond the near plane.
     pub(super) fn bounds(&self, view: &View<f64>) -> Option<[f64; 4]> {
-        // Where weights are rounded a triangle that ends at the near plane may be met beyond it.
+        // Because weights are rounded, a triangle that ends at the near plane may be met beyond it.
         let far = self.t.map(f64::abs).into_iter().fold(view.near.abs(), greater);
         let near = view.near - far * RELATIVE;
         if view.perspective && !(near > 0.0) {
             return Some(EVERYWHERE);
         }
         let mut bounds: Option<[f64; 4]> = None;
-        // A corner of what is beyond, and how large the numbers were that it was computed from.
+        // A corner of the part beyond the near plane, and how large the numbers in its computation
+        // were.
         let mut add = |[x, y, w]: [f64; 3], [wide, high]: [f64; 2]| {
             let (px, py) = (view.fx * (x / w) + view.cx, view.cy - view.fy * (y / w));
             let off = |f: f64, wide: f64, p: f64, c: f64| {
@@ -143,7 +146,7 @@ impl Placed {
             let b = w[i] * x[j] - x[i] * w[j];
             let c = x[i] * y[j] - y[i] * x[j];
             lines[k] = [a, b, c];
-            // Some 30 roundings of all that e is the sum of.
+            // About 30 roundings of the terms of e.
             slack[k] = RELATIVE * (wide[i] * high[j] + high[i] * wide[j]);
             volume += w[k] * c;
             doubt += 4.0 * (w[k].abs() * slack[k]);
@@ -159,7 +162,7 @@ impl Placed {
         Some(Lines { lines, front })
     }
 
-    /// Where the ray of (x, y) meets it, beyond the near plane.
+    /// Where the ray of (x, y) meets the triangle, beyond the near plane.
     #[inline(always)]
     pub(super) fn meet(&self, x: f64, y: f64, near: f64) -> Option<Met> {
         // No closures: those of arrays stay functions.
@@ -181,7 +184,8 @@ impl Placed {
 }
 
 impl Lines {
-    /// The least and the largest x of the rays of y that may meet the triangle; none if no ray may.
+    /// The least and the largest x of the rays of y that may meet the triangle; `None` if no ray
+    /// may.
     #[inline(always)]
     pub(super) fn span(&self, y: f64) -> Option<[f64; 2]> {
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
@@ -207,25 +211,25 @@ fn area(a: [f64; 2], b: [f64; 2]) -> f64 {
     if p == q { lost(a[0], b[1], p) - lost(a[1], b[0], q) } else { p - q }
 }
 
-/// The exact a b less the product as it was rounded.
+/// The exact a b minus the rounded product.
 #[cold]
 fn lost(a: f64, b: f64, product: f64) -> f64 {
     let ([a, a_low], [b, b_low]) = (halves(a), halves(b));
     ((a * b - product) + a * b_low + a_low * b) + a_low * b_low
 }
 
-/// A number as the sum of two of 26 bits.
+/// Splits a number into the sum of two numbers of 26 bits.
 fn halves(v: f64) -> [f64; 2] {
     let scaled = 134_217_729.0 * v; // 2^27 + 1
     let high = scaled - (scaled - v);
     [high, v - high]
 }
 
-/// The bounds of what may be seen anywhere.
+/// The bounds of everything that may be seen.
 const EVERYWHERE: [f64; 4] = [f64::NEG_INFINITY, f64::NEG_INFINITY, f64::INFINITY, f64::INFINITY];
-/// How much farther bounds are taken, in px, beside what rounding moves them.
+/// The margin of bounds in px, on top of the effect of rounding.
 const SLACK: f64 = 1.0 / 1024.0;
-/// 2^-46: far more than what rounding moves anything by, relative to what it was computed from.
+/// 2^-46: far above the relative effect of rounding.
 const RELATIVE: f64 = 1.0 / 70_368_744_177_664.0;
 
 #[inline(always)]
@@ -233,7 +237,7 @@ fn mix([a, b, c]: [f64; 3], [wa, wb, wc]: [f64; 3]) -> f64 {
     (a * wa + b * wb) + c * wc
 }
 
-/// The sum of three vectors by their weights.
+/// The weighted sum of three vectors.
 #[inline(always)]
 pub(super) fn mixed([a, b, c]: [V; 3], weights: [f64; 3]) -> V {
     Vector3::new(
@@ -261,7 +265,7 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// Against integers, of products that are equal or all but.
+        /// Checks against integers, for products that are equal or nearly so.
         #[test]
         fn an_area_has_the_sign_of_the_exact_number(
             x in -(1_i64 << 52)..(1_i64 << 52),
@@ -270,11 +274,11 @@ mod tests {
             off in prop::array::uniform2(-2_i64..3),
             power in -200_i32..200,
         ) {
-            // Along one line but for the last digits.
+            // Along one line, except for the last digits.
             let (a, b) = ([x, y], [x * part / 64 + off[0], y * part / 64 + off[1]]);
             let product = |p: i64, q: i64| i128::from(p) * i128::from(q);
             let exact = product(a[0], b[1]) - product(a[1], b[0]);
-            // A power of two takes no digit.
+            // A power of two loses no digit.
             let scale = f64::from_bits(((1023 + power) as u64) << 52);
             let [a, b] = [a, b].map(|p| p.map(|v| v as f64 * scale));
             let found = area(a, b);

@@ -42,13 +42,13 @@ use crate::method::projection::Has;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
-use crate::verdict::checks::{Report, Shading, Surface, least_wrong};
+use crate::verdict::checks::{Report, Shading, least_wrong};
 use crate::verdict::client::Client;
 use crate::verdict::marks::{self, Counts, Marks, PixelMarks, counted};
 use crate::verdict::shift::ShiftSums;
 use crate::verdict::{Check, Doubt, Fault, Verdict};
 use fragments::{Fragments, PossibleFragment};
-use planes::{BluePlanes, PixelContent};
+use planes::{BluePlanes, PixelContent, PixelSurface};
 
 /// Judges the planes of a client.
 pub(super) fn verify<P: Profile>(
@@ -95,28 +95,6 @@ fn tell<P: Profile>(id: u32, all: &[PossibleFragment<P>], shifts: &mut ShiftSums
             shifts.take(open, id == may.id);
         }
     }
-}
-
-/// What a pixel shows.
-struct PixelSurface<P: Profile> {
-    id: u32,
-    offset: Ball<P>,
-    surface: Surface<P>,
-    weight: Ball<P>,
-}
-
-impl<P: Profile> PixelSurface<P> {
-    const EMPTY: Self = Self {
-        id: NO_ID,
-        offset: Ball::ZERO,
-        surface: Surface {
-            depth: Ball::INFINITY,
-            normal: [Ball::ZERO; 3],
-            tangent: None,
-            color: [Ball::ZERO; 3],
-        },
-        weight: Ball::ZERO,
-    };
 }
 
 impl<'a, P: Profile> Judge<'a, P> {

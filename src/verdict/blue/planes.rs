@@ -1,12 +1,10 @@
 //! The planes that a client has handed in.
 
-use super::PixelSurface;
 use crate::frame::NO_ID;
-use crate::method::Holds;
 use crate::method::blue::planes::{COLOR, ID, NORMAL, OFFSET, WEIGHT};
 use crate::method::surface::{ALPHA, DEPTH, SHADED};
-use crate::number::Ball;
 use crate::number::ball::Profile;
+use crate::number::{Ball, Real};
 use crate::verdict::checks::{Report, Surface, number, triple, whole};
 use crate::verdict::client::{Client, StoredPlane, Ties};
 
@@ -21,6 +19,28 @@ pub(super) struct BluePlanes<'a> {
     pub(super) id: Option<StoredPlane<'a, u32>>,
     shaded: Option<StoredPlane<'a, [f64; 3]>>,
     alpha: Option<StoredPlane<'a, f64>>,
+}
+
+/// What a pixel shows.
+pub(super) struct PixelSurface<P: Profile> {
+    pub(super) id: u32,
+    pub(super) offset: Ball<P>,
+    pub(super) surface: Surface<P>,
+    pub(super) weight: Ball<P>,
+}
+
+impl<P: Profile> PixelSurface<P> {
+    pub(super) const EMPTY: Self = Self {
+        id: NO_ID,
+        offset: Ball::ZERO,
+        surface: Surface {
+            depth: Ball::INFINITY,
+            normal: [Ball::ZERO; 3],
+            tangent: None,
+            color: [Ball::ZERO; 3],
+        },
+        weight: Ball::ZERO,
+    };
 }
 
 /// What a client says is in a pixel.
@@ -105,13 +125,10 @@ impl<'a> BluePlanes<'a> {
                 number(0, plane, at, truth, report);
             }
         }
-        let triples = [
-            (&self.normal, Holds::Vector, shown.surface.normal),
-            (&self.color, Holds::Color, shown.surface.color),
-        ];
-        for (plane, holds, truth) in triples {
+        let triples = [(&self.normal, shown.surface.normal), (&self.color, shown.surface.color)];
+        for (plane, truth) in triples {
             if let Some(plane) = plane {
-                triple(0, (plane, holds), at, truth, report);
+                triple(0, plane, at, truth, report);
             }
         }
     }
@@ -140,7 +157,7 @@ impl<'a> BluePlanes<'a> {
         report: &mut Report<'_>,
     ) {
         if let Some(plane) = &self.shaded {
-            triple(1, (plane, Holds::Color), at, truth, report);
+            triple(1, plane, at, truth, report);
         }
     }
 

@@ -18,6 +18,8 @@
 
 use super::Change;
 use crate::frame::{Frame, Plane, Samples};
+use crate::method::ewa::visibility::Foremost;
+use crate::method::surface;
 use crate::method::{Method, Session};
 use crate::number::Real;
 use crate::scene::{Camera, Projection};
@@ -73,7 +75,7 @@ pub(super) fn bands(
     ];
     if camera.projection == Projection::Perspective {
         let slope = client.slope_of_depths().unwrap_or(1.0 / f64::from(camera.near));
-        let what = "the unit of epsilon: a difference of what a depth buffer holds, not of t";
+        let what = "the unit of epsilon: a difference of depth-buffer values, not of t";
         all.push((what, Band::OfNearness(slope)));
         let what = "the direction of epsilon: along the ray of the pixel, not along the view";
         all.push((what, Band::AlongRay));
@@ -96,13 +98,16 @@ pub(super) fn moved(session: &Session<'_>, client: &Client) -> Vec<(String, Chan
     };
     let epsilon = f64::from(epsilon);
     vec![
-        ("the depth is that of discs moved back by epsilon".into(), Change::Moved(epsilon)),
+        ("the depth comes from discs moved back by epsilon".into(), Change::Moved(epsilon)),
         (
-            "epsilon is on the wrong side: the depth is that of discs moved towards the eye".into(),
+            "epsilon is on the wrong side: the depth comes from discs moved towards the eye".into(),
             Change::Moved(-epsilon),
         ),
     ]
 }
+
+/// The planes of the depth that the visibility pass is judged by, the first of those that are there.
+const DEPTHS: [&str; 2] = [Foremost::<f32>::PLANES[0].row.name, surface::DEPTH.name];
 
 /// The client as if its band ended there.
 pub(super) fn banded(client: &Client, band: Band) -> Client {
@@ -132,15 +137,14 @@ fn is_sum(name: &str) -> bool {
 
 /// The client whose discs would not be moved by this.
 pub(super) fn moved_back(client: &Client, by: f64) -> Client {
-    let depths = ["visibility.Z", "Z"];
     let mut back = client.mapped(|name, samples| match samples {
         // An empty pixel stays at infinity.
-        Samples::Scalar(plane) if depths.contains(&name) => {
+        Samples::Scalar(plane) if DEPTHS.contains(&name) => {
             Samples::Scalar(plane.map(|depth| depth - by))
         }
         other => other.clone(),
     });
-    for name in depths {
+    for name in DEPTHS {
         if back.storage(name) == Storage::Single {
             // The sum was rounded; beside what is lost where it is undone that is all.
             let lost = 4.0 / 16_777_216.0;
@@ -202,8 +206,7 @@ impl Client {
 
     /// The depth that the visibility pass is judged by: its plane, and the greatest finite value.
     pub(super) fn depth_of_visibility(&self) -> Option<(&'static str, f64)> {
-        let name =
-            ["visibility.Z", "Z"].into_iter().find(|name| self.frame().scalar(name).is_ok())?;
+        let name = DEPTHS.into_iter().find(|name| self.frame().scalar(name).is_ok())?;
         let values = self.frame().scalar(name).ok()?.values();
         let finite = values.iter().filter(|depth| depth.is_finite());
         Some((name, finite.fold(0.0, |most: f64, &depth| most.at_least(depth))))

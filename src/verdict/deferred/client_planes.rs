@@ -1,15 +1,17 @@
 //! The planes that a client has handed in, by the stage that judges them.
 
 use crate::method::deferred::Settings;
-use crate::method::deferred::planes::{BEFORE, BEFORE_ID, NEAREST, NEAREST_ID};
-use crate::method::ewa::planes::{COLOR_SUM, COUNT, NORMAL_SUM, WEIGHT_SUM};
+use crate::method::deferred::visibility::Nearest;
+use crate::method::ewa::attributes::Sums;
+use crate::method::record::rows;
 use crate::method::surface;
 use crate::verdict::client::Client;
 use crate::verdict::ewa::client_planes::{ClientPlanes, SumRows};
 
 /// Depth and surfel of the nearest fragment of pass 1; nothing else.
 pub(super) fn visibility(client: &Client) -> ClientPlanes<'_> {
-    let (depth, id) = (client.scalar(&BEFORE), client.index(&BEFORE_ID));
+    let [depth, id, _] = rows(&Nearest::<f32>::BEFORE);
+    let (depth, id) = (client.scalar(&depth), client.index(&id));
     ClientPlanes { depth, id, depth_copy: None, id_copy: None, ..of(client) }
 }
 
@@ -17,7 +19,8 @@ pub(super) fn visibility(client: &Client) -> ClientPlanes<'_> {
 /// pixels say nothing; with `second` off they may be those of pass 4, and say nothing of pass 1.
 pub(super) fn rest<'a>(client: &'a Client, settings: &Settings) -> ClientPlanes<'a> {
     let all = of(client);
-    let (depth, id) = (client.scalar(&NEAREST), client.index(&NEAREST_ID));
+    let [depth, id, _] = rows(&Nearest::<f32>::BOTH);
+    let (depth, id) = (client.scalar(&depth), client.index(&id));
     if depth.is_some() || id.is_some() || !settings.second {
         return ClientPlanes { depth, id, ..all };
     }
@@ -32,19 +35,14 @@ pub(super) fn picture(client: &Client) -> ClientPlanes<'_> {
 
 /// The same as [`rest`] where the picture's weight is that of a polygon.
 pub(super) fn of_polygons<'a>(client: &'a Client, rest: &ClientPlanes<'a>) -> ClientPlanes<'a> {
-    let (weight, weight_copy) = (client.scalar(&WEIGHT_SUM), client.scalar(&surface::WEIGHT));
+    let [_, _, weight, _] = rows(&Sums::<f32>::PLANES);
+    let (weight, weight_copy) = (client.scalar(&weight), client.scalar(&surface::WEIGHT));
     ClientPlanes { weight, weight_copy, ..*rest }
 }
 
 /// All but what is nearest, of which there are copies.
 fn of(client: &Client) -> ClientPlanes<'_> {
-    let rows = SumRows {
-        nearest: None,
-        weight: WEIGHT_SUM,
-        normal: NORMAL_SUM,
-        color: COLOR_SUM,
-        count: COUNT,
-    };
+    let rows = SumRows { nearest: None, sums: rows(&Sums::<f32>::PLANES) };
     ClientPlanes {
         depth: None,
         id: None,

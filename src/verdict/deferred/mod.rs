@@ -82,9 +82,10 @@ use crate::frame::{Exec, NO_ID, Rect};
 use crate::memory;
 use crate::method::Job;
 use crate::method::deferred::Settings;
+use crate::method::deferred::indices::Kept;
 use crate::method::deferred::part::{Part, Whole};
 use crate::method::deferred::picture::whole;
-use crate::method::deferred::planes::{CENTRE, CENTRE_ID};
+use crate::method::record::rows;
 use crate::method::tiled::Tiled;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
@@ -264,7 +265,8 @@ impl<'a, P: Profile> Scenery<'a, P> {
         watch: Watch,
     ) -> (StageMarks, Vec<(u32, bool)>) {
         let (job, cull) = (self.flat.job(self.job), self.settings.splats.cull);
-        let planes = SamplePlanes::of_nearest(client, job.scene, [&CENTRE, &CENTRE_ID]);
+        let [depth, id, _] = rows(&Kept::<f32>::PLANES);
+        let planes = SamplePlanes::of_nearest(client, job.scene, [depth, id]);
         let draws = |rank: usize| self.draws(self.flat.id(rank as u32));
         let points = AllPossible::<P>::of(&job, (cull, Snap::default()), Some(limits), draws);
         let names = planes.names();
@@ -273,7 +275,7 @@ impl<'a, P: Profile> Scenery<'a, P> {
             false => points.judge_all(&job, &planes, watch),
         };
         let total = self.flat.ids().len() as u64;
-        let selected = match client.index(&CENTRE_ID) {
+        let selected = match client.index(&id) {
             Some(stored) => selection::listed(stored.plane, total),
             None => selection::possible(&job, &points, &planes, total),
         };

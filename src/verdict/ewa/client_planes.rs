@@ -1,7 +1,9 @@
 //! The planes that a client has handed in, by the stage that judges them.
 
 use crate::frame::NO_ID;
-use crate::method::ewa::planes;
+use crate::method::ewa::attributes::Sums;
+use crate::method::ewa::visibility::Foremost;
+use crate::method::record::rows;
 use crate::method::stage::PlaneRow;
 use crate::method::surface;
 use crate::splat::record::SplatRecord;
@@ -48,10 +50,8 @@ pub(crate) struct ClientPlanes<'a> {
 pub(crate) struct SumRows {
     /// Depth and surfel of the nearest fragment, if a stage of its own leaves them.
     pub(crate) nearest: Option<[PlaneRow; 2]>,
-    pub(crate) weight: PlaneRow,
-    pub(crate) normal: PlaneRow,
-    pub(crate) color: PlaneRow,
-    pub(crate) count: PlaneRow,
+    /// Colour, normal, weight and count.
+    pub(crate) sums: [PlaneRow; 4],
 }
 
 impl<'a> ClientPlanes<'a> {
@@ -59,23 +59,20 @@ impl<'a> ClientPlanes<'a> {
         Self::of(
             client,
             &SumRows {
-                nearest: Some([planes::NEAREST, planes::NEAREST_ID]),
-                weight: planes::WEIGHT_SUM,
-                normal: planes::NORMAL_SUM,
-                color: planes::COLOR_SUM,
-                count: planes::COUNT,
+                nearest: Some(rows(&Foremost::<f32>::PLANES)),
+                sums: rows(&Sums::<f32>::PLANES),
             },
         )
     }
 
     /// The same of another method that ends in averages and their shading.
     pub(crate) fn of(client: &'a Client, rows: &SumRows) -> Self {
+        let [color, normal, weight, count] = &rows.sums;
         let first = |own: Option<_>, other: Option<_>| (own.or(other), own.and(other));
         let nearest = rows.nearest.as_ref();
         let own = nearest.and_then(|[depth, _]| client.scalar(depth));
         let (depth, depth_copy) = first(own, client.scalar(&surface::DEPTH));
-        let (weight, weight_copy) =
-            first(client.scalar(&rows.weight), client.scalar(&surface::WEIGHT));
+        let (sum, weight_copy) = first(client.scalar(weight), client.scalar(&surface::WEIGHT));
         let own = nearest.and_then(|[_, id]| client.index(id));
         let other = client.index(&surface::ID);
         Self {
@@ -84,10 +81,10 @@ impl<'a> ClientPlanes<'a> {
             id: own.or(other),
             ties: client.ties,
             band: client.band,
-            weight,
-            normal_sum: client.triple(&rows.normal),
-            color_sum: client.triple(&rows.color),
-            count: client.count(&rows.count),
+            weight: sum,
+            normal_sum: client.triple(normal),
+            color_sum: client.triple(color),
+            count: client.count(count),
             accumulator: client.accumulator,
             color: client.triple(&surface::COLOR),
             normal: client.triple(&surface::NORMAL),

@@ -6,7 +6,6 @@ use super::client_planes::ClientPlanes;
 use super::sums::Continuations;
 use crate::composite::sum;
 use crate::frame::NO_ID;
-use crate::method::Holds;
 use crate::method::Job;
 use crate::method::ewa::attributes::Sums;
 use crate::number::ball::Profile;
@@ -145,10 +144,10 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
         let (client_planes, Surface { depth, normal, color, .. }) = (self.client_planes, *surface);
         if let (Some(plane), true) = (&client_planes.color, self.colored) {
-            triple(NORMALIZATION, (plane, Holds::Color), at, color, report);
+            triple(NORMALIZATION, plane, at, color, report);
         }
         if let Some(plane) = &client_planes.normal {
-            triple(NORMALIZATION, (plane, Holds::Vector), at, normal, report);
+            triple(NORMALIZATION, plane, at, normal, report);
         }
         if let Some(plane) = &client_planes.depth_copy {
             number(NORMALIZATION, plane, at, depth, report);
@@ -162,7 +161,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         if let Some(plane) = &client_planes.shaded {
             let depth = client_planes.depth_copy.map_or(depth, |plane| plane.ball(at));
             let color = self.color(at, depth, &Averages { normal, color });
-            triple(SHADING, (plane, Holds::Color), at, color, report);
+            triple(SHADING, plane, at, color, report);
         }
         if let Some(plane) = &client_planes.alpha {
             let weight = client_planes.weight_copy.map_or(Ball::ONE, |plane| plane.ball(at));
@@ -189,7 +188,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         let client_planes = self.client_planes;
         if let Some(plane) = &client_planes.shaded {
             let color = self.color(at, self.depth(at, nearest, sums), &averages);
-            triple(SHADING, (plane, Holds::Color), at, color, report);
+            triple(SHADING, plane, at, color, report);
         }
         if let Some(plane) = &client_planes.alpha {
             let weight = client_planes
@@ -225,10 +224,10 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             number(ATTRIBUTES, plane, at, truth.weight, report);
         }
         if let Some(plane) = normal_sum {
-            triple(ATTRIBUTES, (plane, Holds::Vector), at, truth.normal, report);
+            triple(ATTRIBUTES, plane, at, truth.normal, report);
         }
         if let Some(plane) = color_sum {
-            triple(ATTRIBUTES, (plane, Holds::Color), at, truth.color, report);
+            triple(ATTRIBUTES, plane, at, truth.color, report);
         }
         if let Some(plane) = count {
             whole(ATTRIBUTES, plane, at, truth.count, report);
@@ -284,10 +283,10 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     ) {
         let client_planes = self.client_planes;
         if let (Some(plane), true) = (&client_planes.color, self.colored) {
-            triple(NORMALIZATION, (plane, Holds::Color), at, averages.color, report);
+            triple(NORMALIZATION, plane, at, averages.color, report);
         }
         if let Some(plane) = &client_planes.normal {
-            triple(NORMALIZATION, (plane, Holds::Vector), at, averages.normal, report);
+            triple(NORMALIZATION, plane, at, averages.normal, report);
         }
         if let Some(plane) = &client_planes.opacity {
             number(NORMALIZATION, plane, at, self.opacity(at, sums), report);

@@ -16,7 +16,7 @@ use super::sums::AllSums;
 use crate::composite::sum;
 use crate::method::Job;
 use crate::number::ball::{BallLanes, Common, Profile, TotalsLanes};
-use crate::number::lanes::{LANES, each, vectorized};
+use crate::number::lanes::{LANES, each, vectorized_avx2};
 use crate::number::{Ball, Real};
 use crate::shade::phong::Shader;
 use crate::splat::View;
@@ -230,7 +230,7 @@ fn means<const DIRECTION: bool, P: Profile>(
     means
 }
 
-vectorized!(
+vectorized_avx2!(
     /// What [`PixelJudge::check`](super::pixel::PixelJudge::check) finds.
     fn judge<P: Profile>(of: &RightPixels<'_, P>, pixels: &Pixels<P>) -> StageErrors {
         let (client_planes, at) = (of.client_planes, &pixels.at);

@@ -3,7 +3,6 @@
 use super::planes::PeelingPlanes;
 use crate::composite::over::Blend;
 use crate::composite::under::Under;
-use crate::method::Holds;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
 use crate::verdict::checks::{Backdrop, input, inputs, is_bounded, number, triple};
@@ -31,7 +30,7 @@ pub(super) fn judge<P: Profile>(
     let Blend { color, alpha } = backdrop.behind(layers, at);
     let report = &mut |_: usize, error: f64, fault: &dyn Fn() -> _| pixel.found(error, fault);
     if let Some(plane) = &client_planes.shaded {
-        triple(0, (plane, Holds::Color), at, color, report);
+        triple(0, plane, at, color, report);
     }
     if let Some(plane) = &client_planes.alpha {
         number(0, plane, at, alpha, report);

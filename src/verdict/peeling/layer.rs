@@ -3,7 +3,6 @@
 use super::planes::{LayerPlanes, PeelingPlanes};
 use crate::composite::{decide, sum};
 use crate::frame::NO_ID;
-use crate::method::Holds;
 use crate::method::Job;
 use crate::method::ewa::attributes::Sums;
 use crate::method::peeling::Settings;
@@ -242,7 +241,7 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
                 let surface = Surface { depth, normal, tangent: None, color };
                 self.shading.color(at, &surface)
             };
-            triple(0, (plane, Holds::Color), at, truth, report);
+            triple(0, plane, at, truth, report);
         }
     }
 }

@@ -1,9 +1,9 @@
 //! The planes that a client has handed in.
 
 use crate::method::peeling::Settings;
-use crate::method::peeling::planes::{
-    LAYER_ALPHA, LAYER_COLOR, LAYER_COUNT, LAYER_DEPTH, LAYERS, STAGES,
-};
+use crate::method::peeling::layers::PeeledLayer;
+use crate::method::peeling::planes::{LAYERS, STAGES};
+use crate::method::record::rows;
 use crate::method::surface::{ALPHA, DEPTH, ID, SHADED};
 use crate::verdict::client::{Client, Storage, StoredPlane, Ties};
 
@@ -36,11 +36,12 @@ pub(super) struct PeelingPlanes<'a> {
 
 impl<'a> PeelingPlanes<'a> {
     pub(super) fn new(client: &'a Client, settings: &Settings) -> Self {
+        let [color, alpha, depth, count] = rows(&PeeledLayer::<f32>::PLANES);
         let layer = |number: usize| LayerPlanes {
-            color: client.triple_of(&LAYER_COLOR, number),
-            alpha: client.scalar_of(&LAYER_ALPHA, number),
-            depth: client.scalar_of(&LAYER_DEPTH, number),
-            count: client.count_of(&LAYER_COUNT, number),
+            color: client.triple_of(&color, number),
+            alpha: client.scalar_of(&alpha, number),
+            depth: client.scalar_of(&depth, number),
+            count: client.count_of(&count, number),
         };
         let last = settings.layers.min(STAGES) as usize;
         Self {

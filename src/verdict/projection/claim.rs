@@ -1,6 +1,6 @@
 //! What a client says is in a pixel, against all that may lie there.
 
-use super::Candidate;
+use super::candidate::Candidate;
 use super::planes::{PixelContent, SamplePlanes};
 use crate::composite::decide;
 use crate::method::projection::PixelSample;

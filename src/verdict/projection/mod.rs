@@ -29,6 +29,7 @@
 //! more ways to snap. Pixels of its id are judged by rule 3 and by their kind alone; without ids all
 //! pixels but empty ones and surfels are.
 
+mod candidate;
 mod claim;
 mod intervals;
 mod planes;
@@ -40,32 +41,18 @@ pub(crate) use polygons::{AllPolygons, PossibleFragment};
 
 use crate::composite::decide;
 use crate::frame::raster::Snap;
-use crate::frame::{Bins, Grid, Rect};
+use crate::frame::{Bins, Rect};
 use crate::method::Job;
-use crate::method::projection::primitives::PiecePixel;
-use crate::method::projection::surfels::{PlacedPoint, PointProjector};
-use crate::method::projection::{PixelSample, SampleKind, SceneProjector};
+use crate::method::projection::{PixelSample, SceneProjector};
 use crate::method::tiled::Tiled;
 use crate::number::ball::{Profile, Three};
-use crate::number::{Ball, Pixel, Real, Truth, Vector3};
-use crate::scene::Surfels;
+use crate::number::{Ball, Real, Truth};
 use crate::verdict::Doubt;
 use crate::verdict::marks::{Marks, StageMarks, Watch, counted};
+use candidate::{Candidate, Possible};
 use claim::Claim;
 use planes::PixelContent;
-use primitives::{Pieces, PossiblePiece};
-
-/// A surfel that may be drawn.
-struct Possible<P: Profile> {
-    surfel: u32,
-    /// The pixels that it may be drawn into.
-    bounds: Rect,
-    /// Whether it certainly is drawn.
-    drawn: bool,
-    placed: PlacedPoint<Ball<P>>,
-    normal: Vector3<Ball<P>>,
-    back: Three,
-}
+use primitives::Pieces;
 
 /// All that may be drawn, and where.
 pub(crate) struct AllPossible<'a, P: Profile> {
@@ -76,13 +63,6 @@ pub(crate) struct AllPossible<'a, P: Profile> {
     surfels: Vec<(Vec<Possible<P>>, Bins)>,
     pieces: Pieces<P>,
     bins: Bins,
-}
-
-/// What may lie in a pixel.
-enum Candidate<'a, P: Profile> {
-    /// With whether it passes the test of its depth there.
-    Surfel(&'a Possible<P>, Three),
-    Piece(&'a PossiblePiece<P>, PiecePixel<Ball<P>>),
 }
 
 /// Judges the planes of the projection; `snap` is for triangles and lines.
@@ -268,89 +248,5 @@ impl<'a, P: Profile> AllPossible<'a, P> {
             claims[pixel].judge_tie(&one, (planes.ties, surfels), &mut marks.at(pixel));
         });
         marks
-    }
-}
-
-impl<P: Profile> Candidate<'_, P> {
-    fn id(&self) -> u32 {
-        match self {
-            Self::Surfel(one, _) => one.surfel,
-            Self::Piece(one, _) => one.piece.id,
-        }
-    }
-
-    fn kind(&self) -> SampleKind {
-        match self {
-            Self::Surfel(..) => SampleKind::Surface,
-            Self::Piece(one, _) => one.piece.kind,
-        }
-    }
-
-    fn depth(&self) -> Ball<P> {
-        match self {
-            Self::Surfel(one, _) => one.placed.t,
-            Self::Piece(_, at) => -at.p.z,
-        }
-    }
-
-    /// Whether it certainly is drawn, somewhere.
-    fn drawn(&self) -> bool {
-        match self {
-            Self::Surfel(one, _) => one.drawn,
-            Self::Piece(one, _) => one.drawn,
-        }
-    }
-
-    /// Whether it certainly lies in the pixel.
-    fn lies(&self) -> bool {
-        self.drawn() && self.is_alone() && self.passes().certainly()
-    }
-
-    /// Whether there is no other pixel that it may be drawn into instead.
-    fn is_alone(&self) -> bool {
-        match self {
-            Self::Surfel(one, _) => one.bounds.pixels() == 1,
-            Self::Piece(one, _) => one.drawn,
-        }
-    }
-
-    /// Whether it passes the test of its depth.
-    fn passes(&self) -> Three {
-        match self {
-            Self::Surfel(_, passes) => *passes,
-            Self::Piece(..) => true.into(),
-        }
-    }
-}
-
-impl<P: Profile> Possible<P> {
-    /// A surfel, if it may be drawn into a pixel of the picture.
-    fn new(
-        projector: &PointProjector<Ball<P>>,
-        surfels: &Surfels,
-        i: usize,
-        grid: &Grid,
-    ) -> Option<Self> {
-        let normal = projector.view.direction(Vector3::from_glam(surfels.normal()[i]));
-        let position = Vector3::from_glam(surfels.position()[i]);
-        let (placed, g, reasons) = projector.reasons(position, normal);
-        let dropped = reasons.any();
-        if dropped.certainly() {
-            return None;
-        }
-        let [width, height] = grid.size();
-        let [x, y] = placed.pixel();
-        let end = |greatest: u32, size: u32| if greatest < size { greatest + 1 } else { size };
-        let bounds = Rect {
-            x0: x.least(),
-            y0: y.least(),
-            x1: end(x.greatest(), width),
-            y1: end(y.greatest(), height),
-        };
-        // With culling what is drawn is seen from the front.
-        let back = if projector.cull { false.into() } else { g.gt(Ball::ZERO) };
-        let surfel = i as u32;
-        let drawn = !dropped.possibly();
-        (!bounds.is_empty()).then_some(Self { surfel, bounds, drawn, placed, normal, back })
     }
 }

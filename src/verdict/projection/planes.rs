@@ -1,30 +1,25 @@
 //! The planes of the projection that a client has handed in.
 
 use crate::frame::{NO_ID, Plane};
-use crate::method::projection::planes::{PLANES, components, vector};
-use crate::method::projection::{Has, PixelSample, SampleKind};
-use crate::method::{Holds, PlaneRow};
+use crate::method::projection::{PixelSample, SampleKind};
+use crate::method::record::Field;
+use crate::method::stage::{Conditions, Holds, Keep, PlaneRow};
+use crate::number::Ball;
 use crate::number::ball::Profile;
-use crate::number::{Ball, Real, Vector2};
 use crate::scene::Scene;
-use crate::verdict::checks::{Report, input, inputs, number, triple, whole};
+use crate::verdict::checks::{Report, whole};
 use crate::verdict::client::{Client, StoredPlane, Ties};
+use crate::verdict::planes::RecordPlanes;
 
 /// The planes of the projection, each if it is there.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Debug)]
 pub(crate) struct SamplePlanes<'a> {
     scene: &'a Scene,
     pub(super) ties: Ties,
+    planes: RecordPlanes<'a>,
     pub(super) depth: Option<StoredPlane<'a, f64>>,
     id: Option<StoredPlane<'a, u32>>,
     kind: Option<StoredPlane<'a, u8>>,
-    normal: Option<StoredPlane<'a, [f64; 3]>>,
-    extent: Option<StoredPlane<'a, f64>>,
-    radius: Option<StoredPlane<'a, f64>>,
-    left: Option<StoredPlane<'a, f64>>,
-    upper: Option<StoredPlane<'a, f64>>,
-    color: Option<StoredPlane<'a, [f64; 3]>>,
-    tangent: Option<StoredPlane<'a, [f64; 3]>>,
 }
 
 /// What a client says is in a pixel.
@@ -43,60 +38,34 @@ pub(super) enum PixelContent {
 
 impl<'a> SamplePlanes<'a> {
     pub(crate) fn new(client: &'a Client, scene: &'a Scene) -> Self {
-        let [id, kind, depth, normal, extent, radius, left, upper, color, tangent] = &PLANES;
-        Self {
-            scene,
-            ties: client.ties,
-            depth: client.scalar(depth),
-            id: client.index(id),
-            kind: client.count(kind),
-            normal: client.triple(normal),
-            extent: client.scalar(extent),
-            radius: client.scalar(radius),
-            left: client.scalar(left),
-            upper: client.scalar(upper),
-            color: client.triple(color),
-            tangent: client.triple(tangent),
-        }
+        let fields = &PixelSample::<f32>::PLANES;
+        let kind = client.count(&PixelSample::<f32>::KIND.row);
+        Self::of(client, scene, (RecordPlanes::new(client, fields, 0), kind))
     }
 
     /// Of a pass that leaves depths and ids alone.
-    pub(crate) fn of_nearest(
-        client: &'a Client,
+    pub(crate) fn of_nearest(client: &'a Client, scene: &'a Scene, rows: [PlaneRow; 2]) -> Self {
+        // Judged as the depth and the id of a sample.
+        let place = |row: &PlaneRow| {
+            let fields = PixelSample::<f32>::PLANES;
+            fields.iter().position(|field| field.row.holds == row.holds).unwrap_or(usize::MAX)
+        };
+        let rows = rows.into_iter().map(|row| (place(&row), row));
+        Self::of(client, scene, (RecordPlanes::of_rows(client, rows, 0), None))
+    }
+
+    fn of(
+        client: &Client,
         scene: &'a Scene,
-        [depth, id]: [&PlaneRow; 2],
+        (planes, kind): (RecordPlanes<'a>, Option<StoredPlane<'a, u8>>),
     ) -> Self {
-        Self {
-            scene,
-            ties: client.ties,
-            depth: client.scalar(depth),
-            id: client.index(id),
-            kind: None,
-            normal: None,
-            extent: None,
-            radius: None,
-            left: None,
-            upper: None,
-            color: None,
-            tangent: None,
-        }
+        let (depth, id) = (planes.depths(), planes.ids());
+        Self { scene, ties: client.ties, planes, depth, id, kind }
     }
 
     /// The names of the planes that are there.
     pub(crate) fn names(&self) -> Vec<&'static str> {
-        let there = [
-            self.id.map(|plane| plane.name),
-            self.kind.map(|plane| plane.name),
-            self.depth.map(|plane| plane.name),
-            self.normal.map(|plane| plane.name),
-            self.extent.map(|plane| plane.name),
-            self.radius.map(|plane| plane.name),
-            self.left.map(|plane| plane.name),
-            self.upper.map(|plane| plane.name),
-            self.color.map(|plane| plane.name),
-            self.tangent.map(|plane| plane.name),
-        ];
-        there.into_iter().flatten().collect()
+        self.planes.names().to_vec()
     }
 
     /// What a pixel is said to have; of some primitives it is not known what they come to.
@@ -133,32 +102,7 @@ impl<'a> SamplePlanes<'a> {
         sample: &PixelSample<Ball<P>>,
         report: &mut Report<'_>,
     ) {
-        if let Some(plane) = &self.id {
-            whole(0, plane, at, sample.id, report);
-        }
-        self.check_kind(at, Some(sample.kind), report);
-        let scalars = [
-            (&self.depth, sample.depth),
-            (&self.extent, sample.extent),
-            (&self.radius, sample.radius),
-            (&self.left, sample.center.x),
-            (&self.upper, sample.center.y),
-        ];
-        for (plane, truth) in scalars {
-            if let Some(plane) = plane {
-                number(0, plane, at, truth, report);
-            }
-        }
-        let triples = [
-            (&self.normal, Holds::Vector, components(sample.normal)),
-            (&self.color, Holds::Color, sample.color),
-            (&self.tangent, Holds::Vector, components(sample.tangent)),
-        ];
-        for (plane, holds, truth) in triples {
-            if let Some(plane) = plane {
-                triple(0, (plane, holds), at, truth, report);
-            }
-        }
+        self.planes.check((0, &PixelSample::PLANES), at, sample, report);
     }
 
     /// The kind of a pixel, if it is known.
@@ -173,61 +117,33 @@ impl<'a> SamplePlanes<'a> {
         }
     }
 
-    /// Whether the next stage can be judged from the planes: depth, radius, extent, normal, and what
-    /// else the scene has; with `places` id and place, else id or kind.
-    fn complete(&self, has: Has, places: bool) -> bool {
-        let numbers = self.depth.is_some() && self.radius.is_some() && self.extent.is_some();
-        let place = if places {
-            self.left.is_some() && self.upper.is_some() && self.id.is_some()
-        } else {
-            self.id.is_some() || self.kind.is_some()
-        };
-        let triples = self.normal.is_some()
-            && (self.color.is_some() || !has.color)
-            && (self.tangent.is_some() || !has.tangent);
-        numbers && place && triples
-    }
-
-    /// The samples as the next stage reads them, if the planes are complete; `places` says whether
-    /// ids and centres are needed.
+    /// The samples as the next stage reads them, if all planes that it reads are there; `places` says
+    /// whether it reads ids and centres, else an id stands for a kind.
     pub(crate) fn samples<P: Profile>(&self, places: bool) -> Option<Plane<PixelSample<Ball<P>>>> {
-        let (has, depth) = (Has::of(self.scene), self.depth?);
-        if !self.complete(has, places) {
+        let (depth, there) = (self.depth?, Conditions::new(self.scene, Keep::Stages));
+        let all = &PixelSample::PLANES;
+        let of_place = [PixelSample::<f32>::LEFT.row, PixelSample::<f32>::UPPER.row];
+        let known = |(place, field): (usize, &Field<_, _>)| {
+            let row = &field.row;
+            self.planes.has(place)
+                || match row.holds {
+                    Holds::Index => !places && self.kind.is_some(),
+                    Holds::Count => self.id.is_some(),
+                    _ => !there.hold(row) || (!places && of_place.contains(row)),
+                }
+        };
+        if !all.iter().enumerate().all(known) {
             return None;
         }
         let size = [depth.plane.width(), depth.plane.height()];
-        Some(Plane::from_pixels(size, |x, y| self.sample((x, y), has)))
-    }
-
-    fn sample<P: Profile>(&self, at: (u32, u32), has: Has) -> PixelSample<Ball<P>> {
-        let id = self.id.map(|plane| *plane.plane.at(at.0, at.1));
-        let stored = self.kind.map(|plane| *plane.plane.at(at.0, at.1));
-        let kind = match (stored, id) {
-            (Some(kind), _) => SampleKind::ALL.get(usize::from(kind)).copied(),
-            (None, Some(id)) => kind_of(self.scene, id),
-            (None, None) => None,
-        };
-        let scalar = |plane: &Option<StoredPlane<'_, f64>>| {
-            plane.as_ref().map_or(Ball::ZERO, |plane| input(plane, at))
-        };
-        let three = |plane: &Option<StoredPlane<'_, [f64; 3]>>| {
-            plane.as_ref().map_or([Ball::ZERO; 3], |plane| inputs(plane, at))
-        };
-        PixelSample {
-            kind: kind.unwrap_or_default(),
-            id: id.unwrap_or(NO_ID),
-            depth: scalar(&self.depth),
-            radius: scalar(&self.radius),
-            extent: scalar(&self.extent),
-            center: Vector2::new(scalar(&self.left), scalar(&self.upper)),
-            normal: vector(three(&self.normal)),
-            tangent: if has.tangent {
-                vector(three(&self.tangent))
-            } else {
-                vector([Ball::ZERO; 3])
-            },
-            color: if has.color { three(&self.color) } else { [Ball::ZERO; 3] },
-        }
+        Some(Plane::from_pixels(size, |x, y| {
+            let mut sample = PixelSample::empty();
+            self.planes.read((all, &there), (x, y), &mut sample);
+            if self.kind.is_none() {
+                sample.kind = kind_of(self.scene, sample.id).unwrap_or_default();
+            }
+            sample
+        }))
     }
 }
 

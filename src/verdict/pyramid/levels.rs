@@ -1,17 +1,22 @@
 //! Pull and push of a client, level by level.
 
-use super::planes::{CellPlanes, Level};
 use crate::composite::decide;
+use crate::frame::Plane;
 use crate::method::Job;
-use crate::method::projection::{Has, SampleKind};
+use crate::method::projection::SampleKind;
 use crate::method::pyramid::{Cell, Settings, pull, push};
+use crate::method::stage::Keep;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Truth, Vector2};
 use crate::verdict::Doubt;
-use crate::verdict::checks::least_wrong;
+use crate::verdict::checks::{Report, least_wrong};
 use crate::verdict::marks::{Marks, PixelMarks, StageMarks, Watch, counted};
 use crate::verdict::outcomes::{MOST, Outcome, outcomes};
+use crate::verdict::planes::RecordPlanes;
 use crate::verdict::projection::SamplePlanes;
+
+/// The cells of a level.
+pub(super) type Level<P> = Plane<Cell<Ball<P>>>;
 
 /// Four cells.
 type Four<P> = [Cell<Ball<P>>; 4];
@@ -21,7 +26,7 @@ pub(super) struct Levels<'a, P: Profile> {
     job: &'a Job<'a>,
     sizes: &'a [[u32; 2]],
     /// The planes of the levels 1 to the last after the pull, of 0 to the last but one after the push.
-    planes: [&'a [CellPlanes<'a>]; 2],
+    planes: [&'a [RecordPlanes<'a>]; 2],
     /// All levels after the pull; none where a plane is missing.
     pulled: Vec<Option<Level<P>>>,
     /// All levels after the push, the last that of the pull.
@@ -33,14 +38,16 @@ impl<'a, P: Profile> Levels<'a, P> {
         job: &'a Job<'a>,
         sizes: &'a [[u32; 2]],
         finest: &SamplePlanes<'_>,
-        planes: [&'a [CellPlanes<'a>]; 2],
+        planes: [&'a [RecordPlanes<'a>]; 2],
     ) -> Self {
-        let has = Has::of(job.scene);
+        // The planes of both phases have the same places in a cell.
+        let table = (&Cell::PULL[..], &job.there(Keep::Stages));
+        let level =
+            |(of, size): (&RecordPlanes<'_>, &[u32; 2])| of.records(table, *size, Cell::empty());
         let samples = finest.samples(false);
         let mut pulled = vec![samples.map(|samples| samples.map(Cell::new))];
-        pulled.extend(planes[0].iter().zip(&sizes[1..]).map(|(of, size)| of.level(*size, has)));
-        let mut pushed: Vec<_> =
-            planes[1].iter().zip(sizes).map(|(of, size)| of.level(*size, has)).collect();
+        pulled.extend(planes[0].iter().zip(&sizes[1..]).map(level));
+        let mut pushed: Vec<_> = planes[1].iter().zip(sizes).map(level).collect();
         pushed.extend(pulled.last().cloned());
         Self { job, sizes, planes, pulled, pushed }
     }
@@ -102,7 +109,7 @@ impl Phase {
     fn level<P: Profile>(
         &mut self,
         job: &Job<'_>,
-        planes: &CellPlanes<'_>,
+        planes: &RecordPlanes<'_>,
         [width, height]: [u32; 2],
         all: impl Fn((u32, u32), &mut PixelMarks<'_>) -> Vec<Cell<Ball<P>>> + Sync + Send,
     ) {
@@ -111,8 +118,8 @@ impl Phase {
             return;
         }
         for name in names {
-            if !self.names.contains(&name) {
-                self.names.push(name);
+            if !self.names.contains(name) {
+                self.names.push(*name);
             }
         }
         let watch = self.watch;
@@ -125,10 +132,11 @@ impl Phase {
                 if all.len() > MOST {
                     continue;
                 }
-                let best =
-                    least_wrong::<_, 1>(&all, |truth, report| planes.check(at, truth, report));
-                if let Some(truth) = best {
-                    planes.check(at, truth, &mut |_, error, fault| pixel.found(error, fault));
+                let check = |truth: &_, report: &mut Report<'_>| {
+                    planes.check((0, &Cell::PULL), at, truth, report);
+                };
+                if let Some(truth) = least_wrong::<_, 1>(&all, check) {
+                    check(truth, &mut |_, error, fault| pixel.found(error, fault));
                 }
             }
             marks

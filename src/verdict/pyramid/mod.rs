@@ -32,19 +32,20 @@ use crate::error::Result;
 use crate::frame::pyramid;
 use crate::frame::raster::Snap;
 use crate::method::Job;
-use crate::method::projection::Has;
-use crate::method::pyramid::Settings;
-use crate::method::pyramid::planes::{PULL, PUSH};
+use crate::method::pyramid::{Cell, Settings};
+use crate::method::record::rows;
+use crate::method::stage::Keep;
 use crate::number::ball::Profile;
 use crate::verdict::checks::missing;
 use crate::verdict::client::Client;
 use crate::verdict::marks::{MethodMarks, Watch, counted};
+use crate::verdict::planes::RecordPlanes;
 use crate::verdict::projection::{self as samples, SamplePlanes};
 use crate::verdict::shift::Shifts;
 use crate::verdict::{Check, Verdict};
 use levels::Levels;
 use pixel::PixelJudge;
-use planes::{CellPlanes, PicturePlanes};
+use planes::PicturePlanes;
 
 /// All doubts: in the levels each may move the averages.
 const ANY: u8 = u8::MAX;
@@ -59,9 +60,9 @@ pub(super) fn verify<P: Profile>(
     let (found, covered) = judge::<P>(job, settings, client, Watch::All);
     let mut stages = found.stage_verdicts(job);
     let last = pyramid::sizes(job.camera.width, job.camera.height).len() - 1;
-    let has = Has::of(job.scene);
-    stages[1].missing = missing(client, &PULL, 1..last + 1, has);
-    stages[2].missing = missing(client, &PUSH, 0..last, has);
+    let there = job.there(Keep::Stages);
+    stages[1].missing = missing(client, &rows(&Cell::<f32>::PULL), 1..last + 1, &there);
+    stages[2].missing = missing(client, &rows(&Cell::<f32>::PUSH), 0..last, &there);
     let undecided = [1, 2].map(|i: usize| stages[i].doubtful(ANY)).iter().sum();
     Verdict::new(stages, [covered, undecided], budget, Shifts::default())
 }
@@ -88,8 +89,9 @@ fn judge<P: Profile>(
     let sizes = pyramid::sizes(job.camera.width, job.camera.height);
     let last = sizes.len() - 1;
     let finest = SamplePlanes::new(client, job.scene);
-    let pulled: Vec<_> = (1..=last).map(|level| CellPlanes::pulled(client, level)).collect();
-    let pushed: Vec<_> = (0..last).map(|level| CellPlanes::pushed(client, level)).collect();
+    let cells = |fields| move |level| RecordPlanes::new(client, fields, level);
+    let pulled: Vec<_> = (1..=last).map(cells(&Cell::<f32>::PULL)).collect();
+    let pushed: Vec<_> = (0..last).map(cells(&Cell::<f32>::PUSH)).collect();
     let projection = samples::judge::<P>(job, settings.cull, snap, &finest, watch);
     let levels = Levels::<P>::new(job, &sizes, &finest, [&pulled, &pushed]);
     let before = vec![projection, levels.pull(watch), levels.push(settings, watch)];

@@ -1,7 +1,7 @@
 //! The picture of a client, from its finest level.
 
-use super::planes::{Level, PicturePlanes};
-use crate::method::Holds;
+use super::levels::Level;
+use super::planes::PicturePlanes;
 use crate::method::Job;
 use crate::method::projection::{Has, SampleKind, world};
 use crate::method::pyramid::Cell;
@@ -72,7 +72,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             [(&client_planes.normal, cell.normal), (&client_planes.tangent, cell.tangent)]
         {
             if let Some(plane) = plane {
-                triple(0, (plane, Holds::Vector), at, world(&self.view, of), report);
+                triple(0, plane, at, world(&self.view, of), report);
             }
         }
     }
@@ -91,7 +91,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
                 tangent: self.tangent(at, cell),
                 color: cell.map_or([anything(); 3], |cell| cell.color),
             };
-            triple(0, (plane, Holds::Color), at, self.shading.color(at, &surface), report);
+            triple(0, plane, at, self.shading.color(at, &surface), report);
         }
         if let Some(plane) = &client_planes.alpha {
             number(0, plane, at, self.shading.alpha(self.seen(at, depth, cell)), report);

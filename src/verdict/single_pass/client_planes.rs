@@ -1,8 +1,9 @@
 //! The planes of depth-images that a client has handed in.
 
 use crate::composite::groups::WeightedFragment;
-use crate::method::Holds;
-use crate::method::single_pass::planes::{COLOR_SUM, COUNT, ImageRows, NORMAL_SUM, WEIGHT_SUM};
+use crate::method::PlaneRow;
+use crate::method::record::rows;
+use crate::method::single_pass::planes::COUNT;
 use crate::number::Ball;
 use crate::number::ball::Profile;
 use crate::verdict::checks::{Report, input, inputs, number, triple, widened};
@@ -11,13 +12,8 @@ use crate::verdict::ewa::client_planes::SumRows;
 
 /// The rows of the compositing pass.
 pub(crate) fn sum_rows() -> SumRows {
-    SumRows {
-        nearest: None,
-        weight: WEIGHT_SUM,
-        normal: NORMAL_SUM,
-        color: COLOR_SUM,
-        count: COUNT,
-    }
+    let [color, normal, weight] = rows(&WeightedFragment::<f32>::SUMS);
+    SumRows { nearest: None, sums: [color, normal, weight, COUNT] }
 }
 
 /// The planes of the depth-image of a group, each if it is there.
@@ -32,14 +28,15 @@ pub(super) struct ImagePlanes<'a> {
 }
 
 impl<'a> ImagePlanes<'a> {
-    pub(super) fn new(client: &'a Client, rows: &ImageRows, group: usize) -> Self {
+    pub(super) fn new(client: &'a Client, rows: &[PlaneRow; 6], group: usize) -> Self {
+        let [depth, id, weight, normal, color, voronoi] = rows;
         Self {
-            depth: client.scalar_of(&rows.depth, group),
-            id: client.index_of(&rows.id, group),
-            weight: client.scalar_of(&rows.weight, group),
-            normal: client.triple_of(&rows.normal, group),
-            color: client.triple_of(&rows.color, group),
-            voronoi: client.scalar_of(&rows.voronoi, group),
+            depth: client.scalar_of(depth, group),
+            id: client.index_of(id, group),
+            weight: client.scalar_of(weight, group),
+            normal: client.triple_of(normal, group),
+            color: client.triple_of(color, group),
+            voronoi: client.scalar_of(voronoi, group),
         }
     }
 
@@ -85,10 +82,10 @@ impl<'a> ImagePlanes<'a> {
             number(0, plane, at, truth.weight, report);
         }
         if let Some(plane) = &self.normal {
-            triple(0, (plane, Holds::Vector), at, truth.normal, report);
+            triple(0, plane, at, truth.normal, report);
         }
         if let Some(plane) = &self.color {
-            triple(0, (plane, Holds::Color), at, truth.color, report);
+            triple(0, plane, at, truth.color, report);
         }
     }
 

@@ -49,8 +49,10 @@ mod tests;
 use crate::error::Result;
 use crate::frame::Rect;
 use crate::method::Job;
+use crate::method::PlaneRow;
+use crate::method::record::rows;
 use crate::method::single_pass::Settings;
-use crate::method::single_pass::planes::{IMAGES, ImageRows};
+use crate::method::single_pass::geometry::ImagePixel;
 use crate::number::Ball;
 use crate::number::ball::Profile;
 use crate::scene::Surfels;
@@ -72,7 +74,7 @@ use images::Images;
 pub(crate) struct GroupsOf<'a> {
     pub(crate) client: &'a Client,
     pub(crate) client_planes: ClientPlanes<'a>,
-    pub(crate) images: &'static ImageRows,
+    pub(crate) images: [PlaneRow; 6],
     /// Whether the colour is that of a layer, behind which others may be seen.
     pub(crate) layer: bool,
 }
@@ -83,7 +85,7 @@ const STAGES: [&str; 3] = ["geometry", "compositing", "shading"];
 impl<'a> GroupsOf<'a> {
     fn new(client: &'a Client) -> Self {
         let client_planes = ClientPlanes::of(client, &sum_rows());
-        Self { client, client_planes, images: &IMAGES, layer: false }
+        Self { client, client_planes, images: rows(&ImagePixel::<f32>::GROUPS), layer: false }
     }
 }
 

@@ -1,6 +1,6 @@
 //! The gathering of a client, replayed: every outcome that its decisions allow.
 
-use super::planes::Level;
+use super::levels::Level;
 use crate::method::template::reconstruction::{CenterQuery, Gathered, each_query, weight};
 use crate::method::template::{Center, Falloff, Settings};
 use crate::number::ball::Profile;

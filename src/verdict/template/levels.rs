@@ -1,15 +1,19 @@
 //! The propagation of a client, level by level.
 
-use super::planes::{CenterPlanes, Level};
+use crate::frame::Plane;
 use crate::method::Job;
-use crate::method::projection::Has;
+use crate::method::stage::Keep;
 use crate::method::template::{Center, Settings, propagation};
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
-use crate::verdict::checks::least_wrong;
+use crate::verdict::checks::{Report, least_wrong};
 use crate::verdict::marks::{PixelMarks, StageMarks, Watch, counted};
 use crate::verdict::outcomes::{MOST, Outcome, outcomes};
+use crate::verdict::planes::RecordPlanes;
 use crate::verdict::projection::SamplePlanes;
+
+/// The centres of a level.
+pub(super) type Level<P> = Plane<Center<Ball<P>>>;
 
 /// The levels as a client has them.
 pub(super) struct Levels<'a, P: Profile> {
@@ -17,7 +21,7 @@ pub(super) struct Levels<'a, P: Profile> {
     settings: &'a Settings,
     sizes: &'a [[u32; 2]],
     /// The planes of level 1 and on.
-    planes: &'a [CenterPlanes<'a>],
+    planes: &'a [RecordPlanes<'a>],
     /// All levels; none where a plane is missing.
     levels: Vec<Option<Level<P>>>,
 }
@@ -28,13 +32,13 @@ impl<'a, P: Profile> Levels<'a, P> {
         settings: &'a Settings,
         sizes: &'a [[u32; 2]],
         finest: &SamplePlanes<'_>,
-        planes: &'a [CenterPlanes<'a>],
+        planes: &'a [RecordPlanes<'a>],
     ) -> Self {
-        let has = Has::of(job.scene);
+        let table = (&Center::PLANES[..], &job.there(Keep::Stages));
         let samples = finest.samples(true);
         let mut levels = vec![samples.map(|samples| samples.map(Center::new))];
-        levels
-            .extend(planes.iter().zip(&sizes[1..]).map(|(planes, size)| planes.level(*size, has)));
+        let coarser = planes.iter().zip(&sizes[1..]);
+        levels.extend(coarser.map(|(of, size)| of.records(table, *size, Center::empty())));
         Self { job, settings, sizes, planes, levels }
     }
 
@@ -51,7 +55,8 @@ impl<'a, P: Profile> Levels<'a, P> {
             if own.is_empty() {
                 continue;
             }
-            names.extend(own.into_iter().filter(|name| !names.contains(name)).collect::<Vec<_>>());
+            let new = own.iter().copied().filter(|name| !names.contains(name));
+            names.extend(new.collect::<Vec<_>>());
             let [width, height] = self.sizes[level];
             let reach = Ball::from_f32(self.settings.reach(level - 1));
             let parts = watch.parts(&self.job.exec.grid(width, height));
@@ -71,7 +76,7 @@ impl<'a, P: Profile> Levels<'a, P> {
 
 /// One cell from the four finer ones, of which those beyond the reach move.
 fn cell<P: Profile>(
-    planes: &CenterPlanes<'_>,
+    planes: &RecordPlanes<'_>,
     at: (u32, u32),
     (finer, reach): (&[Center<Ball<P>>; 4], Ball<P>),
     pixel: &mut PixelMarks<'_>,
@@ -89,8 +94,10 @@ fn cell<P: Profile>(
         None => Center::empty(),
     };
     let all: Vec<_> = found.iter().map(of).collect();
-    let best = least_wrong::<_, 1>(&all, |truth, report| planes.check(at, truth, report));
-    if let Some(truth) = best {
-        planes.check(at, truth, &mut |_, error, fault| pixel.found(error, fault));
+    let check = |truth: &_, report: &mut Report<'_>| {
+        planes.check((0, &Center::PLANES), at, truth, report);
+    };
+    if let Some(truth) = least_wrong::<_, 1>(&all, check) {
+        check(truth, &mut |_, error, fault| pixel.found(error, fault));
     }
 }

@@ -31,19 +31,20 @@ use crate::error::Result;
 use crate::frame::pyramid;
 use crate::frame::raster::Snap;
 use crate::method::Job;
-use crate::method::projection::Has;
-use crate::method::template::planes::LEVELS;
-use crate::method::template::{Settings, propagation};
+use crate::method::record::rows;
+use crate::method::stage::Keep;
+use crate::method::template::{Center, Settings, propagation};
 use crate::number::ball::Profile;
 use crate::verdict::checks::missing;
 use crate::verdict::client::Client;
 use crate::verdict::marks::{MethodMarks, Watch, counted};
+use crate::verdict::planes::RecordPlanes;
 use crate::verdict::projection::{self as samples, SamplePlanes};
 use crate::verdict::shift::Shifts;
 use crate::verdict::{Check, Verdict};
 use levels::Levels;
 use pixel::PixelJudge;
-use planes::{CenterPlanes, PicturePlanes};
+use planes::PicturePlanes;
 
 /// All doubts: in the gathering each may move the sums.
 const ANY: u8 = u8::MAX;
@@ -57,8 +58,8 @@ pub(super) fn verify<P: Profile>(
 ) -> Verdict {
     let (found, covered) = judge::<P>(job, settings, client, Watch::All);
     let mut stages = found.stage_verdicts(job);
-    stages[1].missing =
-        missing(client, &LEVELS, 1..levels(job, settings).len(), Has::of(job.scene));
+    let (levels, there) = (1..levels(job, settings).len(), job.there(Keep::Stages));
+    stages[1].missing = missing(client, &rows(&Center::<f32>::PLANES), levels, &there);
     let undecided = stages[2].doubtful(ANY);
     Verdict::new(stages, [covered, undecided], budget, Shifts::default())
 }
@@ -89,7 +90,8 @@ fn judge<P: Profile>(
 ) -> (MethodMarks<3>, u64) {
     let sizes = levels(job, settings);
     let finest = SamplePlanes::new(client, job.scene);
-    let coarser: Vec<_> = (1..sizes.len()).map(|level| CenterPlanes::new(client, level)).collect();
+    let coarser = |level| RecordPlanes::new(client, &Center::<f32>::PLANES, level);
+    let coarser: Vec<_> = (1..sizes.len()).map(coarser).collect();
     let projection = samples::judge::<P>(job, settings.cull, Snap::default(), &finest, watch);
     let levels = Levels::<P>::new(job, settings, &sizes, &finest, &coarser);
     let propagation = levels.judge(watch);

@@ -1,12 +1,13 @@
 //! One pixel of a client: what was gathered, averages and shading.
 
 use super::gathering::outcomes;
-use super::planes::{Level, PicturePlanes};
+use super::levels::Level;
+use super::planes::PicturePlanes;
 use crate::composite::sum;
 use crate::frame::NO_ID;
-use crate::method::Holds;
 use crate::method::Job;
 use crate::method::projection::Has;
+use crate::method::stage::{Conditions, Keep};
 use crate::method::template::Settings;
 use crate::method::template::normalization;
 use crate::method::template::reconstruction::Gathered;
@@ -14,7 +15,7 @@ use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
 use crate::splat::View;
 use crate::verdict::checks::{
-    Report, Shading, Surface, anything, input, inputs, least_wrong, number, triple, whole, widened,
+    Report, Shading, Surface, anything, input, inputs, least_wrong, number, triple, widened,
 };
 use crate::verdict::marks::Marks;
 
@@ -31,6 +32,7 @@ pub(super) struct PixelJudge<'a, P: Profile> {
     view: View<Ball<P>>,
     shading: Shading<'a, P>,
     has: Has,
+    there: Conditions,
     /// The greatest component of a colour, at least 1.
     brightest: f64,
 }
@@ -50,7 +52,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         });
         let view = View::new(job.camera);
         let shading = Shading::new(job, has.color);
-        Self { settings, levels, client_planes, view, shading, has, brightest }
+        let there = job.there(Keep::Stages);
+        Self { settings, levels, client_planes, view, shading, has, there, brightest }
     }
 
     /// Whether the gathering is replayed.
@@ -87,14 +90,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             ..Gathered::empty()
         };
         // What comes next works with the client's own.
-        let (own, client_planes) = (sums.copied().unwrap_or(nothing), self.client_planes);
-        let own = Gathered {
-            weight: client_planes.weight.map_or(own.weight, |plane| input(&plane, at)),
-            depths: client_planes.depths.map_or(own.depths, |plane| input(&plane, at)),
-            normals: client_planes.normals.map_or(own.normals, |plane| inputs(&plane, at)),
-            colors: client_planes.colors.map_or(own.colors, |plane| inputs(&plane, at)),
-            ..own
-        };
+        let mut own = sums.copied().unwrap_or(nothing);
+        self.client_planes.gathered.read((&Gathered::PLANES, &self.there), at, &mut own);
         self.check_averages(at, &own, report);
         self.check_shading(at, &own, report);
     }
@@ -106,31 +103,14 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         let most = |ball: Ball<P>| ball.middle.abs() + ball.radius;
         let (heaviest, count) = (most(sums.weight), f64::from(sums.count));
         let lost = |largest: f64| count * client_planes.accumulator.radius(largest);
-        if let Some(plane) = &client_planes.id {
-            whole(RECONSTRUCTION, plane, at, sums.id, report);
-        }
-        if let Some(plane) = &client_planes.count {
-            whole(RECONSTRUCTION, plane, at, sums.count, report);
-        }
-        let scalars = [
-            (&client_planes.weight, widened(sums.weight, lost(heaviest))),
-            (&client_planes.depths, widened(sums.depths, lost(most(sums.depths)))),
-            (&client_planes.front, sums.depth),
-            (&client_planes.radius, sums.radius),
-        ];
-        for (plane, truth) in scalars {
-            if let Some(plane) = plane {
-                number(RECONSTRUCTION, plane, at, truth, report);
-            }
-        }
-        if let Some(plane) = &client_planes.normals {
-            let truth = sums.normals.map(|part| widened(part, lost(heaviest)));
-            triple(RECONSTRUCTION, (plane, Holds::Vector), at, truth, report);
-        }
-        if let Some(plane) = &client_planes.colors {
-            let truth = sums.colors.map(|part| widened(part, lost(heaviest * self.brightest)));
-            triple(RECONSTRUCTION, (plane, Holds::Color), at, truth, report);
-        }
+        let truth = Gathered {
+            weight: widened(sums.weight, lost(heaviest)),
+            depths: widened(sums.depths, lost(most(sums.depths))),
+            normals: sums.normals.map(|part| widened(part, lost(heaviest))),
+            colors: sums.colors.map(|part| widened(part, lost(heaviest * self.brightest))),
+            ..*sums
+        };
+        client_planes.gathered.check((RECONSTRUCTION, &Gathered::PLANES), at, &truth, report);
     }
 
     /// The averages, and the weight again.
@@ -141,7 +121,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
         if let Some(plane) = &client_planes.normal {
             let truth = normalization::normal(&self.view, own);
-            triple(NORMALIZATION, (plane, Holds::Vector), at, truth, report);
+            triple(NORMALIZATION, plane, at, truth, report);
         }
         if let Some(plane) = &client_planes.weight_copy {
             number(NORMALIZATION, plane, at, own.weight, report);
@@ -161,7 +141,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
                 tangent: None,
                 color: if self.has.color { sum::average(own.colors, weight) } else { own.colors },
             };
-            triple(SHADING, (plane, Holds::Color), at, self.shading.color(at, &surface), report);
+            triple(SHADING, plane, at, self.shading.color(at, &surface), report);
         }
         if let Some(plane) = &client_planes.alpha {
             number(SHADING, plane, at, self.shading.alpha(weight), report);

@@ -2,37 +2,33 @@
 
 use super::planes::GroupFound;
 use crate::composite::over::Blend;
-use crate::method::Holds;
+use crate::method::Job;
+use crate::method::stage::{Conditions, Keep};
 use crate::method::transparent::Holes;
 use crate::method::transparent::averaging::GroupAverage;
-use crate::method::transparent::planes::AVERAGES;
 use crate::number::Ball;
 use crate::number::ball::Profile;
-use crate::verdict::checks::{anything, input, inputs, number, triple};
-use crate::verdict::client::{Client, StoredPlane};
+use crate::verdict::checks::anything;
+use crate::verdict::client::Client;
 use crate::verdict::marks::PixelMarks;
+use crate::verdict::planes::RecordPlanes;
 
-/// The planes of the averages, each if it is there.
-#[derive(Clone, Copy, Debug)]
+/// The planes of the averages.
+#[derive(Clone, Debug)]
 pub(crate) struct AveragePlanes<'a> {
-    color: Option<StoredPlane<'a, [f64; 3]>>,
-    /// Opacity, sum of opacities, what is hidden, and count of layers.
-    scalars: [Option<StoredPlane<'a, f64>>; 4],
+    planes: RecordPlanes<'a>,
+    there: Conditions,
 }
 
 impl<'a> AveragePlanes<'a> {
-    pub(crate) fn new(client: &'a Client) -> Self {
-        let [color, scalars @ ..] = &AVERAGES;
-        Self {
-            color: client.triple(color),
-            scalars: scalars.each_ref().map(|row| client.scalar(row)),
-        }
+    pub(crate) fn new(job: &Job<'_>, client: &'a Client) -> Self {
+        let planes = RecordPlanes::new(client, &GroupAverage::<f32>::PLANES, 0);
+        Self { planes, there: job.there(Keep::Alone) }
     }
 
     /// The names of those that are there.
     pub(crate) fn names(&self) -> Vec<&'static str> {
-        let scalars = self.scalars.iter().flatten().map(|plane| plane.name);
-        self.color.iter().map(|plane| plane.name).chain(scalars).collect()
+        self.planes.names().to_vec()
     }
 
     /// Marks what is wrong with the average at a pixel; gives it as the next pass reads it, without
@@ -43,29 +39,11 @@ impl<'a> AveragePlanes<'a> {
         (groups, holes): (&[GroupFound<P>], Holes),
         pixel: &mut PixelMarks<'_>,
     ) -> GroupAverage<Ball<P>> {
-        let average = average(groups, holes);
+        let mut average = average(groups, holes);
         let report = &mut |_: usize, error: f64, fault: &dyn Fn() -> _| pixel.found(error, fault);
-        let GroupAverage { blend, opacity, hidden, layers, .. } = average;
-        let truths = [blend.alpha, opacity, hidden, layers];
-        for (plane, truth) in self.scalars.iter().zip(truths) {
-            if let Some(plane) = plane {
-                number(0, plane, at, truth, report);
-            }
-        }
-        if let Some(plane) = &self.color {
-            triple(0, (plane, Holds::Color), at, blend.color, report);
-        }
-        let read = |i: usize| self.scalars[i].map_or(truths[i], |plane| input(&plane, at));
-        GroupAverage {
-            blend: Blend {
-                color: self.color.map_or(blend.color, |plane| inputs(&plane, at)),
-                alpha: read(0),
-            },
-            opacity: read(1),
-            hidden: read(2),
-            layers: read(3),
-            ..average
-        }
+        self.planes.check((0, &GroupAverage::PLANES), at, &average, report);
+        self.planes.read((&GroupAverage::PLANES, &self.there), at, &mut average);
+        average
     }
 }
 

@@ -1,16 +1,18 @@
 //! The groups of a client, blended one by one.
 
 use super::drawings::{GroupDrawings, RowDrawings};
-use super::planes::{self, GroupFound, GroupPlanes};
+use super::planes::{GroupFound, GroupPlanes};
 use super::replay::replay;
 use crate::error::Result;
 use crate::frame::Rect;
 use crate::method::Job;
 use crate::method::transparent::Settings;
+use crate::method::transparent::blending::GroupLayers;
 use crate::number::Ball;
 use crate::number::ball::{Profile, Three};
 use crate::verdict::client::Client;
 use crate::verdict::marks::PixelMarks;
+use crate::verdict::planes;
 
 /// The geometry pass of a client.
 pub(crate) struct LayersJudge<'a, P: Profile> {
@@ -29,13 +31,14 @@ impl<'a, P: Profile> LayersJudge<'a, P> {
     /// Order, projection and shading.
     pub(crate) fn project(job: &Job<'_>, settings: &Settings, client: &'a Client) -> Result<Self> {
         let drawings = GroupDrawings::project(job, settings)?;
-        let planes = (0..drawings.groups()).map(|k| GroupPlanes::new(client, k)).collect();
+        let planes = (0..drawings.groups()).map(|k| GroupPlanes::new(job, client, k)).collect();
         Ok(Self { planes, drawings })
     }
 
     /// The names of the planes that are judged.
     pub(crate) fn names(&self) -> Vec<&'static str> {
-        planes::names(&self.planes)
+        let groups = self.planes.iter().map(|group| &group.planes);
+        planes::names(&GroupLayers::<f32>::PLANES, groups)
     }
 
     /// The fragments of a row of pixels in a tile.

@@ -104,7 +104,7 @@ impl<'a, P: Profile> Judge<'a, P> {
     ) -> Result<Self> {
         Ok(Self {
             layers: LayersJudge::project(job, settings, client)?,
-            averages: AveragePlanes::new(client),
+            averages: AveragePlanes::new(job, client),
             holes: settings.holes,
             shown: PictureJudge::new(job, client, client_planes),
         })

@@ -3,7 +3,6 @@
 use super::planes::GroupFound;
 use super::replay::Layers;
 use crate::composite::groups::WeightedFragment;
-use crate::method::Holds;
 use crate::method::Job;
 use crate::method::transparent::averaging::GroupAverage;
 use crate::method::transparent::planes::LAYERS;
@@ -67,7 +66,7 @@ impl<'a, P: Profile> PictureJudge<'a, P> {
         let shown = self.backdrop.behind(average.blend, at);
         let report = &mut |_: usize, error: f64, fault: &dyn Fn() -> _| pixel.found(error, fault);
         if let Some(plane) = &self.client_planes.shaded {
-            triple(0, (plane, Holds::Color), at, shown.color, report);
+            triple(0, plane, at, shown.color, report);
         }
         if let Some(plane) = &self.client_planes.alpha {
             number(0, plane, at, shown.alpha, report);

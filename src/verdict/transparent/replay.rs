@@ -5,6 +5,7 @@ use crate::composite::decide;
 use crate::composite::over::Blend;
 use crate::frame::NO_ID;
 use crate::frame::stencil::{Outcome, Stencil};
+use crate::method::transparent::blending::GroupLayers;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real, Truth};
 use crate::verdict::Doubt;
@@ -33,6 +34,13 @@ pub(super) struct Replay<P: Profile> {
 }
 
 impl<P: Profile> Layers<P> {
+    /// What the planes of a group say of them.
+    pub(super) fn stored(&self) -> GroupLayers<Ball<P>> {
+        let Self { bin, blend, opacity, hidden, count, depth, surfel, .. } = *self;
+        let hidden = Ball::from_f32(f32::from(u8::from(hidden)));
+        GroupLayers { bin: Ball::exact(bin), blend, opacity, hidden, count, depth, surfel }
+    }
+
     /// No fragment.
     pub(super) const EMPTY: Self = Self {
         bin: f64::INFINITY,

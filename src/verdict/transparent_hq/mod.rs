@@ -31,9 +31,10 @@ use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::{NO_ID, Rect};
 use crate::method::Job;
+use crate::method::record::rows;
+use crate::method::single_pass::geometry::ImagePixel;
 use crate::method::transparent_hq::Settings;
 use crate::method::transparent_hq::nearest::{BEHIND, FrontLayer, single_pass};
-use crate::method::transparent_hq::planes::{IMAGES, NEAREST_ALPHA, NEAREST_COLOR, NEAREST_MASK};
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real};
 use crate::verdict::checks::anything;
@@ -89,18 +90,19 @@ pub(super) fn checks<P: Profile>(
 
 /// The planes of the nearest layer. Its sums leave none, and the picture is not its alone.
 fn nearest(client: &Client) -> GroupsOf<'_> {
+    let [color, alpha, mask] = rows(&FrontLayer::<f32>::STAGES);
     let client_planes = ClientPlanes {
         normal_sum: None,
         color_sum: None,
         count: None,
         color: None,
-        opacity: client.scalar(&NEAREST_ALPHA),
-        mask: client.count(&NEAREST_MASK),
-        shaded: client.triple(&NEAREST_COLOR),
+        opacity: client.scalar(&alpha),
+        mask: client.count(&mask),
+        shaded: client.triple(&color),
         alpha: None,
         ..ClientPlanes::of(client, &sum_rows())
     };
-    GroupsOf { client, client_planes, images: &IMAGES, layer: true }
+    GroupsOf { client, client_planes, images: rows(&ImagePixel::<f32>::NEAREST), layer: true }
 }
 
 /// What all tiles share.
@@ -120,7 +122,7 @@ impl<'a, P: Profile> Judge<'a, P> {
             client_planes: &of.client_planes,
             nearest: groups::Judge::new(job, &single_pass(settings), of)?,
             others: LayersJudge::project(job, &settings.layers, of.client)?,
-            averages: AveragePlanes::new(of.client),
+            averages: AveragePlanes::new(job, of.client),
             shown: PictureJudge::new(job, settings, of.client),
         })
     }

@@ -1,7 +1,6 @@
 //! The picture of a client at a pixel: its nearest layer before the average of the others.
 
 use crate::composite::over::Blend;
-use crate::method::Holds;
 use crate::method::Job;
 use crate::method::surface::{ALPHA, SHADED};
 use crate::method::transparent::averaging::GroupAverage;
@@ -66,7 +65,7 @@ impl<'a, P: Profile> PictureJudge<'a, P> {
             }
         }
         if let Some(plane) = &self.color {
-            triple(0, (plane, Holds::Color), at, color, report);
+            triple(0, plane, at, color, report);
         }
         self.color.is_none() || is_bounded(&color)
     }

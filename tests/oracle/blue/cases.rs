@@ -1,8 +1,8 @@
 //! Scenes of discs, drawn by lot: placed by their pixels, of few pixels or many, tilted or not.
 
-use crate::kit::case::Case;
-use crate::kit::dice::Dice;
-use crate::kit::scene::{discs, lights, scene, straight, surfels, turned};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::scene::{discs, lights, scene, straight, surfels, turned};
 use glam::Vec3;
 use splatref::method::blue::Settings;
 use splatref::scene::{Cloud, Primitives, Projection, Sides, Triangles, Vertices};

@@ -1,9 +1,9 @@
 //! The page of the method, operation by operation: the same bits, of every surfel at every pixel.
 
 use super::cases::case;
-use crate::kit::case::Case;
-use crate::kit::goldens;
-use crate::kit::planes::{index, number, unclean, value};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::goldens;
+use crate::oracle::kit::planes::{index, number, unclean, value};
 use splatref::frame::{Frame, NO_ID};
 use splatref::method::blue::Settings;
 use splatref::scene::{Primitives, Projection};

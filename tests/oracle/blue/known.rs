@@ -1,8 +1,8 @@
 //! Pictures whose numbers are known in closed form.
 
-use crate::kit::case::Case;
-use crate::kit::planes::{index, number};
-use crate::kit::scene::{ahead, discs, scene, surfels};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::planes::{index, number};
+use crate::oracle::kit::scene::{ahead, discs, scene, surfels};
 use glam::Vec3;
 use splatref::frame::NO_ID;
 use splatref::method::blue::Settings;

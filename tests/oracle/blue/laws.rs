@@ -1,9 +1,9 @@
 //! What must hold whatever the scene.
 
 use super::cases::case;
-use crate::kit::case::Case;
-use crate::kit::planes::{bits, digest, index, number};
-use crate::kit::scene::{change, surfels};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::planes::{bits, digest, index, number};
+use crate::oracle::kit::scene::{change, surfels};
 use proptest::prelude::*;
 use splatref::frame::{Exec, NO_ID};
 use splatref::method::blue::Settings;

@@ -1,7 +1,7 @@
 //! Discs in world space, in f64: where rays from the eye meet them, and how far all this is from being
 //! otherwise.
 
-use crate::kit::case::Case;
+use crate::oracle::kit::case::Case;
 use glam::{DVec3, Vec3};
 use splatref::method::blue::Settings;
 use splatref::scene::Projection;

@@ -2,9 +2,9 @@
 
 use super::cases::case;
 use super::model::{Hit, World};
-use crate::kit::case::Case;
-use crate::kit::goldens;
-use crate::kit::planes::{index, number};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::goldens;
+use crate::oracle::kit::planes::{index, number};
 use splatref::frame::{Frame, NO_ID};
 use splatref::method::blue::Settings;
 use splatref::number::Exact;

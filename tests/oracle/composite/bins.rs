@@ -1,7 +1,7 @@
 //! Laws of low-precision and Voronoi-enhanced depth, against exact rational arithmetic.
 
-use crate::composite::groups::unit;
-use crate::composite::lawful;
+use crate::oracle::composite::groups::unit;
+use crate::oracle::composite::lawful;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use splatref::composite::bins::{DepthBins, MAX_BINS, Range};

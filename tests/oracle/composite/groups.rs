@@ -1,6 +1,6 @@
 //! Laws of the compositing operator over depth-images, in `f32` and in `f64`.
 
-use crate::composite::lawful;
+use crate::oracle::composite::lawful;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use splatref::composite::groups::{WeightedFragment, compose};

@@ -1,7 +1,7 @@
 //! Laws of alpha-blending, in `f32` and in `f64`.
 
-use crate::composite::groups::filled;
-use crate::composite::lawful;
+use crate::oracle::composite::groups::filled;
+use crate::oracle::composite::lawful;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
 use splatref::composite::over::Blend;

@@ -1,6 +1,6 @@
 //! Laws of the epsilon-z test and of weighted sums.
 
-use crate::composite::lawful;
+use crate::oracle::composite::lawful;
 use proptest::prelude::*;
 use splatref::composite::{decide, sum};
 use splatref::laws;

@@ -1,10 +1,10 @@
 //! Scenes of several objects that move before a camera that moves.
 
-use crate::deferred::place::{Thing, World, similarity};
-use crate::ewa::cases::{self as ewa, Kind};
-use crate::kit::dice::Dice;
-use crate::kit::goldens::Taken;
-use crate::kit::scene::{OUTLINES, change, lights, scene, straight, surfels};
+use crate::oracle::deferred::place::{Thing, World, similarity};
+use crate::oracle::ewa::cases::{self as ewa, Kind};
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::goldens::Taken;
+use crate::oracle::kit::scene::{OUTLINES, change, lights, scene, straight, surfels};
 use glam::{DMat3, DVec3, Mat4, Vec3};
 use splatref::frame::Exec;
 use splatref::io::scene_file::SceneFile;

@@ -1,6 +1,6 @@
 //! Ids by the table of splits: the first id of each object, and everything else by search.
 
-use crate::kit::dice::Dice;
+use crate::oracle::kit::dice::Dice;
 use splatref::frame::NO_ID;
 use splatref::scene::objects::{Ids, Split};
 

@@ -3,10 +3,10 @@
 //! A pixel is a world unit, discs face the camera, and there is no low-pass filter: at the distance
 //! d from its centre a disc of radius r weighs exp(-2 d d / (r r)), up to d = r.
 
-use crate::deferred::place::{Thing, World};
-use crate::kit::planes::{index, number, numbers, value};
-use crate::kit::scene::{OUTLINES, scene};
-use crate::template::cases::{Dot, exact_camera, exact_scene};
+use crate::oracle::deferred::place::{Thing, World};
+use crate::oracle::kit::planes::{index, number, numbers, value};
+use crate::oracle::kit::scene::{OUTLINES, scene};
+use crate::oracle::template::cases::{Dot, exact_camera, exact_scene};
 use glam::{DVec3, Vec3};
 use splatref::frame::{Exec, Frame, NO_ID};
 use splatref::index::seen::Seen;

@@ -1,12 +1,12 @@
 //! Laws: places and motion, and what a frame is given.
 
-use crate::deferred::cases::{Sequence, sequence};
-use crate::deferred::ids::Numbers;
-use crate::deferred::place::{Place, Thing, World, apart, similarity};
-use crate::kit::dice::Dice;
-use crate::kit::draw::Drawing;
-use crate::kit::planes::{bits, digest, plane};
-use crate::kit::scene::surfels;
+use crate::oracle::deferred::cases::{Sequence, sequence};
+use crate::oracle::deferred::ids::Numbers;
+use crate::oracle::deferred::place::{Place, Thing, World, apart, similarity};
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::draw::Drawing;
+use crate::oracle::kit::planes::{bits, digest, plane};
+use crate::oracle::kit::scene::surfels;
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use splatref::frame::{Exec, Frame, NO_ID, Samples};

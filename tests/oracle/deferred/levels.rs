@@ -1,12 +1,12 @@
 //! Scenes whose geometries have levels of detail, some of them, before a camera that goes far.
 
-use crate::deferred::cases::{Sequence, geometry, settings};
-use crate::deferred::ids::Numbers;
-use crate::deferred::laws::all as all_numbers;
-use crate::deferred::place::{Thing, World, similarity};
-use crate::deferred::view::{self, View};
-use crate::kit::dice::Dice;
-use crate::kit::scene::{change, lights, scene, straight, surfels};
+use crate::oracle::deferred::cases::{Sequence, geometry, settings};
+use crate::oracle::deferred::ids::Numbers;
+use crate::oracle::deferred::laws::all as all_numbers;
+use crate::oracle::deferred::place::{Thing, World, similarity};
+use crate::oracle::deferred::view::{self, View};
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::scene::{change, lights, scene, straight, surfels};
 use glam::{Mat4, Vec3};
 use splatref::frame::Exec;
 use splatref::scene::indexed::Indexed;

@@ -3,10 +3,10 @@
 //! The splats and their fragments are those of the oracle of `ewa`; which of them a pass draws, what
 //! it leaves, and where rounding may decide is said here.
 
-use crate::deferred::view::View;
-use crate::ewa::model::{Entry, Oracle, Seen};
-use crate::kit::number::Num;
-use crate::kit::projection::Candidate;
+use crate::oracle::deferred::view::View;
+use crate::oracle::ewa::model::{Entry, Oracle, Seen};
+use crate::oracle::kit::number::Num;
+use crate::oracle::kit::projection::Candidate;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// What a frame saw: the flags, object and group, and how many surfels of each object.

@@ -1,8 +1,8 @@
 //! Each stage alone on the planes of those before, and the explanation of pixels, against the
 //! picture.
 
-use crate::deferred::cases::{Sequence, sequence};
-use crate::kit::planes::{bits, index, number, plane};
+use crate::oracle::deferred::cases::{Sequence, sequence};
+use crate::oracle::kit::planes::{bits, index, number, plane};
 use splatref::frame::{Exec, Frame, NO_ID};
 use splatref::index::Index;
 use splatref::index::seen::Seen;
@@ -113,7 +113,8 @@ fn deferred_explanations_say_what_the_planes_hold() {
             let index = Index { seen, ..Index::default() };
             let job = Job::new(scene, &index, camera, &exec);
             let pixels = (frame.width * frame.height) as usize;
-            let ids = (0..pixels).map(|i| crate::kit::planes::index(&frame, "indices.id", i));
+            let ids =
+                (0..pixels).map(|i| crate::oracle::kit::planes::index(&frame, "indices.id", i));
             let selected = ids.filter(|id| *id != NO_ID).count() as u64;
             for i in (0..pixels).step_by(pixels / 12 + 1) {
                 let pixel = (i as u32 % frame.width, i as u32 / frame.width);

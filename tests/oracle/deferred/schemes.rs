@@ -1,11 +1,11 @@
 //! Known answers of scenes whose ids are of two schemes, or of more than 32 bits.
 
-use crate::deferred::known::{
+use crate::oracle::deferred::known::{
     BLUE, Keys, RED, assert_shows, disc, rgb, selected, settings, shot, thing, to,
 };
-use crate::deferred::place::World;
-use crate::kit::planes::index;
-use crate::template::cases::{Dot, exact_scene};
+use crate::oracle::deferred::place::World;
+use crate::oracle::kit::planes::index;
+use crate::oracle::template::cases::{Dot, exact_scene};
 use glam::Vec3;
 use splatref::frame::NO_ID;
 use splatref::method::Picture;

@@ -3,19 +3,19 @@
 //! Pass by pass: each is computed from what the crate left of the one before. Pass 2 is compared to
 //! the last bit in `f32`.
 
-use crate::deferred::cases::{Sequence, goldens, sequence};
-use crate::deferred::ids::Numbers;
-use crate::deferred::levels::{leveled, shared, walled};
-use crate::deferred::model::{self, Flags, Nearest, Sets, Sums};
-use crate::deferred::tolerance::DEFERRED;
-use crate::deferred::view::View;
-use crate::deferred::walls::{self, Wall, Walls};
-use crate::ewa::model::{Entry, Oracle};
-use crate::ewa::stages::{GUARD, measure};
-use crate::kit::number::BITS;
-use crate::kit::planes::{at, bits, index, number, plane};
-use crate::kit::projection::Projected;
-use crate::kit::tolerance::{Arithmetic, Measured};
+use crate::oracle::deferred::cases::{Sequence, goldens, sequence};
+use crate::oracle::deferred::ids::Numbers;
+use crate::oracle::deferred::levels::{leveled, shared, walled};
+use crate::oracle::deferred::model::{self, Flags, Nearest, Sets, Sums};
+use crate::oracle::deferred::tolerance::DEFERRED;
+use crate::oracle::deferred::view::View;
+use crate::oracle::deferred::walls::{self, Wall, Walls};
+use crate::oracle::ewa::model::{Entry, Oracle};
+use crate::oracle::ewa::stages::{GUARD, measure};
+use crate::oracle::kit::number::BITS;
+use crate::oracle::kit::planes::{at, bits, index, number, plane};
+use crate::oracle::kit::projection::Projected;
+use crate::oracle::kit::tolerance::{Arithmetic, Measured};
 use splatref::frame::{Exec, Frame, NO_ID};
 use splatref::index::seen::Seen;
 use splatref::method::{Picture, Session};

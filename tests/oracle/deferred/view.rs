@@ -3,11 +3,11 @@
 //! By the page of levels of detail, node by node, without boxes. Given are the lists (`near`, `far`
 //! and `gap` of each node) and the spheres around objects.
 
-use crate::deferred::ids::Numbers;
-use crate::deferred::model::Flags;
-use crate::deferred::place::{Place, World};
-use crate::kit::eye::V3;
-use crate::kit::scene::surfels;
+use crate::oracle::deferred::ids::Numbers;
+use crate::oracle::deferred::model::Flags;
+use crate::oracle::deferred::place::{Place, World};
+use crate::oracle::kit::eye::V3;
+use crate::oracle::kit::scene::surfels;
 use splatref::frame::Exec;
 use splatref::index::sequential::Sequential;
 use splatref::scene::{Camera, Objects, Primitives, Projection, Surfels};

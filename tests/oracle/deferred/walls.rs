@@ -1,11 +1,11 @@
 //! Polygons beside the surfels: the nearest of each pixel, and what it shows.
 
-use crate::deferred::model::{Behind, NOTHING};
-use crate::ewa::model::Oracle;
-use crate::kit::number::{N3, Num};
-use crate::kit::planes::{index, number, value};
-use crate::kit::projection::{Projected, Sight};
-use crate::kit::shade::{Surface, shaded};
+use crate::oracle::deferred::model::{Behind, NOTHING};
+use crate::oracle::ewa::model::Oracle;
+use crate::oracle::kit::number::{N3, Num};
+use crate::oracle::kit::planes::{index, number, value};
+use crate::oracle::kit::projection::{Projected, Sight};
+use crate::oracle::kit::shade::{Surface, shaded};
 use glam::Vec3;
 use splatref::frame::{Frame, NO_ID};
 use splatref::number::Exact;

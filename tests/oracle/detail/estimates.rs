@@ -1,7 +1,7 @@
 //! `p_m` and `r_m` of orders by every pair of points.
 
-use crate::kit::dice::Dice;
-use crate::sampler::cases;
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::sampler::cases;
 use glam::Vec3;
 use splatref::scene::objects::detail::prefix::Estimate;
 use splatref::source::sampler::estimate;

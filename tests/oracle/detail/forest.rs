@@ -1,8 +1,8 @@
 //! Scenes of objects with prefixes, of which some are finer ones of others, by lot.
 
-use crate::kit::dice::Dice;
-use crate::kit::scene::surfels;
-use crate::sampler::cases::mesh;
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::scene::surfels;
+use crate::oracle::sampler::cases::mesh;
 use glam::{DVec3, Vec3};
 use splatref::scene::objects::detail::prefix::Estimate;
 use splatref::scene::objects::detail::refine::Refinement;

@@ -1,7 +1,7 @@
 //! Geometries of a hierarchy: their triangles, what is wrong with them, their trees and their files.
 
 use super::octree::{self, Node};
-use crate::kit::eye::{cross, sub, wide};
+use crate::oracle::kit::eye::{cross, sub, wide};
 use glam::Vec3;
 use sha2::{Digest, Sha256};
 use splatref::scene::{Property, Triangles};

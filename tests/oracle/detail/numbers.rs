@@ -1,7 +1,7 @@
 //! Opacities and further properties in folders, byte by byte, and as they are read again.
 
 use super::whole::{alone, check, files, made, objects, patch, settings, world};
-use crate::kit::dice::Dice;
+use crate::oracle::kit::dice::Dice;
 use splatref::SceneFile;
 use splatref::frame::Exec;
 use splatref::io::hierarchy::Hierarchy;

@@ -1,6 +1,6 @@
 //! The loose octree, a node at a time.
 
-use crate::kit::dice::Dice;
+use crate::oracle::kit::dice::Dice;
 use glam::Vec3;
 use splatref::source::hierarchy::octree::{Item, NO_NODE, Octree, octree};
 use std::collections::{BTreeMap, VecDeque};

@@ -2,9 +2,9 @@
 
 use super::forest::{Forest, forest, wishes};
 use super::view::{Shown, State, corners, model, placed, size_for};
-use crate::kit::dice::Dice;
-use crate::kit::eye::{dot, sub, wide};
-use crate::kit::scene::{discs, surfels};
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::eye::{dot, sub, wide};
+use crate::oracle::kit::scene::{discs, surfels};
 use glam::Vec3;
 use splatref::frame::Exec;
 use splatref::scene::{

@@ -1,7 +1,7 @@
 //! What lies in one plane: the first that is drawn is seen.
 
 use super::whole::{alone, check, patch, settings};
-use crate::kit::dice::Dice;
+use crate::oracle::kit::dice::Dice;
 use glam::{DVec3, Vec3};
 use splatref::SceneFile;
 use splatref::io::ply;

@@ -1,6 +1,6 @@
 //! What a view draws of prefixes, of finer objects and within a budget: object by object.
 
-use crate::kit::eye::{Eye, V3, wide};
+use crate::oracle::kit::eye::{Eye, V3, wide};
 use splatref::scene::objects::Detail;
 use splatref::scene::objects::detail::prefix::Estimate;
 use splatref::scene::{Camera, Objects, Similarity};

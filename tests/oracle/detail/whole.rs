@@ -2,7 +2,7 @@
 
 use super::folder::World;
 use super::mesh::Mesh;
-use crate::kit::dice::Dice;
+use crate::oracle::kit::dice::Dice;
 use glam::{DVec3, Vec3};
 use splatref::SceneFile;
 use splatref::frame::Exec;

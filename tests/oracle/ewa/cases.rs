@@ -1,8 +1,8 @@
 //! Small scenes that are hard on purpose.
 
-use crate::kit::case::Case;
-use crate::kit::dice::Dice;
-use crate::kit::scene::{OUTLINES, framed, lights, scene, straight, surfels, turned};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::scene::{OUTLINES, framed, lights, scene, straight, surfels, turned};
 use glam::Vec3;
 use splatref::method::ewa::Settings;
 use splatref::scene::{Cloud, Scene};

@@ -1,9 +1,9 @@
 //! Known answers: pictures whose numbers follow from closed forms or quadrature.
 
-use crate::kit::draw::Drawing;
-use crate::kit::eye::{Eye, dot, wide};
-use crate::kit::planes::{plane, scalars};
-use crate::kit::scene::{self, ahead, change, discs, surfels};
+use crate::oracle::kit::draw::Drawing;
+use crate::oracle::kit::eye::{Eye, dot, wide};
+use crate::oracle::kit::planes::{plane, scalars};
+use crate::oracle::kit::scene::{self, ahead, change, discs, surfels};
 use glam::Vec3;
 use splatref::frame::{Frame, Samples};
 use splatref::method::ewa::Settings;

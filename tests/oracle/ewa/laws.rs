@@ -1,10 +1,10 @@
 //! Laws of the 2+1-pass method, on whole pictures.
 
-use crate::ewa::cases::{self, Kind};
-use crate::kit::case::Case;
-use crate::kit::draw::explained;
-use crate::kit::planes::numbers;
-use crate::kit::scene::{OUTLINES, change};
+use crate::oracle::ewa::cases::{self, Kind};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::draw::explained;
+use crate::oracle::kit::planes::numbers;
+use crate::oracle::kit::scene::{OUTLINES, change};
 use glam::{Mat4, Vec3, Vec4};
 use proptest::prelude::*;
 use splatref::frame::NO_ID;

@@ -1,7 +1,7 @@
 //! One pixel of the oracle: both passes, normalization and shading over every surfel of the scene.
 
-use crate::ewa::splat::{Fragment, Optics, Splat};
-use crate::kit::eye::{Eye, V3, dot, scaled, sub, unit, wide};
+use crate::oracle::ewa::splat::{Fragment, Optics, Splat};
+use crate::oracle::kit::eye::{Eye, V3, dot, scaled, sub, unit, wide};
 use splatref::method::ewa::Settings;
 use splatref::scene::{Camera, Light, Scene};
 

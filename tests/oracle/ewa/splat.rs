@@ -6,7 +6,7 @@
 //! the plane. Every number comes with the sum of its changes when each input moves by one step: its
 //! condition, in which the rounding errors of the crate are measured.
 
-use crate::kit::eye::{Eye, V3, cross, dot, scaled, sub, unit, wide};
+use crate::oracle::kit::eye::{Eye, V3, cross, dot, scaled, sub, unit, wide};
 use splatref::method::ewa::Settings;
 use splatref::scene::{Camera, Surfels};
 use splatref::splat::Outline;

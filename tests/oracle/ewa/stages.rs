@@ -1,12 +1,12 @@
 //! Every stage of every path against the oracle.
 
-use crate::ewa::cases;
-use crate::ewa::model::{Entry, Oracle, Pixel};
-use crate::ewa::tolerance::EWA;
-use crate::kit::case::Case;
-use crate::kit::goldens;
-use crate::kit::planes::{at, index};
-use crate::kit::tolerance::{Arithmetic, Measured};
+use crate::oracle::ewa::cases;
+use crate::oracle::ewa::model::{Entry, Oracle, Pixel};
+use crate::oracle::ewa::tolerance::EWA;
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::goldens;
+use crate::oracle::kit::planes::{at, index};
+use crate::oracle::kit::tolerance::{Arithmetic, Measured};
 use splatref::frame::{Frame, NO_ID, Samples};
 use splatref::method::Picture;
 use splatref::method::ewa::Settings;

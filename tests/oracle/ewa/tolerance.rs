@@ -1,7 +1,7 @@
 //! How far each plane of the 2+1-pass method may be from the oracle, and why.
 
-use crate::kit::tolerance::Arithmetic::{F32, F64, F64Rounded};
-use crate::kit::tolerance::{Row, row};
+use crate::oracle::kit::tolerance::Arithmetic::{F32, F64, F64Rounded};
+use crate::oracle::kit::tolerance::{Row, row};
 
 pub(crate) const EWA: &[Row] = &[
     row("visibility.Z", F32, 4.0, "three roundings of the nearness, one reciprocal"),

@@ -1,6 +1,6 @@
 //! What an oracle is tried on.
 
-use crate::kit::draw::Drawing;
+use crate::oracle::kit::draw::Drawing;
 use splatref::method::Method;
 use splatref::scene::{Camera, Groups, Scene};
 

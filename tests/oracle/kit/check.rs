@@ -4,11 +4,11 @@
 //! not pile up, and a plane is compared in units of its running error bound. Where rounding may
 //! decide, any outcome is accepted, and such pixels are counted.
 
-use crate::kit::case::Case;
-use crate::kit::number::{BITS, N3, Num};
-use crate::kit::planes::{at, value};
-use crate::kit::projection::{Candidate, Projected};
-use crate::kit::tolerance::{Arithmetic, Measured};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::number::{BITS, N3, Num};
+use crate::oracle::kit::planes::{at, value};
+use crate::oracle::kit::projection::{Candidate, Projected};
+use crate::oracle::kit::tolerance::{Arithmetic, Measured};
 use splatref::frame::{Frame, NO_ID};
 use splatref::number::Exact;
 use splatref::splat::Tally;

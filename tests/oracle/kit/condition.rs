@@ -1,6 +1,6 @@
 //! A number of the oracle, and how much the rounding of the inputs changes it.
 //!
-//! A condition is no bound of an error, as [`crate::kit::number`] has one: it is a unit, of the
+//! A condition is no bound of an error, as [`crate::oracle::kit::number`] has one: it is a unit, of the
 //! first order, in which the errors of the crate are measured. The oracle that bears conditions
 //! computes in another order than the crate, and finds most of them by moving every input by a
 //! step; a bound of its roundings would say nothing of those of the crate.

@@ -1,6 +1,6 @@
 //! The one place that draws: every call of the crate that makes a picture.
 
-use crate::kit::case::Case;
+use crate::oracle::kit::case::Case;
 use splatref::Result;
 use splatref::frame::{Exec, Frame};
 use splatref::index::Index;

@@ -2,7 +2,7 @@
 //!
 //! Each is compared by the test of its method, beside that test's own scenes.
 
-use crate::kit::case::Case;
+use crate::oracle::kit::case::Case;
 use splatref::frame::Exec;
 use splatref::io::scene_file::SceneFile;
 use splatref::method::{
@@ -60,7 +60,7 @@ taken! {
         "zp06_ladder",
         "zp06_voronoi_cluster",
     ];
-    crate::transparent::Settings, Transparent | TransparentHq: [
+    crate::oracle::transparent::Settings, Transparent | TransparentHq: [
         "zp06_algorithm2_background",
         "zp06_algorithm2_sheets",
         "zp06_algorithm3_mixed",

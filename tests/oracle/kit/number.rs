@@ -232,7 +232,7 @@ pub(crate) fn ways<const N: usize>(open: [Option<bool>; N]) -> Vec<[bool; N]> {
 #[test]
 fn numbers_bound_rounding() {
     // Sums of products in f32 against their bound, and what is exact has none.
-    let mut dice = crate::kit::dice::Dice(5);
+    let mut dice = crate::oracle::kit::dice::Dice(5);
     let mut worst = 0.0_f64;
     for _ in 0..5000 {
         let mut draw = || dice.within(-3.0, 3.0) / 3.0 + dice.within(-1e-3, 1e-3);

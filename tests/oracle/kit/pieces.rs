@@ -4,8 +4,8 @@
 //! much smaller one, it is on the same side of all edges. Where snapping may go either way, each
 //! outcome is a piece of its own.
 
-use crate::kit::number::{N3, Num};
-use crate::kit::projection::Sight;
+use crate::oracle::kit::number::{N3, Num};
+use crate::oracle::kit::projection::Sight;
 
 /// A corner after clipping: where it is, and how much of each original corner is in it.
 #[derive(Clone, Copy)]

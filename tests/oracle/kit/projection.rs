@@ -3,9 +3,9 @@
 //! Nothing is discarded on the way: a pixel has the list of all candidates, and the picture is held
 //! to it. Where rounding may decide where something is, there is a candidate for each outcome.
 
-use crate::kit::eye::wide;
-use crate::kit::number::{N3, Num, dot, exact, negated, normalized};
-use crate::kit::pieces::{Piece, pieces};
+use crate::oracle::kit::eye::wide;
+use crate::oracle::kit::number::{N3, Num, dot, exact, negated, normalized};
+use crate::oracle::kit::pieces::{Piece, pieces};
 use splatref::scene::{Camera, Projection, Scene};
 use splatref::splat::Tally;
 use std::collections::BTreeSet;

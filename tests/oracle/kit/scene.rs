@@ -1,6 +1,6 @@
 //! Builders of scenes and cameras.
 
-use crate::kit::dice::Dice;
+use crate::oracle::kit::dice::Dice;
 use glam::{DVec3, Mat4, Vec3};
 use splatref::scene::{Camera, Cloud, Groups, Lens, Light, Pose, Scene, Surfels};
 use splatref::source::Shape;

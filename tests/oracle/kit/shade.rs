@@ -1,8 +1,8 @@
 //! Deferred shading by other means: the picture from what reconstruction left of every pixel.
 
-use crate::kit::eye::wide;
-use crate::kit::number::{N3, Num, dot, exact, negated, normalized, ways};
-use crate::kit::projection::Sight;
+use crate::oracle::kit::eye::wide;
+use crate::oracle::kit::number::{N3, Num, dot, exact, negated, normalized, ways};
+use crate::oracle::kit::projection::Sight;
 use splatref::scene::{Light, Scene};
 
 /// What light falls on, as the crate left it but for the colour: vectors in world space.

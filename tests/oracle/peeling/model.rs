@@ -1,8 +1,8 @@
 //! Depth peeling by brute force: all fragments of a pixel, one band of depth after the other.
 
-use crate::ewa::model::{Oracle, Seen};
-use crate::kit::condition::Conditioned;
-use crate::transparent::model::opacity;
+use crate::oracle::ewa::model::{Oracle, Seen};
+use crate::oracle::kit::condition::Conditioned;
+use crate::oracle::transparent::model::opacity;
 
 /// One layer of a pixel.
 pub(crate) struct PeeledLayer {

@@ -1,16 +1,16 @@
 //! Every layer of depth peeling against the oracle.
 
-use crate::ewa::stages::oracle;
-use crate::kit::case::Case;
-use crate::kit::condition::Conditioned;
-use crate::kit::goldens;
-use crate::kit::planes::index;
-use crate::kit::tolerance::{Arithmetic, Measured};
-use crate::peeling::model::{Peeled, peel};
-use crate::peeling::tolerance::PEELING;
-use crate::transparent;
-use crate::transparent::stages::Compare;
-use crate::transparent::surroundings::{radiance, world_ray};
+use crate::oracle::ewa::stages::oracle;
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::condition::Conditioned;
+use crate::oracle::kit::goldens;
+use crate::oracle::kit::planes::index;
+use crate::oracle::kit::tolerance::{Arithmetic, Measured};
+use crate::oracle::peeling::model::{Peeled, peel};
+use crate::oracle::peeling::tolerance::PEELING;
+use crate::oracle::transparent;
+use crate::oracle::transparent::stages::Compare;
+use crate::oracle::transparent::surroundings::{radiance, world_ray};
 use splatref::frame::{Frame, NO_ID};
 use splatref::method::peeling::{STAGES, Settings};
 use splatref::number::Exact;

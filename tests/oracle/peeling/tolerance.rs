@@ -1,7 +1,7 @@
 //! How far each plane of depth peeling may be from the oracle, and why.
 
-use crate::kit::tolerance::Arithmetic::{F32, F64, F64Rounded};
-use crate::kit::tolerance::{Row, row};
+use crate::oracle::kit::tolerance::Arithmetic::{F32, F64, F64Rounded};
+use crate::oracle::kit::tolerance::{Row, row};
 
 pub(crate) const PEELING: &[Row] = &[
     row("layer", F32, 4.0, "as the picture of the 2+1-pass method"),

@@ -1,9 +1,9 @@
 //! Scenes for the pull-push pyramid that are hard on purpose.
 
-use crate::kit::case::Case;
-use crate::kit::dice::Dice;
-use crate::kit::goldens;
-use crate::kit::scene::{self, ahead, scene, turned};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::goldens;
+use crate::oracle::kit::scene::{self, ahead, scene, turned};
 use glam::Vec3;
 use splatref::method::pyramid::{Occlusion, Settings, Weights};
 use splatref::scene::indexed::{Indexed, Primitives, Vertices};

@@ -1,11 +1,11 @@
 //! Pictures of the pull-push pyramid that are known otherwise: one disc, mirrors, rims, lines,
 //! rays.
 
-use crate::kit::dice::Dice;
-use crate::kit::eye::wide;
-use crate::kit::planes::value;
-use crate::pyramid::cases;
-use crate::pyramid::laws::{Colored, filled, plan, render, scene};
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::eye::wide;
+use crate::oracle::kit::planes::value;
+use crate::oracle::pyramid::cases;
+use crate::oracle::pyramid::laws::{Colored, filled, plan, render, scene};
 use glam::Vec3;
 use splatref::frame::Frame;
 use splatref::method::pyramid::Settings;

@@ -1,12 +1,12 @@
 //! What the pull-push pyramid must keep, whatever the scene.
 
-use crate::kit::case::Case;
-use crate::kit::dice::Dice;
-use crate::kit::draw::Drawing;
-use crate::kit::planes::{pixels, value};
-use crate::kit::scene::{ahead, discs, surfels};
-use crate::pyramid::cases;
-use crate::pyramid::model::{Cell, Level, occluded};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::draw::Drawing;
+use crate::oracle::kit::planes::{pixels, value};
+use crate::oracle::kit::scene::{ahead, discs, surfels};
+use crate::oracle::pyramid::cases;
+use crate::oracle::pyramid::model::{Cell, Level, occluded};
 use glam::Vec3;
 use splatref::frame::Frame;
 use splatref::method::pyramid::{Settings, Weights};
@@ -20,7 +20,7 @@ pub(crate) type Colored = (Vec3, Vec3, f32, Vec3);
 pub(crate) fn scene(all: &[Colored]) -> Scene {
     let cloud = discs(all.iter().map(|(p, n, r, _)| (*p, *n, *r)));
     let color = Some(all.iter().map(|d| d.3).collect());
-    crate::kit::scene::scene(surfels(Cloud { color, ..cloud }))
+    crate::oracle::kit::scene::scene(surfels(Cloud { color, ..cloud }))
 }
 
 /// Orthographic, one pixel a unit: the point (x, y, -t) is at (width/2 + x, height/2 - y).

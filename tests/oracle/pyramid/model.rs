@@ -3,9 +3,9 @@
 //! Whether a point is inside an ellipse is decided by its axes, as the paper puts it, and by the
 //! form of the documentation; they must not contradict each other. Depths are compared exactly.
 
-use crate::kit::number::{BITS, N3, Num, exact, ways};
-use crate::kit::planes::at;
-use crate::kit::projection::{TUBE, and};
+use crate::oracle::kit::number::{BITS, N3, Num, exact, ways};
+use crate::oracle::kit::planes::at;
+use crate::oracle::kit::projection::{TUBE, and};
 use splatref::frame::Frame;
 use splatref::method::pyramid::{Occlusion, Settings, Weights};
 use splatref::number::Exact;

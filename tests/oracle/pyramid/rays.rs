@@ -5,9 +5,9 @@
 //! a square of that size bounds depth and radius; pixels whose square is cut by an edge are left
 //! out.
 
-use crate::kit::eye::{Eye, V3, cross, dot, sub, wide};
-use crate::kit::planes::value;
-use crate::pyramid::cases::{Discs, Others, case};
+use crate::oracle::kit::eye::{Eye, V3, cross, dot, sub, wide};
+use crate::oracle::kit::planes::value;
+use crate::oracle::pyramid::cases::{Discs, Others, case};
 use splatref::frame::NO_ID;
 use splatref::method::pyramid::Settings;
 

@@ -5,16 +5,16 @@
 //! decide, any outcome is accepted, and such cells are counted. A third run computes in `f32`
 //! itself, where no decision is open: the documentation gives the bits.
 
-use crate::kit::case::Case;
-use crate::kit::check::{Check, FAR, Number, Open, PROJECTION, vector};
-use crate::kit::number::{BITS, Num, exact};
-use crate::kit::planes::unclean;
-use crate::kit::projection::{Projected, Sight};
-use crate::kit::shade::{Surface, shaded};
-use crate::kit::tolerance::{Arithmetic, Measured};
-use crate::pyramid::cases;
-use crate::pyramid::model::{Cell, Expected, Level, pulled, pushed};
-use crate::pyramid::tolerance::PYRAMID;
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::check::{Check, FAR, Number, Open, PROJECTION, vector};
+use crate::oracle::kit::number::{BITS, Num, exact};
+use crate::oracle::kit::planes::unclean;
+use crate::oracle::kit::projection::{Projected, Sight};
+use crate::oracle::kit::shade::{Surface, shaded};
+use crate::oracle::kit::tolerance::{Arithmetic, Measured};
+use crate::oracle::pyramid::cases;
+use crate::oracle::pyramid::model::{Cell, Expected, Level, pulled, pushed};
+use crate::oracle::pyramid::tolerance::PYRAMID;
 use Arithmetic::{F32, F64};
 use splatref::method::Picture;
 use splatref::method::pyramid::Settings;
@@ -94,7 +94,7 @@ impl<R: Exact, const P: u32> PyramidStages<'_, R, P> {
     fn picture(&mut self, level: &Level) {
         let (Case { scene, camera, name, .. }, check) = (self.case, &mut self.check);
         let sight = Sight::<P>::new(camera);
-        let material = crate::kit::eye::wide(scene.material.color);
+        let material = crate::oracle::kit::eye::wide(scene.material.color);
         for (i, x, y) in self.case.pixels() {
             let place = format!("pixel ({x}, {y})");
             let cell = level.cells[i];

@@ -1,11 +1,11 @@
 //! How far each plane of the pull-push pyramid may be from its oracle, and why.
 //!
-//! The unit is the running error bound of [`crate::kit::number`]: with the documented operations
+//! The unit is the running error bound of [`crate::oracle::kit::number`]: with the documented operations
 //! in the documented order an error of 1 is the worst that rounding can do, so no row is above 1.
 //! In `f64` the oracle makes the same operations and 0 means the same bits.
 
-use crate::kit::tolerance::Arithmetic::{F32, F64};
-use crate::kit::tolerance::{Row, row};
+use crate::oracle::kit::tolerance::Arithmetic::{F32, F64};
+use crate::oracle::kit::tolerance::{Row, row};
 
 const BITS: &str = "the same operations on the same numbers";
 const CHOSEN: &str = "chosen from given numbers, not computed";

@@ -1,7 +1,7 @@
 //! Meshes and point sets.
 
-use crate::kit::dice::Dice;
-use crate::kit::scene::{discs, scene, surfels};
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::scene::{discs, scene, surfels};
 use glam::{DVec3, Vec3};
 use splatref::scene::transform::rotation;
 use splatref::scene::{

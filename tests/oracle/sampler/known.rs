@@ -1,8 +1,8 @@
 //! Answers that need no program.
 
-use crate::sampler::cases::{alone, cancelling};
-use crate::sampler::orders::random;
-use crate::sampler::stages::taken;
+use crate::oracle::sampler::cases::{alone, cancelling};
+use crate::oracle::sampler::orders::random;
+use crate::oracle::sampler::stages::taken;
 use glam::{DVec3, Vec3};
 use splatref::frame::Exec;
 use splatref::source::candidates::Directions;

@@ -1,10 +1,10 @@
 //! What candidates and samplers must keep.
 
-use crate::kit::dice::Dice;
-use crate::kit::scene::{discs, surfels};
-use crate::sampler::cases;
-use crate::sampler::orders::squared;
-use crate::sampler::stages::{seen, taken};
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::scene::{discs, surfels};
+use crate::oracle::sampler::cases;
+use crate::oracle::sampler::orders::squared;
+use crate::oracle::sampler::stages::{seen, taken};
 use glam::Vec3;
 use splatref::frame::Exec;
 use splatref::scene::Scene;

@@ -1,7 +1,7 @@
 //! What the pages say is refused.
 
-use crate::kit::scene::{discs, scene, surfels};
-use crate::sampler::cases::{alone, ball, cancelling};
+use crate::oracle::kit::scene::{discs, scene, surfels};
+use crate::oracle::sampler::cases::{alone, ball, cancelling};
 use glam::{DVec3, Vec3};
 use splatref::Error;
 use splatref::frame::Exec;

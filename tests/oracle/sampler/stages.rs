@@ -1,9 +1,9 @@
 //! Candidates and orders against the oracle's own.
 
-use crate::kit::dice::Dice;
-use crate::sampler::candidates::{self as own, Seen, Triangle, bits};
-use crate::sampler::cases;
-use crate::sampler::orders::{self, Picks, Random, greedy, shuffled};
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::sampler::candidates::{self as own, Seen, Triangle, bits};
+use crate::oracle::sampler::cases;
+use crate::oracle::sampler::orders::{self, Picks, Random, greedy, shuffled};
 use glam::{DVec3, Vec3};
 use splatref::frame::Exec;
 use splatref::scene::{Cloud, Geometry, Objects, Primitives, Property, Scene, Triangles, Vertices};

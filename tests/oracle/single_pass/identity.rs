@@ -4,13 +4,13 @@
 //! The groups are coloured here, from the definition. Which fragments a pixel has is the oracle's
 //! word; the two pictures are the crate's.
 
-use crate::ewa::model::{Oracle, Seen};
-use crate::kit::dice::Dice;
-use crate::kit::draw::Drawing;
-use crate::kit::eye::{dot, wide};
-use crate::kit::planes::value;
-use crate::kit::scene::{discs, framed, groups, scene, straight, surfels};
-use crate::kit::tolerance::Arithmetic;
+use crate::oracle::ewa::model::{Oracle, Seen};
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::draw::Drawing;
+use crate::oracle::kit::eye::{dot, wide};
+use crate::oracle::kit::planes::value;
+use crate::oracle::kit::scene::{discs, framed, groups, scene, straight, surfels};
+use crate::oracle::kit::tolerance::Arithmetic;
 use glam::Vec3;
 use proptest::prelude::*;
 use splatref::frame::Frame;

@@ -1,14 +1,14 @@
 //! Laws of Algorithm 1 as a whole: what groups may and may not change in a picture.
 
-use crate::bits::case;
-use crate::composite::groups::unit;
-use crate::ewa::cases::{self, Kind};
-use crate::kit::case::Case;
-use crate::kit::dice::Dice;
-use crate::kit::draw::Drawing;
-use crate::kit::planes::{at, bits, digest, index, pixels, unclean};
-use crate::kit::scene::{discs, groups, straight};
-use crate::single_pass::identity::lit;
+use crate::oracle::bits::case;
+use crate::oracle::composite::groups::unit;
+use crate::oracle::ewa::cases::{self, Kind};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::draw::Drawing;
+use crate::oracle::kit::planes::{at, bits, digest, index, pixels, unclean};
+use crate::oracle::kit::scene::{discs, groups, straight};
+use crate::oracle::single_pass::identity::lit;
 use glam::Vec3;
 use proptest::prelude::*;
 use proptest::test_runner::TestCaseResult;
@@ -62,7 +62,7 @@ fn depth(case: &Splats, number: usize) -> DepthTest {
     }
 }
 
-/// Sums of the same m terms in two orders, see [`crate::composite::groups`].
+/// Sums of the same m terms in two orders, see [`crate::oracle::composite::groups`].
 fn same_but_order<R: Exact>(a: &Frame<R>, b: &Frame<R>, i: usize, place: &str) -> TestCaseResult {
     let count = value(a, "sums.count", i)[0];
     prop_assert_eq!(count, value(b, "sums.count", i)[0], "{}", place);

@@ -3,8 +3,8 @@
 //! Which fragment a depth-image keeps can hang on rounding. So an [`Kept`] is the list of all that
 //! may be kept: whoever compares asks which of them was, and goes on from there.
 
-use crate::ewa::model::{Entry, Oracle, Seen};
-use crate::ewa::splat::Fragment;
+use crate::oracle::ewa::model::{Entry, Oracle, Seen};
+use crate::oracle::ewa::splat::Fragment;
 use splatref::composite::bins::Range;
 
 /// A fragment that a depth-image may keep.

@@ -1,12 +1,12 @@
 //! `d_min` and `d_max` of \[ZP06, eq. 6\]: no fragment is outside.
 
-use crate::ewa::cases::{self, KINDS};
-use crate::kit::dice::Dice;
-use crate::kit::draw::Drawing;
-use crate::kit::eye::{Eye, dot, sub, wide};
-use crate::kit::planes::scalars;
-use crate::kit::scene::{self, OUTLINES, groups, straight};
-use crate::single_pass::identity::lit;
+use crate::oracle::ewa::cases::{self, KINDS};
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::draw::Drawing;
+use crate::oracle::kit::eye::{Eye, dot, sub, wide};
+use crate::oracle::kit::planes::scalars;
+use crate::oracle::kit::scene::{self, OUTLINES, groups, straight};
+use crate::oracle::single_pass::identity::lit;
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 use splatref::method::ewa;

@@ -1,16 +1,16 @@
 //! Every stage of Algorithm 1 against the oracle, for groups drawn by lot.
 
-use crate::ewa::cases;
-use crate::ewa::model::Seen;
-use crate::ewa::stages::{measure, oracle};
-use crate::kit::case::Case;
-use crate::kit::dice::Dice;
-use crate::kit::goldens;
-use crate::kit::planes::{at, index, plane};
-use crate::kit::scene::groups;
-use crate::kit::tolerance::{Arithmetic, Measured};
-use crate::single_pass::model::Algorithm1;
-use crate::single_pass::tolerance::SINGLE_PASS;
+use crate::oracle::ewa::cases;
+use crate::oracle::ewa::model::Seen;
+use crate::oracle::ewa::stages::{measure, oracle};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::goldens;
+use crate::oracle::kit::planes::{at, index, plane};
+use crate::oracle::kit::scene::groups;
+use crate::oracle::kit::tolerance::{Arithmetic, Measured};
+use crate::oracle::single_pass::model::Algorithm1;
+use crate::oracle::single_pass::tolerance::SINGLE_PASS;
 use splatref::frame::{Frame, NO_ID, Samples};
 use splatref::method::ewa;
 use splatref::method::single_pass::{BinCount, DepthTest, Settings};

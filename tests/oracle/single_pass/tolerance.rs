@@ -1,7 +1,7 @@
 //! How far each plane of Algorithm 1 may be from the oracle, and why.
 
-use crate::kit::tolerance::Arithmetic::{F32, F64, F64Rounded};
-use crate::kit::tolerance::{Row, row};
+use crate::oracle::kit::tolerance::Arithmetic::{F32, F64, F64Rounded};
+use crate::oracle::kit::tolerance::{Row, row};
 
 /// `group` stands for the depth-image of any group.
 pub(crate) const SINGLE_PASS: &[Row] = &[

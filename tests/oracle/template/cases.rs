@@ -1,8 +1,8 @@
 //! Scenes for the reconstruction with templates, drawn by lot: discs placed by their pixels.
 
-use crate::kit::case::Case;
-use crate::kit::dice::Dice;
-use crate::kit::scene::{discs, lights, scene, straight, surfels, turned};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::scene::{discs, lights, scene, straight, surfels, turned};
 use glam::{Mat4, Vec3};
 use splatref::scene::{Camera, Cloud, Projection, Scene};
 

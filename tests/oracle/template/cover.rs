@@ -1,11 +1,11 @@
 //! One disc alone: which of its pixels find it, under each rule of levels.
 
-use crate::kit::dice::Dice;
-use crate::kit::draw::Drawing;
-use crate::kit::scene::{discs, scene, straight, surfels};
-use crate::template::known::id;
-use crate::template::model::{Center, Template};
-use crate::template::stages::grid;
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::draw::Drawing;
+use crate::oracle::kit::scene::{discs, scene, straight, surfels};
+use crate::oracle::template::known::id;
+use crate::oracle::template::model::{Center, Template};
+use crate::oracle::template::stages::grid;
 use glam::Vec3;
 use splatref::frame::NO_ID;
 use splatref::method::template::{Falloff, LevelRule, Settings};

@@ -1,9 +1,9 @@
 //! Known answers of the reconstruction with templates: every threshold, tie and degenerate input
 //! that its documentation names, on numbers that no arithmetic rounds, for `f32` and `f64` alike.
 
-use crate::kit::draw::Drawing;
-use crate::kit::planes;
-use crate::template::cases::{Dot, exact_camera, exact_scene};
+use crate::oracle::kit::draw::Drawing;
+use crate::oracle::kit::planes;
+use crate::oracle::template::cases::{Dot, exact_camera, exact_scene};
 use glam::Vec3;
 use splatref::frame::{Frame, NO_ID, Samples};
 use splatref::method::template::{Falloff, LevelRule, Settings};

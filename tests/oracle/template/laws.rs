@@ -1,14 +1,14 @@
 //! Laws of the reconstruction with templates, on pictures of scenes drawn by lot.
 
-use crate::kit::case::Case;
-use crate::kit::dice::Dice;
-use crate::kit::draw::Drawing;
-use crate::kit::number::Num;
-use crate::kit::planes::{at, plane};
-use crate::kit::scene::change;
-use crate::template::cases::{self, Dot, exact_camera, exact_scene};
-use crate::template::model::{Grid, Template};
-use crate::template::stages::{all_settings, grid};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::draw::Drawing;
+use crate::oracle::kit::number::Num;
+use crate::oracle::kit::planes::{at, plane};
+use crate::oracle::kit::scene::change;
+use crate::oracle::template::cases::{self, Dot, exact_camera, exact_scene};
+use crate::oracle::template::model::{Grid, Template};
+use crate::oracle::template::stages::{all_settings, grid};
 use glam::Vec3;
 use splatref::Error;
 use splatref::frame::{Frame, NO_ID};

@@ -4,13 +4,13 @@
 //! so that rounding differs, and the ternary test depends on which is found first, so that a pixel
 //! can even show other discs. That is the documented order, and the paper's method.
 
-use crate::kit::dice::Dice;
-use crate::kit::draw::Drawing;
-use crate::kit::number::Num;
-use crate::kit::planes::value;
-use crate::template::cases::{Dot, exact_camera, exact_scene};
-use crate::template::known::{id, number};
-use crate::template::stages::all_settings;
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::draw::Drawing;
+use crate::oracle::kit::number::Num;
+use crate::oracle::kit::planes::value;
+use crate::oracle::template::cases::{Dot, exact_camera, exact_scene};
+use crate::oracle::template::known::{id, number};
+use crate::oracle::template::stages::all_settings;
 use glam::Vec3;
 use splatref::frame::{Frame, NO_ID};
 use splatref::method::template::{Falloff, LevelRule, Settings};

@@ -4,9 +4,9 @@
 //! found where it arises and a decision that rounding turns spreads no further. Candidates of a
 //! pixel are found by asking every centre of every level, not by visiting cells.
 
-use crate::kit::eye::V3;
-use crate::kit::number::{N3, Num, exact, normalized};
-use crate::kit::projection::Sight;
+use crate::oracle::kit::eye::V3;
+use crate::oracle::kit::number::{N3, Num, exact, normalized};
+use crate::oracle::kit::projection::Sight;
 use splatref::frame::NO_ID;
 use splatref::method::template::{Falloff, LevelRule, Settings};
 

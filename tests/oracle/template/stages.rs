@@ -1,17 +1,17 @@
 //! Every stage of the reconstruction with templates against the oracle.
 
-use crate::kit::case::Case;
-use crate::kit::check::{Check, Open, PROJECTION, vector};
-use crate::kit::draw::Drawing;
-use crate::kit::goldens;
-use crate::kit::number::{N3, Num, exact};
-use crate::kit::planes::{at, plane};
-use crate::kit::projection::{Projected, Sight};
-use crate::kit::shade::{Surface, shaded};
-use crate::kit::tolerance::{Arithmetic, Measured};
-use crate::template::cases;
-use crate::template::model::{Center, Grid, Staying, Sums, Template, average, direction};
-use crate::template::tolerance::TEMPLATE;
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::check::{Check, Open, PROJECTION, vector};
+use crate::oracle::kit::draw::Drawing;
+use crate::oracle::kit::goldens;
+use crate::oracle::kit::number::{N3, Num, exact};
+use crate::oracle::kit::planes::{at, plane};
+use crate::oracle::kit::projection::{Projected, Sight};
+use crate::oracle::kit::shade::{Surface, shaded};
+use crate::oracle::kit::tolerance::{Arithmetic, Measured};
+use crate::oracle::template::cases;
+use crate::oracle::template::model::{Center, Grid, Staying, Sums, Template, average, direction};
+use crate::oracle::template::tolerance::TEMPLATE;
 use splatref::frame::{Frame, NO_ID};
 use splatref::method::Picture;
 use splatref::method::template::{Falloff, LevelRule, Settings};

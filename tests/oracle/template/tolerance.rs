@@ -1,11 +1,11 @@
 //! How far each plane of the reconstruction with templates may be from the oracle, and why.
 //!
-//! The unit is the running error bound of [`crate::kit::number`]: the sum of all roundings on the
+//! The unit is the running error bound of [`crate::oracle::kit::number`]: the sum of all roundings on the
 //! way, which the same operations cannot exceed. In f64 the oracle rounds as the documentation says,
 //! so that no bit may differ, but in exponentials and the power of Phong's formula.
 
-use crate::kit::tolerance::Arithmetic::{F32, F64};
-use crate::kit::tolerance::{Row, row};
+use crate::oracle::kit::tolerance::Arithmetic::{F32, F64};
+use crate::oracle::kit::tolerance::{Row, row};
 
 const SAME: &str = "the documented operations in the documented order";
 

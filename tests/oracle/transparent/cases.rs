@@ -1,11 +1,11 @@
 //! Scenes with opacities and an environment, their groups, and settings, all drawn by lot.
 
-use crate::ewa::cases::{self, Kind};
-use crate::kit::case::Case;
-use crate::kit::dice::Dice;
-use crate::kit::scene::{OUTLINES, change};
-use crate::single_pass::range::by_definition;
-use crate::transparent::Settings;
+use crate::oracle::ewa::cases::{self, Kind};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::scene::{OUTLINES, change};
+use crate::oracle::single_pass::range::by_definition;
+use crate::oracle::transparent::Settings;
 use splatref::composite::bins::Range;
 use splatref::frame::Plane;
 use splatref::method::ewa::Settings as Splats;

@@ -1,12 +1,12 @@
 //! Environments behind transparent layers and through glass, in closed form.
 
-use crate::kit::dice::Dice;
-use crate::kit::eye::{Eye, dot, unit};
-use crate::kit::planes::{index, value};
-use crate::transparent::known::{
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::eye::{Eye, dot, unit};
+use crate::oracle::kit::planes::{index, value};
+use crate::oracle::transparent::known::{
     PIXELS, SIZE, Sheet, TESTS, assert_near, camera, over, render, settings, sheet, sheets,
 };
-use crate::transparent::surroundings::{radiance, world_ray};
+use crate::oracle::transparent::surroundings::{radiance, world_ray};
 use glam::{DVec3, Vec3};
 use splatref::frame::{NO_ID, Plane};
 use splatref::method::single_pass::DepthTest;

@@ -1,10 +1,10 @@
 //! Transparent pictures whose numbers are known in closed form.
 
-use crate::kit::dice::Dice;
-use crate::kit::draw::{Drawing, back_to_front};
-use crate::kit::planes::value;
-use crate::kit::scene::{OUTLINES, ahead, change, discs, groups, scene, surfels};
-use crate::transparent::Settings;
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::draw::{Drawing, back_to_front};
+use crate::oracle::kit::planes::value;
+use crate::oracle::kit::scene::{OUTLINES, ahead, change, discs, groups, scene, surfels};
+use crate::oracle::transparent::Settings;
 use glam::Vec3;
 use splatref::frame::Frame;
 use splatref::method::ewa;

@@ -1,12 +1,12 @@
 //! What transparency must keep, on pictures of scenes drawn by lot.
 
-use crate::kit::case::Case;
-use crate::kit::dice::Dice;
-use crate::kit::draw::{Drawing, back_to_front};
-use crate::kit::planes::{pixels, plane, value};
-use crate::kit::scene::{change, groups};
-use crate::transparent::Settings;
-use crate::transparent::cases;
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::dice::Dice;
+use crate::oracle::kit::draw::{Drawing, back_to_front};
+use crate::oracle::kit::planes::{pixels, plane, value};
+use crate::oracle::kit::scene::{change, groups};
+use crate::oracle::transparent::Settings;
+use crate::oracle::transparent::cases;
 use glam::Vec3;
 use splatref::composite::bins::DepthBins;
 use splatref::frame::{Frame, NO_ID, Plane, Samples};

@@ -1,15 +1,15 @@
 //! \[ZP06, Algorithms 2 and 3\] by brute force: every surfel in every group of its own, at one
 //! pixel.
 //!
-//! The order comes from a tree of its own; the nearest layer is that of [`crate::single_pass::model`]. A
+//! The order comes from a tree of its own; the nearest layer is that of [`crate::oracle::single_pass::model`]. A
 //! pixel where rounding decides what is inside, in which bin, or in which layer is left out.
 
-use crate::ewa::model::{Oracle, Seen};
-use crate::ewa::splat::{Fragment, Splat};
-use crate::kit::condition::Conditioned;
-use crate::kit::eye::{Eye, V3, cross, dot, scaled, wide};
-use crate::single_pass::model::Algorithm1;
-use crate::transparent::Settings;
+use crate::oracle::ewa::model::{Oracle, Seen};
+use crate::oracle::ewa::splat::{Fragment, Splat};
+use crate::oracle::kit::condition::Conditioned;
+use crate::oracle::kit::eye::{Eye, V3, cross, dot, scaled, wide};
+use crate::oracle::single_pass::model::Algorithm1;
+use crate::oracle::transparent::Settings;
 use splatref::composite::bins::Range;
 use splatref::method::transparent::{BinEdges, Holes};
 use splatref::scene::Groups;

@@ -1,10 +1,10 @@
 //! What transparency refuses, in one line each.
 
-use crate::kit::case::Case;
-use crate::kit::draw::Drawing;
-use crate::kit::scene::groups;
-use crate::transparent::Settings;
-use crate::transparent::cases;
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::draw::Drawing;
+use crate::oracle::kit::scene::groups;
+use crate::oracle::transparent::Settings;
+use crate::oracle::transparent::cases;
 use splatref::Result;
 use splatref::composite::bins::MAX_BINS;
 use splatref::error::Error;

@@ -1,21 +1,21 @@
 //! Every stage of Algorithms 2 and 3 against the oracle, for groups, extensions and opacities drawn
 //! by lot.
 
-use crate::ewa::model::Entry;
-use crate::ewa::stages::{measure, oracle};
-use crate::kit::case::Case;
-use crate::kit::condition::Conditioned;
-use crate::kit::draw::{Drawing, back_to_front};
-use crate::kit::eye::V3;
-use crate::kit::goldens;
-use crate::kit::planes::{self, index, plane};
-use crate::kit::scene::groups;
-use crate::kit::tolerance::{Arithmetic, Measured};
-use crate::transparent::Settings;
-use crate::transparent::cases;
-use crate::transparent::model::{self, Image, Transparent, Truth};
-use crate::transparent::surroundings::{radiance, refracted, world_ray};
-use crate::transparent::tolerance::TRANSPARENT;
+use crate::oracle::ewa::model::Entry;
+use crate::oracle::ewa::stages::{measure, oracle};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::condition::Conditioned;
+use crate::oracle::kit::draw::{Drawing, back_to_front};
+use crate::oracle::kit::eye::V3;
+use crate::oracle::kit::goldens;
+use crate::oracle::kit::planes::{self, index, plane};
+use crate::oracle::kit::scene::groups;
+use crate::oracle::kit::tolerance::{Arithmetic, Measured};
+use crate::oracle::transparent::Settings;
+use crate::oracle::transparent::cases;
+use crate::oracle::transparent::model::{self, Image, Transparent, Truth};
+use crate::oracle::transparent::surroundings::{radiance, refracted, world_ray};
+use crate::oracle::transparent::tolerance::TRANSPARENT;
 use splatref::frame::{Frame, NO_ID, Samples};
 use splatref::method::single_pass::{self, DepthTest};
 use splatref::number::Exact;

@@ -1,8 +1,8 @@
 //! An environment and what a thin sheet of glass makes of it, by angles and std's functions.
 
-use crate::kit::condition::Conditioned;
-use crate::kit::eye::{Eye, V3, cross, dot, scaled, sub, unit};
-use crate::transparent::model::{Near, Truth};
+use crate::oracle::kit::condition::Conditioned;
+use crate::oracle::kit::eye::{Eye, V3, cross, dot, scaled, sub, unit};
+use crate::oracle::transparent::model::{Near, Truth};
 use splatref::scene::Environment;
 use splatref::scene::environment::Map;
 use splatref::shade::optics::{BendingLayers, Refraction};

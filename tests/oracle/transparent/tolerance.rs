@@ -1,7 +1,7 @@
 //! How far each plane of Algorithms 2 and 3 may be from the oracle, and why.
 
-use crate::kit::tolerance::Arithmetic::{F32, F64, F64Rounded};
-use crate::kit::tolerance::{Row, row};
+use crate::oracle::kit::tolerance::Arithmetic::{F32, F64, F64Rounded};
+use crate::oracle::kit::tolerance::{Row, row};
 
 /// Blended planes ask for no unit normals: in f64 they have one row.
 pub(crate) const TRANSPARENT: &[Row] = &[

@@ -3,7 +3,7 @@
 use super::Client;
 use super::bug::Bug;
 use super::manner::Manner;
-use crate::client::number::Number;
+use crate::verify::client::number::Number;
 use splatref::method::single_pass::BinCount;
 use splatref::scene::{Camera, Scene};
 use splatref::splat::{Epsilon, SplatSettings};

@@ -1,7 +1,7 @@
 //! The mistakes that a client can be told to make, each one line where a developer would make it.
 
-use crate::client;
-use crate::client::named::named;
+use crate::verify::client;
+use crate::verify::client::named::named;
 
 named! {
     /// One-line mistakes: of splats, of the depth-images, of their depth test in bins, of the

@@ -4,9 +4,9 @@ use super::Client;
 use super::bug::Bug;
 use super::images::{Image, Kept};
 use super::manner::Manner;
-use crate::client::habit::Habit;
-use crate::client::number::{Number, Vector, scrambled, unit};
-use crate::client::passes::half;
+use crate::verify::client::habit::Habit;
+use crate::verify::client::number::{Number, Vector, scrambled, unit};
+use crate::verify::client::passes::half;
 
 /// What the pass leaves at a pixel.
 #[derive(Clone, Copy)]

@@ -3,9 +3,9 @@
 use super::Client;
 use super::bug::Bug;
 use super::manner::Manner;
-use crate::client::number::{Number, Vector, scrambled};
-use crate::client::passes::{Pass, depth, fragment, half, inside, pixels, stored, weight};
-use crate::client::project::Splat;
+use crate::verify::client::number::{Number, Vector, scrambled};
+use crate::verify::client::passes::{Pass, depth, fragment, half, inside, pixels, stored, weight};
+use crate::verify::client::project::Splat;
 use splatref::frame::NO_ID;
 
 /// What the depth test compares.

@@ -1,6 +1,6 @@
 //! What a right client of this method may do otherwise, beside the habits of numbers.
 
-use crate::client::named::named;
+use crate::verify::client::named::named;
 
 named! {
     /// How the passes are built.

@@ -1,6 +1,6 @@
 //! A client of the method `single-pass`: a second implementation of Algorithm 1 of \[ZP06\].
 //!
-//! As [`crate::client`] it was written from the pages of the crate, without its code, and shares no
+//! As [`crate::verify::client`] it was written from the pages of the crate, without its code, and shares no
 //! formula with it. Splats, their fragments, numbers, habits and light are those of that client.
 //!
 //! - [`bins`]: bins of depth, and the Voronoi-enhanced depth.
@@ -19,9 +19,9 @@ mod manner;
 mod planes;
 mod verdicts;
 
-use crate::client::habit::Habit;
-use crate::client::project::project;
-use crate::client::view::Shared;
+use crate::verify::client::habit::Habit;
+use crate::verify::client::project::project;
+use crate::verify::client::view::Shared;
 use bins::Bins;
 use bug::Bug;
 use manner::Manner;
@@ -82,7 +82,8 @@ fn render(
     assert!(scene.environment.is_none(), "the client knows no environments");
     let enlarged = (how.bug == Some(Bug::ScaleApplied)).then(|| enlarged(scene, groups));
     let drawn = enlarged.as_ref().unwrap_or(scene);
-    let of_splats = crate::client::How { habit: how.habit, bug: how.bug.and_then(Bug::of_splats) };
+    let of_splats =
+        crate::verify::client::How { habit: how.habit, bug: how.bug.and_then(Bug::of_splats) };
     let bins = match settings.depth {
         DepthTest::Plain => None,
         DepthTest::Voronoi(count) => {

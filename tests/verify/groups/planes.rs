@@ -4,9 +4,9 @@ use super::Client;
 use super::bug::Bug;
 use super::compositing::Surface;
 use super::images::{Image, Kept};
-use crate::client::number::Vector;
-use crate::client::shade::Shader;
-use crate::client::targets::srgb;
+use crate::verify::client::number::Vector;
+use crate::verify::client::shade::Shader;
+use crate::verify::client::targets::srgb;
 use splatref::Frame;
 use splatref::frame::{NO_ID, Plane, Samples};
 

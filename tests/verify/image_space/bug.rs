@@ -1,6 +1,6 @@
 //! The mistakes that a client can be told to make, each one line where a developer would make it.
 
-use crate::client::named::named;
+use crate::verify::client::named::named;
 
 named! {
     /// One-line mistakes: of both methods, of `template`, of `pyramid`.

@@ -2,7 +2,7 @@
 
 use super::Client;
 use super::bug::Bug;
-use crate::client::number::{Number, Vector, sum};
+use crate::verify::client::number::{Number, Vector, sum};
 
 /// The ellipse of a disc.
 pub(super) struct Ellipse {

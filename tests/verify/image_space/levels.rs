@@ -2,7 +2,7 @@
 
 use super::Client;
 use super::bug::Bug;
-use crate::client::number::Number;
+use crate::verify::client::number::Number;
 
 /// A record of numbers.
 pub(super) trait Record: Copy {

@@ -2,7 +2,7 @@
 
 use super::Client;
 use super::bug::Bug;
-use crate::client::number::{Number, Vector};
+use crate::verify::client::number::{Number, Vector};
 
 /// The cells that take part, and their weights.
 pub(super) struct Mean<'a> {

@@ -1,6 +1,6 @@
 //! A client of the methods `template` and `pyramid`: a second implementation of both.
 //!
-//! As [`crate::client`] it was written from the pages of the crate, without its code, and shares no
+//! As [`crate::verify::client`] it was written from the pages of the crate, without its code, and shares no
 //! formula with it. Numbers, habits, view and light are those of that client. Surfels only.
 //!
 //! - [`projection`]: surfels to single pixels.
@@ -22,9 +22,9 @@ mod pyramid;
 mod template;
 mod verdicts;
 
-use crate::client::habit::Habit;
-use crate::client::number::{Number, Vector, dot, sum, unit};
-use crate::client::view::Shared;
+use crate::verify::client::habit::Habit;
+use crate::verify::client::number::{Number, Vector, dot, sum, unit};
+use crate::verify::client::view::Shared;
 use bug::Bug;
 use splatref::method::Method;
 use splatref::splat::SplatSettings;
@@ -46,7 +46,7 @@ struct Client<'a> {
 impl<'a> Client<'a> {
     fn new(scene: &'a Scene, camera: &Camera, cull: bool, how: How) -> Self {
         let settings = SplatSettings { cull, ..SplatSettings::default() };
-        let of_splats = crate::client::How { habit: how.habit, bug: None };
+        let of_splats = crate::verify::client::How { habit: how.habit, bug: None };
         Self { shared: Shared::new(scene, camera, &settings, of_splats), how }
     }
 

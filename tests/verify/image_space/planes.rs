@@ -4,8 +4,8 @@ use super::Client;
 use super::bug::Bug;
 use super::levels::Level;
 use super::projection::Sample;
-use crate::client::number::Number;
-use crate::client::shade::Shader;
+use crate::verify::client::number::Number;
+use crate::verify::client::shade::Shader;
 use splatref::Frame;
 use splatref::frame::{NO_ID, Plane, Samples};
 

@@ -3,8 +3,8 @@
 use super::Client;
 use super::bug::Bug;
 use super::levels::{Level, Record};
-use crate::client::habit::Habit;
-use crate::client::number::{Number, Vector};
+use crate::verify::client::habit::Habit;
+use crate::verify::client::number::{Number, Vector};
 
 /// The largest radius in pixels, 2^48.
 const LARGEST_RADIUS: f32 = f32::from_bits((127 + 48) << 23);

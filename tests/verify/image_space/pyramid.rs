@@ -7,7 +7,7 @@ use super::levels::{Level, Record, sizes};
 use super::mean::Mean;
 use super::planes::{Sheet, Surface};
 use super::projection::{Sample, project};
-use crate::client::number::{Number, Vector};
+use crate::verify::client::number::{Number, Vector};
 use splatref::Frame;
 use splatref::method::pyramid::{Occlusion, Settings, Weights};
 

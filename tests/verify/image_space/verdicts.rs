@@ -4,8 +4,8 @@
 use super::bug::Bug;
 use super::cases::{Case, of_pyramid, of_template};
 use super::{How, render};
-use crate::client::Habit;
-use crate::client_is_right::differences;
+use crate::verify::client::Habit;
+use crate::verify::client_is_right::differences;
 use splatref::frame::{Exec, Frame};
 use splatref::method::Session;
 use splatref::verdict::Verdict;

@@ -222,8 +222,8 @@ fn what_does_not_fit_is_refused() {
     };
     for most in [-0.1, 1.5, f32::NAN] {
         let line = refused(&scene, Extension::Add { most });
-        assert_eq!(line, format!("add: a surfel covered to {most}; give 0 to 1"));
+        assert_eq!(line, format!("most: {most}; give 0 to 1"));
     }
     let line = refused(&cluttered(2, 6, [8.0, 8.0, 0.5], 0.5), Extension::None);
-    assert_eq!(line, "groups of 5 surfels for a scene of 6");
+    assert_eq!(line, "the groups have 5 surfels, but the scene has 6");
 }

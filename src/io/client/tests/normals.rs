@@ -141,7 +141,7 @@ fn an_encoding_that_does_not_fit_is_refused() {
         ("normal = { file = \"n.raw\", encoding = \"octahedral\" }", "needs the plane `Z`"),
         ("\"attributes.normal\" = { file = \"n.raw\", encoding = \"octahedral\" }", "unit vectors"),
         ("RGB = { file = \"n.raw\", encoding = \"octahedral\" }", "unit vectors"),
-        ("normal = { file = \"c.raw\", encoding = \"srgb\" }", "that of colours"),
+        ("normal = { file = \"c.raw\", encoding = \"srgb\" }", "encoding is for colours"),
         (
             "normal = { file = \"n.raw\", encoding = \"octahedral\", format = \"rgb10a2\" }",
             "the plane holds two",

@@ -140,7 +140,7 @@ fn pictures_of_png() {
     assert_eq!(scalars(&client, "Z"), [2.0, 10.0]);
     assert_eq!(ids(&client, "id"), [13_107, NO_ID]);
     let line = at.refusal("[planes]\nweight = \"c.png\"");
-    assert!(line.contains("planes.weight: the PNG is not grey; say which `channel`"), "{line}");
+    assert!(line.contains("planes.weight: the PNG is not grey; give the `channel`"), "{line}");
     let green = at.read("[planes]\nweight = { file = \"c.png\", channel = \"G\" }").unwrap();
     near(&scalars(&green, "weight"), &[10.0 / 255.0, 0.0]);
 }

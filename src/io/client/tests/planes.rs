@@ -70,7 +70,7 @@ fn three_numbers_in_one_word() {
     assert_eq!(colors.storage(""), lost);
     let folder = Folder::new().with("w.raw", words.as_flattened());
     let line = folder.refusal("[planes.weight]\nfile = \"w.raw\"\nformat = \"rgb10a2\"");
-    assert!(line.contains("three numbers a pixel, and the plane holds one"), "{line}");
+    assert!(line.contains("three numbers a pixel, but the plane holds one"), "{line}");
 }
 
 #[test]
@@ -89,7 +89,7 @@ fn numbers_at_distances() {
     let short = Folder::new().with("w.raw", &bytes[..13]);
     let line = short.refusal(&toml);
     assert!(
-        line.contains("w.raw: planes.weight: 2 x 2 pixels of unorm8 take at least 14"),
+        line.contains("w.raw: planes.weight: 2 x 2 pixels of unorm8 need at least 14"),
         "{line}"
     );
 }

@@ -11,8 +11,8 @@ fn folder() -> Folder {
 fn what_is_no_file_of_planes() {
     let at = folder();
     for (toml, why) in [
-        ("", "mine.toml: no plane: give a `file`, or a table [planes.Z] of one"),
-        ("[planes]", "no plane: give a `file`"),
+        ("", "mine.toml: no plane; give a `file`, or a table such as [planes.Z]"),
+        ("[planes]", "no plane; give a `file`"),
         ("size = [2, 2", "line 1: "),
         ("profile = \"gpu\"\nprofile = \"gpu\"", "line 2: "),
         ("\n\nsize = ", "line 3: "),
@@ -40,9 +40,12 @@ fn what_is_no_file_of_planes() {
         ),
         (
             "[planes]\nRGB = \"a.raw\"\n\"\" = \"a.raw\"",
-            "planes: `` and `RGB` are one plane; remove one",
+            "planes: `` and `RGB` are the same plane; remove one",
         ),
-        ("file = \"a.raw\"", "file: only an EXR has several planes; give others in [planes]"),
+        (
+            "file = \"a.raw\"",
+            "file: only an EXR holds several planes; name other files in [planes]",
+        ),
         ("planes.Z.format = \"f32\"", "planes.Z: no `file`, neither here nor for all planes"),
         ("planes.Z = \"a.tif\"", "a.tif\"; give an .exr, .npy, .png, .raw or .bin"),
         ("planes.Z = \"none.raw\"", "none.raw: "),
@@ -56,19 +59,19 @@ fn what_is_no_file_of_planes() {
 fn raw_files_of_another_length() {
     let at = folder();
     for (toml, why) in [
-        ("planes.Z = \"one.raw\"\nsize = [60000, 60000]", "14400000000 bytes, and the file has 1;"),
+        ("planes.Z = \"one.raw\"\nsize = [60000, 60000]", "14400000000 bytes, but the file has 1;"),
         (
             "planes.Z = \"one.raw\"",
-            "planes.Z: 2 x 2 pixels of f32 take 16 bytes, and the file has 1",
+            "planes.Z: 2 x 2 pixels of f32 need 16 bytes, but the file has 1",
         ),
         (
             "[planes.Z]\nfile = \"a.raw\"\noffset = 9223372036854775807",
-            "planes.Z: 2 x 2 pixels of f32 take at least 9223372036854775823 bytes",
+            "planes.Z: 2 x 2 pixels of f32 need at least 9223372036854775823 bytes",
         ),
         (
             "[planes.Z]\nfile = \"a.raw\"\nrow_stride = 9223372036854775807\n\
              pixel_stride = 9223372036854775800",
-            "planes.Z: 2 x 2 pixels of f32 take at least 18446744073709551611 bytes",
+            "planes.Z: 2 x 2 pixels of f32 need at least 18446744073709551611 bytes",
         ),
         (
             "[planes.Z]\nfile = \"a.raw\"\nrow_stride = 16\npixel_stride = 9223372036854775800",
@@ -80,7 +83,7 @@ fn raw_files_of_another_length() {
         ),
         (
             "planes.normal = \"a.raw\"",
-            "planes.normal: 2 x 2 pixels of 3 f32 take 48 bytes, and the file has 16",
+            "planes.normal: 2 x 2 pixels of 3 f32 need 48 bytes, but the file has 16",
         ),
     ] {
         let line = at.refusal(toml);
@@ -138,38 +141,46 @@ fn what_no_rule_covers() {
         (
             "Z",
             "meaning = \"z-buffer\"\nnear = 0\nfar = 1",
-            "meaning is z-buffer, but near = 0 and far = 1 cannot be",
+            "meaning is z-buffer, but near = 0 and far = 1 are impossible",
         ),
         (
             "Z",
             "meaning = \"z-buffer\"\nnear = 2\nfar = 1",
-            "meaning is z-buffer, but near = 2 and far = 1 cannot be",
+            "meaning is z-buffer, but near = 2 and far = 1 are impossible",
         ),
         (
             "Z",
             "meaning = \"linear\"\nnear = 2\nfar = inf",
-            "meaning is linear, but near = 2 and far = inf cannot be",
+            "meaning is linear, but near = 2 and far = inf are impossible",
         ),
-        ("Z", "range = [0, 2]", "`range` means nothing to f32, only to unorm: remove it"),
-        ("Z", "channel = \"depth\"", "`channel` means nothing to a raw file: remove it"),
-        ("Z", "id_base = 1", "`id_base` means nothing to depths: remove it"),
-        ("Z", "encoding = \"srgb\"", "`encoding` means nothing to depths: remove it"),
+        ("Z", "range = [0, 2]", "`range` does not apply to f32, only to unorm: remove it"),
+        ("Z", "channel = \"depth\"", "`channel` does not apply to a raw file: remove it"),
+        ("Z", "id_base = 1", "`id_base` does not apply to depths: remove it"),
+        ("Z", "encoding = \"srgb\"", "`encoding` does not apply to depths: remove it"),
         (
             "Z",
             "format = \"u32\"",
-            "whole numbers (u32), and the plane holds others; say the `format`",
+            "whole numbers (u32), but the plane holds others; give the `format`",
         ),
-        ("weight", "meaning = \"1/t\"", "`meaning` means nothing to one number a pixel: remove it"),
-        ("weight", "empty = 0", "`empty` means nothing to one number a pixel: remove it"),
-        ("id", "premultiplied = true", "`premultiplied` means nothing to indices of 32 bits"),
-        ("id", "format = \"f32\"", "3.5 at pixel (0, 1) is no whole number from 0 to 4294967295"),
-        ("id", "format = \"f32\"\nid_base = 3", "1 at pixel (0, 0) is no whole number"),
+        (
+            "weight",
+            "meaning = \"1/t\"",
+            "`meaning` does not apply to one number a pixel: remove it",
+        ),
+        ("weight", "empty = 0", "`empty` does not apply to one number a pixel: remove it"),
+        ("id", "premultiplied = true", "`premultiplied` does not apply to indices of 32 bits"),
+        (
+            "id",
+            "format = \"f32\"",
+            "3.5 at pixel (0, 1) is not a whole number from 0 to 4294967295",
+        ),
+        ("id", "format = \"f32\"\nid_base = 3", "1 at pixel (0, 0) is not a whole number"),
         (
             "id",
             "format = \"unorm24\"",
             "format is unorm24, but indices and counts are whole: give u8",
         ),
-        ("id", "range = [0, 1]", "`range` means nothing to indices of 32 bits"),
+        ("id", "range = [0, 1]", "`range` does not apply to indices of 32 bits"),
     ] {
         let line = at.refusal(&format!("[planes.{plane}]\nfile = \"a.raw\"\n{keys}"));
         let place = format!(": planes.{plane}: {why}");
@@ -180,13 +191,13 @@ fn what_no_rule_covers() {
     let line = at.refusal(&format!("{color}premultiplied = true"));
     assert!(line.ends_with("planes.RGB: `premultiplied` needs the plane `A`"), "{line}");
     let line = at.refusal(&format!("{color}encoding = \"srgb\"\nrange = [0, 2]"));
-    assert!(line.contains("planes.RGB: `range` means nothing to sRGB: remove it, or"), "{line}");
+    assert!(line.contains("planes.RGB: `range` does not apply to sRGB: remove it, or"), "{line}");
     let at = at.with("f.raw", &floats(&[16_777_216.0, 0.0, 0.0, 0.0]));
     let line = at.refusal("[planes.id]\nfile = \"f.raw\"\nformat = \"f32\"");
-    assert!(line.contains("only below 16777216 are all numbers told apart; store them"), "{line}");
+    assert!(line.contains("the format is exact only below 16777216; store them"), "{line}");
     let at = at.with("c.raw", &le(&[256_u32, 0, 0, 0], u32::to_le_bytes));
     let line = at.refusal("[planes.\"attributes.count\"]\nfile = \"c.raw\"\nformat = \"u32\"");
-    assert!(line.contains("256 at pixel (0, 0) is no whole number from 0 to 255"), "{line}");
+    assert!(line.contains("256 at pixel (0, 0) is not a whole number from 0 to 255"), "{line}");
 }
 
 #[test]
@@ -202,20 +213,20 @@ fn files_that_lie() {
     for (toml, why) in [
         ("file = \"one.exr\"", "one.exr: byte 0: not an EXR file"),
         ("planes.Z = \"one.npy\"", "one.npy: byte 0: not an NPY file"),
-        ("planes.id = \"big.npy\"", "promises 60000 x 60000 pixels"),
-        ("planes.RGB = \"a.npy\"", "planes.RGB: 1 numbers a pixel, and the plane holds colours"),
-        ("planes.Z = \"a.npy\"", "planes.Z: whole numbers (u32), and the plane holds others"),
+        ("planes.id = \"big.npy\"", "declares 60000 x 60000 pixels"),
+        ("planes.RGB = \"a.npy\"", "planes.RGB: 1 numbers a pixel, but the plane holds colours"),
+        ("planes.Z = \"a.npy\"", "planes.Z: whole numbers (u32), but the plane holds others"),
         (
             "planes.Z = { file = \"a.npy\", format = \"unorm16\" }",
-            "planes.Z: 70000 at pixel (0, 0) is no code of unorm16",
+            "planes.Z: 70000 at pixel (0, 0) is not a code of unorm16",
         ),
         (
             "planes.Z = { file = \"a.npy\", format = \"f32\" }",
-            "planes.Z: format is f32, but what a file of u32 has cannot all be that",
+            "planes.Z: format is f32, but a file of u32 can hold other numbers",
         ),
         (
             "planes.Z = { file = \"a.npy\", offset = 4 }",
-            "planes.Z: `offset` means nothing to an NPY: remove it",
+            "planes.Z: `offset` does not apply to an NPY: remove it",
         ),
     ] {
         let line = at.refusal(toml);

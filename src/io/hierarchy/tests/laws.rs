@@ -185,8 +185,8 @@ fn what_cannot_be_approximated_is_refused() {
     let line = make(&at, "points.ply", "out", &settings).unwrap_err().to_string();
     assert!(line.contains("there are no triangles"), "{line}");
     for (text, what) in [
-        ("[[model]]\nshape = \"torus\"\n", "no triangles to approximate"),
-        ("[[model]]\nfile = \"points.ply\"\nprefix = 5\n", "a prefix is of points"),
+        ("[[model]]\nshape = \"torus\"\n", "no triangles to sample"),
+        ("[[model]]\nfile = \"points.ply\"\nprefix = 5\n", "a prefix needs points"),
     ] {
         fs::write(at.path().join("bad.toml"), text).unwrap();
         let line = make(&at, "bad.toml", "none", &settings).unwrap_err().to_string();

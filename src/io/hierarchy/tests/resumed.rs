@@ -57,7 +57,7 @@ fn what_was_stopped_goes_on() {
         assert!(!found.contains_key("index"));
         assert!(found.iter().all(|(name, bytes)| all[name] == *bytes), "what is there is whole");
         let line = Hierarchy::open(&folder).unwrap_err().to_string();
-        assert!(line.contains("not whole yet"), "{line}");
+        assert!(line.contains("incomplete"), "{line}");
         left.push(found.len());
     }
     assert!(left.is_sorted() && left[0] < left[3], "{left:?}");

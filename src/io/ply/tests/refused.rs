@@ -19,8 +19,8 @@ fn what_is_no_ply_file() {
     refused(b"ply".into(), "line 1: the header has no end_header: the file is truncated");
     refused(b"ply\nformat ascii 1.0\ncomment".into(), "line 3: the header has no end_header");
     refused(b"ply\nformat text 1.0\n".into(), "line 2: unknown format `text`; it must be ascii");
-    refused(b"ply\nformat ascii 2.0\n".into(), "line 2: unknown version `2.0`");
-    refused(b"ply\nformat ascii\n".into(), "line 2: `format ascii` is no line of a PLY header");
+    refused(b"ply\nformat ascii 2.0\n".into(), "line 2: unknown format version `2.0`");
+    refused(b"ply\nformat ascii\n".into(), "line 2: `format ascii` is not a line of a PLY header");
     refused(b"ply\nend_header\n".into(), "line 2: no format line; add `format ascii 1.0`");
 }
 
@@ -28,16 +28,16 @@ fn what_is_no_ply_file() {
 fn lines_of_the_header() {
     let header = |lines: &[&str], expected: &str| refused(ascii(lines, ""), expected);
     header(&["format ascii 1.0"], "line 3: the format is given twice; keep one");
-    header(&["hello\tworld"], "line 3: `hello\\tworld` is no line of a PLY header");
+    header(&["hello\tworld"], "line 3: `hello\\tworld` is not a line of a PLY header");
     header(&["property float x"], "line 3: a property before the first element");
-    header(&["element vertex"], "line 3: `element vertex` is no line");
-    header(&["element a -1"], "line 3: element `a`: `-1` is no count below 2^64");
-    header(&["element a 18446744073709551616"], "is no count below 2^64");
+    header(&["element vertex"], "line 3: `element vertex` is not a line");
+    header(&["element a -1"], "line 3: element `a`: `-1` is not a count below 2^64");
+    header(&["element a 18446744073709551616"], "is not a count below 2^64");
     header(&["element a 1", "element a 1"], "line 4: element `a` is declared twice");
     header(&["element a 1", "property half x"], "line 4: unknown type `half`; the types are char");
     header(&["element a 1", "property list float int i"], "line 4: property `i` counts its list");
-    header(&["element a 1", "property list uchar int"], "line 4: `property list uchar int` is no");
-    header(&[&"x".repeat(1000)], &format!("line 3: `{}...` is no line", "x".repeat(40)));
+    header(&["element a 1", "property list uchar int"], "line 4: `property list uchar int` is not");
+    header(&[&"x".repeat(1000)], &format!("line 3: `{}...` is not a line", "x".repeat(40)));
 }
 
 #[test]
@@ -64,8 +64,11 @@ fn elements_and_properties() {
     let above = first.map(|name| name.replace("mip1", "mip3"));
     let above: Vec<&str> = first.into_iter().chain(above.iter().map(String::as_str)).collect();
     leveled(&above, "has property mip3_red but no mip2_red; levels are declared from 1 on");
-    leveled(&["property float mip17_red"], "`mip17_red`, but prefiltered colours have 16 levels");
-    leveled(&["property float mip99999999999999999999_blue"], "have 16 levels at most");
+    leveled(
+        &["property float mip17_red"],
+        "`mip17_red`, but prefiltered colours have at most 16 levels",
+    );
+    leveled(&["property float mip99999999999999999999_blue"], "have at most 16 levels");
     leveled(&["property int mip1_red"], "property `mip1_red` has type int, but its range is known");
     leveled(&["property list uchar float mip1_red"], "property `mip1_red` is a list");
     more(&["property int red"], "property `red` has type int, but its range is known for uchar");
@@ -111,16 +114,20 @@ fn values_of_vertices() {
     rows("0 0 0\n1.5 0\n0 1 0\n", "vertex 1 (line 10): the line goes on");
     rows(
         "0 0 0\n1 O 0\n0 1 0\n",
-        "vertex 1 (line 9), property `y`: `O` is no number of type float",
+        "vertex 1 (line 9), property `y`: `O` is not a number of type float",
     );
-    rows("0 0 \u{e4}\n1 0 0\n0 1 0\n", "property `z`: `\u{e4}` is no number of type float");
-    rows("0 0 \u{7}\n1 0 0\n0 1 0\n", "property `z`: `\\u{7}` is no number of type float");
+    rows("0 0 \u{e4}\n1 0 0\n0 1 0\n", "property `z`: `\u{e4}` is not a number of type float");
+    rows("0 0 \u{7}\n1 0 0\n0 1 0\n", "property `z`: `\\u{7}` is not a number of type float");
     let one = |property, value: &str, expected| {
         refused(vertices("1", &[property], &format!("0 0 0 {value}")), expected);
     };
-    one("property uchar alpha", "256", "vertex 0 (line 9), property `alpha`: `256` is no number");
-    one("property char c", "1.0", "`1.0` is no number of type char");
-    one("property uint c", "-1", "`-1` is no number of type uint");
+    one(
+        "property uchar alpha",
+        "256",
+        "vertex 0 (line 9), property `alpha`: `256` is not a number",
+    );
+    one("property char c", "1.0", "`1.0` is not a number of type char");
+    one("property uint c", "-1", "`-1` is not a number of type uint");
 }
 
 #[test]
@@ -128,7 +135,7 @@ fn corners_of_faces() {
     let face = |face, expected| refused(faces(&[INDICES], face), expected);
     face(
         "3 0 1 3",
-        "face 0 (line 13), property `vertex_indices`: vertex 3 does not exist, they are 0 to 2",
+        "face 0 (line 13), property `vertex_indices`: vertex 3 does not exist; vertices are 0 to 2",
     );
     face("3 0 -1 2", "vertex -1 does not exist");
     face("3 0 1", "face 0 (line 14), property `vertex_indices`: the file ends here");
@@ -158,9 +165,9 @@ fn ends_of_edges() {
     let ends = |rows, expected| refused(edges(&ENDS, rows), expected);
     ends(
         "0 1\n3 1",
-        "edge 1 (line 18), property `vertex1`: vertex 3 does not exist, they are 0 to 2",
+        "edge 1 (line 18), property `vertex1`: vertex 3 does not exist; vertices are 0 to 2",
     );
-    ends("0 1\n1 -1", "edge 1 (line 18), property `vertex2`: `-1` is no number of type ushort");
+    ends("0 1\n1 -1", "edge 1 (line 18), property `vertex2`: `-1` is not a number of type ushort");
     ends("-1 1\n1 1", "edge 0 (line 17), property `vertex1`: vertex -1 does not exist");
     ends("0 1\n1", "edge 1 (line 19), property `vertex2`: the file ends here");
     ends("0 1\n1 1 1", "edge 1 (line 18): the line goes on");
@@ -189,8 +196,12 @@ fn groups_of_vertices() {
         let rows = format!("0 0 0 0\n0 0 0 {value}\n");
         refused(vertices("2", &[property], &rows), expected);
     };
-    own(GROUP, "64", "vertex 1 (line 10), property `group`: there is no group 64, groups are 0 to");
-    own(GROUP, "-1", "property `group`: there is no group -1, groups are 0 to 63");
+    own(
+        GROUP,
+        "64",
+        "vertex 1 (line 10), property `group`: group 64 does not exist; groups are 0 to",
+    );
+    own(GROUP, "-1", "property `group`: group -1 does not exist; groups are 0 to 63");
     own("property float group", "0", "property `group` must be one integer");
     own("property list uchar uchar group", "0", "property `group` must be one integer");
     let also = |property: &str, value: &str, expected: &str| {
@@ -200,7 +211,7 @@ fn groups_of_vertices() {
     also("property list uchar float also", "0 0", "`also` must be a list of integers");
     also(ALSO, "3 2 4 3", "vertex 1 (line 11), property `also`: the vertex is in group 3 twice");
     also(ALSO, "3 3 1 2 1", "property `also`: the vertex is in group 1 twice; keep one");
-    also(ALSO, "3 1 64", "property `also`: there is no group 64, groups are 0 to 63");
+    also(ALSO, "3 1 64", "property `also`: group 64 does not exist; groups are 0 to 63");
 }
 
 #[test]
@@ -209,8 +220,8 @@ fn scales_of_groups() {
         grouped(&[ALSO, element, scale], value, rest, expected);
     };
     let one = ["element group 1", "property float scale"];
-    scales(one, "1 0", "1\n", "surfel 1 in group 1: there are 2 surfels and 1 groups");
-    scales(one, "0 1 2", "1\n", "surfel 1 in group 2: there are 2 surfels and 1 groups");
+    scales(one, "1 0", "1\n", "surfel 1 is in group 1, but there are 2 surfels and 1 groups");
+    scales(one, "0 1 2", "1\n", "surfel 1 is in group 2, but there are 2 surfels and 1 groups");
     scales(one, "0 0", "0\n", "group 0 (line 14), property `scale`: a scale of 0; it must be");
     scales(one, "0 0", "nan\n", "a scale of NaN; it must be finite and > 0");
     scales([one[0], "property float size"], "0 0", "1\n", "element group has no property scale");

@@ -81,13 +81,13 @@ fn keys_that_do_not_go_together_are_refused() {
             "draw `dots`; give one of surfels, points, facets, polygons, hybrid, ribbons, tubes, lines",
         ),
         ("draw = \"hybrid\"\n", "a hybrid needs split = [a, b, c, d]"),
-        ("split = [0, 1, 0, 0]\n", "`split` means nothing without draw = \"hybrid\""),
-        ("draw = \"tubes\"\nsplit = [0, 1, 0, 0]\n", "`split` means nothing without"),
+        ("split = [0, 1, 0, 0]\n", "`split` has no effect without draw = \"hybrid\""),
+        ("draw = \"tubes\"\nsplit = [0, 1, 0, 0]\n", "`split` has no effect without"),
         ("draw = \"hybrid\"\nsplit = [0, 0, 0, 1]\n", "a half space of 0, 0, 0, 1; give finite"),
         ("draw = \"hybrid\"\nsplit = [0, nan, 0, 1]\n", "a half space of 0, NaN, 0, 1"),
         ("draw = \"hybrid\"\nsplit = [0, 1, 0]\n", "length"),
-        ("draw = \"polygons\"\nradius = 1\n", "`radius` means nothing to polygons: remove it"),
-        ("draw = \"facets\"\nradius = 1\n", "`radius` means nothing to facets: remove it"),
+        ("draw = \"polygons\"\nradius = 1\n", "`radius` does not apply to polygons: remove it"),
+        ("draw = \"facets\"\nradius = 1\n", "`radius` does not apply to facets: remove it"),
     ] {
         let found = refused(&model(more));
         assert!(found.contains(what) && found.contains("line "), "{found}");
@@ -215,7 +215,7 @@ fn what_a_file_lacks_is_one_line_with_its_name() {
     assert!(found.contains("a.ply: tubes need radii; give the property radius"), "{found}");
     let found = not_loaded(&ply(&[], ""), &model("draw = \"polygons\"\nopacity = 0.5\n"));
     assert!(
-        found.contains("a: what is drawn as polygons is opaque; remove the opacity"),
+        found.contains("a: a model drawn as polygons is opaque; remove the opacity"),
         "{found}"
     );
 }
@@ -274,26 +274,26 @@ fn a_tree_is_a_shape_of_leaves() {
 fn what_is_not_of_a_tree_is_refused() {
     let tree = |more: &str| format!("[[model]]\nshape = \"tree\"\n{more}");
     for (more, what) in [
-        ("count = 3\n", "`count` means nothing to tree: remove it"),
-        ("radius = 3\n", "`radius` means nothing to tree: remove it"),
-        ("gap = 3\n", "`gap` means nothing to tree: remove it"),
+        ("count = 3\n", "`count` does not apply to tree: remove it"),
+        ("radius = 3\n", "`radius` does not apply to tree: remove it"),
+        ("gap = 3\n", "`gap` does not apply to tree: remove it"),
         ("leaves = -3\n", "-3"),
         ("draw = \"points\"\n", "tree is drawn as lines or polygons, not as points"),
         ("draw = \"tubes\"\n", "tree is drawn as lines or polygons, not as tubes"),
-        ("split = [0, 1, 0, 0]\n", "`split` means nothing without"),
+        ("split = [0, 1, 0, 0]\n", "`split` has no effect without"),
     ] {
         let found = refused(&tree(more));
         assert!(found.contains(what) && found.contains("line "), "{found}");
     }
     let found = refused("[[model]]\nshape = \"torus\"\nleaves = 3\n");
-    assert!(found.contains("`leaves` means nothing to torus: remove it"), "{found}");
+    assert!(found.contains("`leaves` does not apply to torus: remove it"), "{found}");
     let found = refused("[[model]]\nshape = \"torus\"\ndraw = \"lines\"\n");
     assert!(found.contains("torus is drawn as points, not as lines"), "{found}");
     let found = refused(&model("leaves = 3\n"));
-    assert!(found.contains("`leaves` means nothing to a file: remove it"), "{found}");
+    assert!(found.contains("`leaves` does not apply to a file: remove it"), "{found}");
     for (more, what) in [
-        ("leaves = 0\n", "a tree with 0 leaves; ask for 1 to 1048576"),
-        ("opacity = 0.5\n", "tree: what is drawn as lines is opaque; remove the opacity"),
+        ("leaves = 0\n", "a tree of 0 leaves; give 1 to 1048576"),
+        ("opacity = 0.5\n", "tree: a model drawn as lines is opaque; remove the opacity"),
     ] {
         let found = not_loaded("", &tree(more));
         assert!(found.contains(what), "{found}");

@@ -127,11 +127,11 @@ fn names_that_are_none_are_refused() {
             Some(6),
             "no [[geometry]] has the name `oak`; the geometries",
         ),
-        ("[[object]]\nof = \"a\"\nname = \"a\"\n", Some(6), "a cycle of names, a of a"),
+        ("[[object]]\nof = \"a\"\nname = \"a\"\n", Some(6), "a circle of names, a of a"),
         (
             "[[object]]\nof = \"b\"\nname = \"a\"\n[[object]]\nof = \"a\"\nname = \"b\"\n",
             Some(6),
-            "a cycle of names, b of a of b",
+            "a circle of names, b of a of b",
         ),
         (
             "[[object]]\nof = \"tree\"\nname = \"a\"\n[[object]]\nof = \"a\"\n",
@@ -144,8 +144,8 @@ fn names_that_are_none_are_refused() {
             "two [[geometry]] have the name",
         ),
         ("[[geometry]]\nshape = \"torus\"\n", None, "a geometry needs a `name`"),
-        ("", None, "there is no [[object]] and no [[model]]"),
-        ("[[model]]\nname = \"a\"\nshape = \"torus\"\n", Some(5), "`name` means nothing to torus"),
+        ("", None, "no [[object]] and no [[model]]"),
+        ("[[model]]\nname = \"a\"\nshape = \"torus\"\n", Some(5), "`name` does not apply to torus"),
     ]);
     let found = refused("[[object]]\nof = \"tree\"\n");
     assert!(found.contains("no [[geometry]] has the name `tree`; there is none"), "{found}");
@@ -157,7 +157,7 @@ fn places_that_are_none_are_refused() {
         (
             "[[object]]\nof = \"tree\"\nkeys = [{ frame = 3 }, { frame = 3 }]\n",
             Some(5),
-            "a key of frame 3 after one of frame 3: frames must ascend",
+            "the key of frame 3 follows the key of frame 3; sort keys by frame",
         ),
         ("[[object]]\nof = \"tree\"\nkeys = []\n", Some(5), "no keys"),
         ("[[object]]\nof = \"tree\"\nkeys = [{ frame = -1 }]\n", Some(7), "-1"),
@@ -169,7 +169,7 @@ fn places_that_are_none_are_refused() {
         (
             "[[object]]\nof = \"tree\"\ntransform = { scale = 1 }\nkeys = [{ frame = 3 }]\n",
             Some(5),
-            "an object has a transform, or keys",
+            "an object has either a transform or keys",
         ),
         (
             "[[object]]\nof = \"tree\"\ntable = \"a.csv\"\nkeys = [{ frame = 3 }]\n",
@@ -180,7 +180,7 @@ fn places_that_are_none_are_refused() {
             "[[object]]\nof = \"tree\"\n[object.transform]\n\
              rotate = { matrix = [[1, 0, 0], [1, 0, 0], [0, 0, 1]] }\n",
             Some(5),
-            "the matrix is no rotation",
+            "the matrix is not a rotation",
         ),
         ("[[object]]\nof = \"tree\"\ncolor = [1, 2, -1]\n", Some(5), "color must be"),
         (
@@ -210,7 +210,7 @@ fn sequences_and_cameras_that_are_none_are_refused() {
             "[[object]]\nof = \"tree\"\n[camera]\neye = [0, 0, 1]\n\
              keys = [{ frame = 0, eye = [0, 0, 1], target = [0, 0, 0] }]\n",
             Some(7),
-            "keys stand in the place of eye, target and up",
+            "keys replace eye, target and up",
         ),
         (
             "[[object]]\nof = \"tree\"\n[camera]\nkeys = [{ frame = 0, eye = [0, 0, 1] }]\n",

@@ -118,7 +118,7 @@ fn textures_of_what_has_none_are_refused() {
     let texture = "texture = \"green.exr\"";
     let one = "a: a model in one colour has no texture; remove one of them";
     assert_eq!(error(&at, &format!("{texture}\ncolor = [1, 1, 1]")), one);
-    let tubes = "a: what is drawn as tubes has no texture; remove one of them";
+    let tubes = "a: a model drawn as tubes has no texture; remove one of them";
     assert_eq!(error(&at, &format!("{texture}\ndraw = \"tubes\"")), tubes);
     let line = error(&at, "texture = \"no.exr\"");
     assert!(line.starts_with(&at.path().join("no.exr").display().to_string()), "{line}");
@@ -126,9 +126,9 @@ fn textures_of_what_has_none_are_refused() {
     let text = format!("[[model]]\nfile = {bare}\n");
     let file = SceneFile::parse(&text, &at.path().join("scene.toml")).unwrap();
     let line = file.load(&Exec::sequential(), &|_, _, _| ()).unwrap_err().to_string();
-    assert!(line.contains("b.ply: no texture coordinates, without which"), "{line}");
+    assert!(line.contains("b.ply: no texture coordinates, so"), "{line}");
     let line = refused(&format!("{SHAPE}{texture}\n"));
-    assert!(line.contains("`texture` means nothing to sphere: remove it"), "{line}");
+    assert!(line.contains("`texture` does not apply to sphere: remove it"), "{line}");
 }
 
 /// The same square with coordinates at the vertices of a PLY, at the corners of an OBJ, and with a

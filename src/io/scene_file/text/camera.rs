@@ -54,8 +54,7 @@ impl RawCamera {
         }
         if self.keys.is_some() && (self.eye.is_some() || self.target.is_some() || self.up.is_some())
         {
-            let what =
-                "camera: keys stand in the place of eye, target and up; remove one or the other";
+            let what = "camera: keys replace eye, target and up; remove one or the other";
             return Err(what.into());
         }
         let keys = self.keys.map(|keys| keys.into_iter().map(RawKey::pose).collect());

@@ -47,20 +47,20 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
     let file: File = toml::from_str(text).map_err(|error| input::no_toml(path, text, &error))?;
     for (i, geometry) in file.geometry.iter().enumerate() {
         if file.geometry[..i].iter().any(|other| other.name == geometry.name) {
-            let what = format!("two [[geometry]] have the name `{}`: rename one", geometry.name);
+            let what = format!("two [[geometry]] have the name `{}`; rename one", geometry.name);
             return Err(Error::format(path, what));
         }
     }
     let models = file.model.len() + file.geometry.len() + file.object.len();
     if file.hierarchy.is_some() && models > 0 {
-        let what = "a hierarchy is all that a scene shows: remove it, or the models and objects";
+        let what = "a hierarchy cannot be combined with models or objects; remove one";
         return Err(Error::format(path, what));
     }
     // Geometries alone draw nothing.
     if file.hierarchy.is_none() && file.model.is_empty() && file.object.is_empty() {
         let what = match file.geometry.as_slice() {
-            [] => "there is no [[model]]: name a file or a shape",
-            _ => "there is no [[object]] and no [[model]]: geometries are not drawn by themselves",
+            [] => "no [[model]]; name a file or a shape",
+            _ => "no [[object]] and no [[model]]; a geometry is drawn only where an object uses it",
         };
         return Err(Error::format(path, what));
     }

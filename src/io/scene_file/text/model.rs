@@ -41,14 +41,15 @@ pub(super) struct RawModel {
 
 impl RawModel {
     pub(super) fn geometry(mut self) -> Result<Geometry, String> {
-        let name = self.name.take().ok_or("a geometry needs a `name`, for objects to be of it")?;
+        let name =
+            self.name.take().ok_or("a geometry needs a `name`, because objects refer to it")?;
         let detail = self.detail.take();
         if let Some(pixels) = detail.filter(|pixels| !(0.0..=MOST_PIXELS).contains(pixels)) {
             return Err(format!("detail is {pixels} pixels; give 0 to {MOST_PIXELS}"));
         }
         if detail.is_some() && self.progressive == Some(true) {
             return Err(
-                "`detail` and `progressive` are two kinds of levels of detail: remove one".into()
+                "`detail` and `progressive` are two kinds of levels of detail; remove one".into()
             );
         }
         Ok(Geometry { name, detail, model: self.model()? })
@@ -59,7 +60,7 @@ impl RawModel {
         let draw = Draw::choose(self.draw.as_deref(), self.split.map(|split| split.0), &source)?;
         let without = matches!(draw, Draw::Polygons | Draw::Facets);
         if without && matches!(source, Source::File { radius: Some(_), .. }) {
-            return Err(format!("`radius` means nothing to {}: remove it", draw.word()));
+            return Err(format!("`radius` does not apply to {}: remove it", draw.word()));
         }
         if let Some(key) = self.left() {
             let of = match &source {
@@ -67,7 +68,7 @@ impl RawModel {
                 Source::Shape { shape, .. } => shape.name(),
                 Source::Tree { .. } => TREE,
             };
-            return Err(format!("`{key}` means nothing to {of}: remove it"));
+            return Err(format!("`{key}` does not apply to {of}: remove it"));
         }
         let color = self.color.map(color).transpose()?;
         if let Some(opacity) = self.opacity {

@@ -71,7 +71,7 @@ impl RawObject {
         let places = match (keys, table, scatter) {
             (None, None, None) => Places::One(Motion::still(transform)),
             (Some(_), None, None) if still => {
-                let what = "an object has a transform, or keys that say where it is: remove one";
+                let what = "an object has either a transform or keys; remove one";
                 return Err(what.into());
             }
             (Some(keys), None, None) => {
@@ -204,9 +204,9 @@ fn geometry_of(
         known => format!("the geometries are {}", known.join(", ")),
     };
     let what = if cycle {
-        format!("a cycle of names, {}: an object is of a geometry; {known}", names.join(" of "))
+        format!("a circle of names, {}: `of` must name a geometry; {known}", names.join(" of "))
     } else if names.len() > 1 {
-        format!("`{of}` is an object: an object is of a geometry; {known}")
+        format!("`{of}` is an object, but `of` must name a geometry; {known}")
     } else {
         format!("no [[geometry]] has the name `{of}`; {known}")
     };

@@ -27,7 +27,7 @@ impl RawTransform {
             Some(RawRotation { axis: Some(axis), degrees: Some(degrees), matrix: None }) => {
                 let axis = DVec3::from_array(axis.0);
                 if !(transform::is_axis(axis) && degrees.is_finite()) {
-                    return Err("rotate: axis must not be 0, nor any number infinite".into());
+                    return Err("rotate: axis must be finite and not 0".into());
                 }
                 transform::rotation(axis, degrees)
             }

@@ -36,7 +36,7 @@ struct Tables {
 pub(in crate::io::scene_file) fn write(file: &SceneFile, path: &Path) -> Result<String> {
     let tables = Tables::from_file(file, &Folder::containing(path)?)?;
     toml::to_string(&tables)
-        .map_err(|error| Error::Invalid(format!("TOML cannot say the scene: {error}")))
+        .map_err(|error| Error::Invalid(format!("the scene cannot be written as TOML: {error}")))
 }
 
 impl Tables {

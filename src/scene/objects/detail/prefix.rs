@@ -120,7 +120,7 @@ impl Geometry {
         let Estimate { count, distance } = estimate;
         let all = self.surfels.len() as u32;
         if !(1..=all).contains(&count) || !(0.0..f32::INFINITY).contains(&distance) {
-            let what = format!("{count} of {all} surfels {distance} apart tell of no density");
+            let what = format!("{count} of {all} surfels, {distance} apart, define no density");
             return Err(Error::Invalid(format!("{}: {what}", self.name)));
         }
         let (low, high) = bounds::corners(&self.surfels, &self.primitives);

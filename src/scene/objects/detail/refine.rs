@@ -113,11 +113,12 @@ impl Refinement {
         };
         if let Some([distance, factor]) = self.zones.iter().find(|zone| !sound(zone)) {
             return invalid(format!(
-                "a zone at {distance} pixels of {factor} times the size is none"
+                "a zone at {distance} pixels with factor {factor}; give a distance >= 0 and a \
+                 factor above 0, at most {MOST_SIZE}"
             ));
         }
         if !self.zones.is_sorted_by(|a, b| a[0] <= b[0]) {
-            return invalid("zones are not in the order of their distances".into());
+            return invalid("zones must be sorted by distance".into());
         }
         Ok(())
     }
@@ -164,7 +165,9 @@ impl Forest {
             match of {
                 None => order.push(object),
                 Some(of) if (*of as usize) < objects => finer[*of as usize].push(object),
-                Some(of) => return invalid(format!("an object is finer than {of}, which is none")),
+                Some(of) => {
+                    return invalid(format!("an object refines object {of}, which does not exist"));
+                }
             }
         }
         let mut next = 0;
@@ -174,7 +177,7 @@ impl Forest {
             next += 1;
         }
         if order.len() < objects {
-            return invalid("objects are finer than themselves".into());
+            return invalid("objects refine themselves in a circle".into());
         }
         let has_finer = finer.iter().map(|finer| !finer.is_empty()).collect();
         Ok(Self { coarser, has_finer, order })
@@ -222,7 +225,7 @@ impl Objects {
             let geometry = self.geometry(object);
             if !geometry.surfels.is_empty() && geometry.prefix().is_none() {
                 let name = &self.objects[object as usize].name;
-                let what = format!("{name} has finer objects, but its surfels are in no order");
+                let what = format!("{name} has finer objects, but its surfels are not ordered");
                 return Err(Error::Invalid(what));
             }
         }

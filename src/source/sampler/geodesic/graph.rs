@@ -55,7 +55,7 @@ impl Graph {
         let mut ends = Vec::with_capacity(n);
         let batch = JOB * 16 * exec.threads();
         for first in (0..n).step_by(batch) {
-            progress("neighbours", first as u64, n as u64);
+            progress("finding neighbours", first as u64, n as u64);
             let ranks = first..(first + batch).min(n);
             let jobs = ranks.clone().step_by(JOB).map(|from| from..(from + JOB).min(ranks.end));
             for part in exec.ordered(jobs.collect(), |ranks| around.neighbours(ranks)) {
@@ -65,7 +65,7 @@ impl Graph {
                 }
             }
         }
-        progress("neighbours", n as u64, n as u64);
+        progress("finding neighbours", n as u64, n as u64);
         let mut rank = vec![0; n];
         tree.entries().iter().zip(0..).for_each(|(entry, at)| rank[entry.id as usize] = at);
         let (ends, edges) = both_ways(&ends, &near);
@@ -125,19 +125,21 @@ fn check(points: &[Vec3], normals: &[Vec3], reach: f32) -> Result<()> {
     let invalid = |what| Err(Error::Invalid(what));
     let n = points.len();
     if n != normals.len() {
-        return invalid(format!("{} normals of {n} points", normals.len()));
+        return invalid(format!("{} normals, but {n} points", normals.len()));
     }
     if u32::try_from(n).is_err() {
-        return invalid(format!("{n} points, but indices are of 32 bits: split the model"));
+        return invalid(format!("{n} points, but indices have 32 bits: split the model"));
     }
     if !(reach > 0.0 && reach.is_finite()) {
         return invalid(format!("a reach of {reach}; give a length above 0"));
     }
     if let Some(at) = points.iter().position(|point| !point.is_finite()) {
-        return invalid(format!("point {at} is not finite and has no distance to others"));
+        return invalid(format!(
+            "point {at} is not finite, so it has no distance to others; remove it"
+        ));
     }
     if let Some(at) = normals.iter().position(|n| !n.is_finite() || *n == Vec3::ZERO) {
-        return invalid(format!("the normal of point {at} is null or not finite"));
+        return invalid(format!("the normal of point {at} is zero or not finite"));
     }
     Ok(())
 }

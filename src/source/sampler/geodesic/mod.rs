@@ -90,7 +90,7 @@ impl Greedy {
         let mut order = Order::default();
         while order.index.len() < count {
             if order.index.len().is_multiple_of(REPORT) {
-                progress("picks", order.index.len() as u64, count as u64);
+                progress("picking points", order.index.len() as u64, count as u64);
             }
             let rank = graph.rank(next);
             let distance = front.least[rank as usize];
@@ -103,7 +103,7 @@ impl Greedy {
             front.spread(rank);
             next = front.farthest(&mut farthest);
         }
-        progress("picks", count as u64, count as u64);
+        progress("picking points", count as u64, count as u64);
         Ok(order)
     }
 }

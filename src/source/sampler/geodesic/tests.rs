@@ -178,13 +178,13 @@ fn what_is_no_graph_is_refused() {
     let (points, up) = ([Vec3::ZERO, Vec3::X], [Vec3::Z; 2]);
     let exec = Exec::sequential();
     for (points, normals, reach, what) in [
-        (&points[..], &up[..1], 1.0, "1 normals of 2 points"),
+        (&points[..], &up[..1], 1.0, "1 normals, but 2 points"),
         (&points, &up, 0.0, "a reach of 0"),
         (&points, &up, f32::NAN, "a reach of NaN"),
         (&points, &up, f32::INFINITY, "a reach of inf"),
         (&[Vec3::X, Vec3::NAN], &up, 1.0, "point 1 is not finite"),
-        (&points, &[Vec3::Z, Vec3::ZERO], 1.0, "the normal of point 1 is null"),
-        (&points, &[Vec3::INFINITY, Vec3::Z], 1.0, "the normal of point 0 is null or not finite"),
+        (&points, &[Vec3::Z, Vec3::ZERO], 1.0, "the normal of point 1 is zero"),
+        (&points, &[Vec3::INFINITY, Vec3::Z], 1.0, "the normal of point 0 is zero or not finite"),
     ] {
         let error = Graph::new(points, normals, reach, &exec, SILENT).unwrap_err().to_string();
         assert!(error.contains(what), "{error}");

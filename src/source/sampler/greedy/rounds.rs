@@ -37,10 +37,10 @@ pub(super) fn order(
         how,
         exec,
     };
-    progress("picking", 0, count as u64);
+    progress("picking points", 0, count as u64);
     state.take(start);
     while exec.within(|| (0..STRETCH).all(|_| state.round())) {
-        progress("picking", state.keys.len() as u64, count as u64);
+        progress("picking points", state.keys.len() as u64, count as u64);
     }
     let mut keys = state.keys;
     exec.sort(&mut keys);

@@ -1,4 +1,4 @@
-//! What is behind surfaces, what is refused, and pictures of points in blocks.
+//! Tests of the background, of refused input, and of pictures of points in blocks.
 
 use super::*;
 use crate::number::Vector3;
@@ -14,7 +14,7 @@ fn the_sky_is_behind() {
     let truth = see(&[half], &scene, true, &camera);
     assert!(truth.frame.scalar("A").unwrap().values().iter().all(|a| *a == 1.0));
     let (color, depth) = (truth.frame.color("").unwrap(), truth.frame.scalar("Z").unwrap());
-    // Its pixels are the samples.
+    // The pixels of this camera are the samples.
     let Camera { fx, fy, cx, cy, .. } = camera;
     let fine = Camera { fx: 8.0 * fx, fy: 8.0 * fy, cx: 8.0 * cx, cy: 8.0 * cy, ..camera };
     let view = View::<f64>::new(&fine);
@@ -29,7 +29,8 @@ fn the_sky_is_behind() {
     }
 }
 
-/// Each sample by the definition of the shader, at the point that a formula for the plane gives.
+/// Compares each sample with the definition of the shader, at the point that a formula for the
+/// plane gives.
 #[test]
 fn samples_are_shaded_each_at_its_own_point() {
     let position = Vec3::new(0.25, 0.5, 0.75);
@@ -78,12 +79,12 @@ fn what_cannot_be_seen_is_refused() {
     assert!(line.starts_with("transform: the scale"), "{line}");
     assert!(see(put(Shape::Sphere, 1.0), &Camera { near: 0.0, ..camera }).is_err());
     assert!(see(put(Shape::Sphere, 1.0), &Camera { width: 0, ..camera }).is_err());
-    // Nothing to see is a picture of nothing.
+    // A scene without content gives an empty picture.
     let none = of_surfaces(&[], &scene, true, (&camera, &[]), &exec, &|_, _, _| ()).unwrap();
     assert!(colors(&none).iter().all(|v| *v == 0.0));
 }
 
-/// A picture that begins in another column has other blocks, and the same pixels.
+/// A picture that begins in another column has other blocks, but the same pixels.
 #[test]
 fn blocks_of_points_have_no_seams() {
     let scene = Scene::lit("sphere", Shape::Sphere.surfels(300, 0).unwrap());
@@ -105,7 +106,7 @@ fn blocks_of_points_have_no_seams() {
     }
 }
 
-/// Half of the light of the first disc, and half of what it lets through of the second.
+/// Half the light of the first disc, and half the light that it lets through from the second.
 #[test]
 fn layers_are_blended() {
     let cloud = Cloud {

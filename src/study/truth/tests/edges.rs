@@ -13,12 +13,13 @@ fn triangles(surface: &Surface) -> &Triangles {
     triangles
 }
 
-/// Numbers as good as random in [-1, 1].
+/// Pseudo-random numbers in [-1, 1].
 fn signed(seed: u64, i: u64) -> f32 {
     2.0 * unit(seed, i) - 1.0
 }
 
-/// A cube's surface cut into 2 n^2 triangles a face, each point at a random distance from the centre, from 1/2 to 1.
+/// The surface of a cube, cut into 2 n^2 triangles a face; each point is at a random distance from
+/// the centre, 1/2 to 1.
 fn rock(seed: u64, n: i32) -> Triangles {
     let mut places: Vec<[i32; 3]> = Vec::new();
     let mut corner = |p: [i32; 3]| {
@@ -58,7 +59,7 @@ fn placed(of: &Triangles, camera: &Camera) -> Vec<Placed> {
     (0..of.len() as u32).map(|i| Placed::new(of, i, &view)).collect()
 }
 
-/// Any camera that looks at the origin from 3 away.
+/// Any camera that looks at the origin from a distance of 3.
 fn any_camera(seed: u64, lens: Lens) -> Camera {
     let eye = DVec3::from([0, 1, 2].map(|i| f64::from(signed(seed, 900 + i)))).normalize() * 3.0;
     let pose = Pose { eye, target: DVec3::ZERO, up: DVec3::new(0.1, 1.0, 0.3) };
@@ -68,7 +69,8 @@ fn any_camera(seed: u64, lens: Lens) -> Camera {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(48))]
 
-    /// Rays at corners and at points of edges, as near as rounding comes, and at their neighbours.
+    /// Rays at corners and at points of edges, as close as rounding allows, and at their
+    /// neighbours.
     #[test]
     fn no_ray_slips_through_a_closed_mesh(seed in 0_u64..1_000_000, perspective: bool) {
         let lens = if perspective { Lens::FieldOfView(50.0) } else { Lens::Orthographic(3.0) };
@@ -80,8 +82,8 @@ proptest! {
             let part = f64::from(unit(seed, 5000 + k));
             for p in [a, a * (1.0 - part) + b * part] {
                 let w = if perspective { -p.z } else { 1.0 };
-                // Corners are at least 1/2 away from the centre and edges span at most 51 degrees: no point
-                // of a triangle is nearer than 0.3.
+                // Corners are at least 1/2 away from the centre, and edges span at most 51 degrees,
+                // so no point of a triangle is nearer than 0.3.
                 let middle = view.point(Vector3::ZERO);
                 let (x, y) = (p.x / w, p.y / w);
                 let from = if perspective { V3::ZERO } else { V3::new(x, y, 0.0) };
@@ -99,7 +101,7 @@ proptest! {
         }
     }
 
-    /// Bounds and lines leave out no ray that meets a triangle, wherever it is.
+    /// Bounds and lines omit no ray that meets a triangle, wherever the triangle is.
     #[test]
     fn bounds_and_lines_hold_every_ray_that_meets(
         seed in 0_u64..1_000_000,
@@ -145,10 +147,11 @@ proptest! {
 
 type V3 = Vector3<f64>;
 
-/// Every sample on the outline and on the diagonal is there once, and the diagonal is of the first.
+/// Every sample on the outline and on the diagonal occurs once, and the diagonal belongs to the
+/// first.
 #[test]
 fn samples_on_an_edge_are_of_the_first_triangle() {
-    // A pixel is a world unit, and samples are at odd sixteenths: so are the corners.
+    // A pixel is a world unit. Samples are at odd sixteenths, and so are the corners.
     let camera = camera([16, 16], 4.0, Lens::Orthographic(16.0));
     let (low, high) = (-3.0 - 1.0 / 16.0, 2.0 - 1.0 / 16.0);
     let corner = |x: f32, y: f32| Vec3::new(x, y, 0.0);
@@ -160,7 +163,7 @@ fn samples_on_an_edge_are_of_the_first_triangle() {
         (vec![[0, 1, 2], [2, 3, 0], [0, 1, 2]], side * (side + 1) / 2),
         (vec![[1, 2, 3], [3, 0, 1]], side * (side + 1) / 2),
     ] {
-        // Which triangle is seen tells its normal, to which the light shines.
+        // The normal tells which triangle is seen; the light shines along it.
         let vertices = Vertices {
             position: position.clone(),
             direction: direction.clone(),
@@ -173,7 +176,7 @@ fn samples_on_an_edge_are_of_the_first_triangle() {
         let seen = see(&[Surface::Triangles(both)], &unlit, true, &camera);
         let share = f64::from(unlit.material.color.x);
         assert_eq!(area(&seen) / share * 64.0, f64::from(side * side));
-        // One triangle a surface, each of a colour: the lower one has the diagonal.
+        // One triangle a surface, each with its own colour; the lower one has the diagonal.
         let one = |i: usize, color: Vec3| {
             let vertices = Vertices { color: Some(vec![color; 4]), ..vertices.clone() };
             Surface::Triangles(Triangles::new(vertices, vec![corners[i]]).unwrap().0)

@@ -1,9 +1,9 @@
 //! Scenes for the margin: those of the method, and two made for the rules that those never need.
 
-use crate::ewa::cases::{KINDS, case};
-use crate::kit::case::Case;
-use crate::kit::goldens;
-use crate::kit::scene::{discs, near, scene, straight, surfels};
+use crate::oracle::ewa::cases::{KINDS, case};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::goldens;
+use crate::oracle::kit::scene::{discs, near, scene, straight, surfels};
 use glam::{Mat4, Vec3};
 use splatref::method::ewa::Settings;
 use splatref::scene::{Camera, Cloud};

@@ -8,10 +8,10 @@ mod ball;
 mod cases;
 mod splat;
 
-use crate::ewa::margin::ball::Ball;
-use crate::ewa::margin::splat::{Fragment, Lens, Splat};
-use crate::kit::case::Case;
-use crate::kit::planes::{index, scalars};
+use crate::oracle::ewa::margin::ball::Ball;
+use crate::oracle::ewa::margin::splat::{Fragment, Lens, Splat};
+use crate::oracle::kit::case::Case;
+use crate::oracle::kit::planes::{index, scalars};
 use splatref::frame::{Frame, NO_ID};
 use splatref::method::ewa::Settings;
 use std::cmp::Ordering;

@@ -1,6 +1,6 @@
 //! One surfel in balls, by the affine outline: the page of `splatref::splat::project` in its order.
 
-use crate::ewa::margin::ball::Ball;
+use crate::oracle::ewa::margin::ball::Ball;
 use glam::Vec3;
 use splatref::method::ewa::Settings;
 use splatref::scene::{Camera, Projection, Surfels};

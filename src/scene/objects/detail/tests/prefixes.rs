@@ -222,7 +222,7 @@ fn what_is_no_order_or_no_forest_says_why() {
         let words = plain().with_prefix(Estimate { count, distance }).unwrap_err().to_string();
         assert_eq!(
             words,
-            format!("ball: {count} of 4 surfels {distance} apart tell of no density")
+            format!("ball: {count} of 4 surfels, {distance} apart, define no density")
         );
     }
     let twice = in_order(2, Primitives::default()).with_detail(1.0, &Exec::sequential());
@@ -232,8 +232,8 @@ fn what_is_no_order_or_no_forest_says_why() {
     let words =
         |coarser: Vec<Option<u32>>| all.clone().with_coarser(coarser).unwrap_err().to_string();
     assert_eq!(words(vec![None]), "1 finer objects, but there are 2");
-    assert_eq!(words(vec![None, Some(2)]), "an object is finer than 2, which is none");
-    assert_eq!(words(vec![Some(1), Some(0)]), "objects are finer than themselves");
+    assert_eq!(words(vec![None, Some(2)]), "an object refines object 2, which does not exist");
+    assert_eq!(words(vec![Some(1), Some(0)]), "objects refine themselves in a circle");
     let refused = [
         asks(0.0),
         asks(f32::NAN),
@@ -255,7 +255,7 @@ fn what_is_no_order_or_no_forest_says_why() {
     };
     let plain = Objects::new(vec![first, second], vec![object(0), object(1)], Vec3::ONE).unwrap();
     let words = plain.with_coarser(vec![None, Some(0)]).unwrap_err().to_string();
-    assert_eq!(words, "one has finer objects, but its surfels are in no order");
+    assert_eq!(words, "one has finer objects, but its surfels are not ordered");
 }
 
 #[test]

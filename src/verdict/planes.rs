@@ -1,0 +1,191 @@
+//! The planes of a record that a client has handed in: found, judged and read by the table of the
+//! record's planes.
+
+use super::checks::{Report, input, inputs, number, triple, whole};
+use super::client::{Client, StoredPlane};
+use crate::frame::Plane;
+use crate::method::projection::SampleKind;
+use crate::method::record::{Field, Part};
+use crate::method::stage::{Conditions, Holds, PlaneRow};
+use crate::number::ball::Profile;
+use crate::number::{Ball, Vector3};
+
+/// A plane of a client, of any type.
+#[derive(Clone, Copy, Debug)]
+enum AnyStored<'a> {
+    Index(StoredPlane<'a, u32>),
+    Count(StoredPlane<'a, u8>),
+    Scalar(StoredPlane<'a, f64>),
+    Triple(StoredPlane<'a, [f64; 3]>),
+}
+
+/// The planes of a record that are there.
+#[derive(Clone, Debug)]
+pub(crate) struct RecordPlanes<'a> {
+    /// Each with its place in the table, in the order in which they are judged: indices, counts,
+    /// numbers, then vectors and colours.
+    planes: Vec<(usize, AnyStored<'a>)>,
+    /// In the order of the table.
+    names: Vec<&'static str>,
+}
+
+impl<'a> RecordPlanes<'a> {
+    /// The planes of a table; `number` stands for the rows' `#`.
+    pub(crate) fn new<T, R>(client: &'a Client, fields: &[Field<T, R>], number: usize) -> Self {
+        Self::of_rows(client, fields.iter().map(|field| field.row).enumerate(), number)
+    }
+
+    /// The planes of some rows, each with the place in the table of the plane that it stands for; those of
+    /// one type are judged in this order.
+    pub(crate) fn of_rows(
+        client: &'a Client,
+        rows: impl Iterator<Item = (usize, PlaneRow)>,
+        number: usize,
+    ) -> Self {
+        let (mut planes, mut names) = (Vec::new(), Vec::new());
+        for (place, row) in rows {
+            let plane = match row.holds.plain() {
+                Holds::Index => client.index_of(&row, number).map(AnyStored::Index),
+                Holds::Count => client.count_of(&row, number).map(AnyStored::Count),
+                Holds::Color | Holds::Vector => {
+                    client.triple_of(&row, number).map(AnyStored::Triple)
+                }
+                _ => client.scalar_of(&row, number).map(AnyStored::Scalar),
+            };
+            names.extend(plane.map(|_| (place, row.name)));
+            planes.extend(plane.map(|plane| (place, plane)));
+        }
+        planes.sort_by_key(|(_, plane)| match plane {
+            AnyStored::Index(_) => 0,
+            AnyStored::Count(_) => 1,
+            AnyStored::Scalar(_) => 2,
+            AnyStored::Triple(_) => 3,
+        });
+        names.sort_by_key(|(place, _)| *place);
+        Self { planes, names: names.into_iter().map(|(_, name)| name).collect() }
+    }
+
+    /// The names of the rows, in the order of the table.
+    pub(crate) fn names(&self) -> &[&'static str] {
+        &self.names
+    }
+
+    /// The ids.
+    pub(crate) fn ids(&self) -> Option<StoredPlane<'a, u32>> {
+        self.planes.iter().find_map(|(_, plane)| match plane {
+            AnyStored::Index(plane) => Some(*plane),
+            _ => None,
+        })
+    }
+
+    /// The depths.
+    pub(crate) fn depths(&self) -> Option<StoredPlane<'a, f64>> {
+        self.planes.iter().find_map(|(_, plane)| match plane {
+            AnyStored::Scalar(plane) if plane.holds == Holds::Depth => Some(*plane),
+            _ => None,
+        })
+    }
+
+    /// Whether the plane at a place of the table is there.
+    pub(crate) fn has(&self, place: usize) -> bool {
+        self.planes.iter().any(|(own, _)| *own == place)
+    }
+
+    /// Every plane at a pixel against what may be there, in a part of the report.
+    pub(crate) fn check<T: Copy, P: Profile>(
+        &self,
+        (part, fields): (usize, &[Field<T, Ball<P>>]),
+        at: (u32, u32),
+        truth: &T,
+        report: &mut Report<'_>,
+    ) {
+        let mut truth = *truth;
+        for (place, plane) in &self.planes {
+            match (plane, &fields[*place].part) {
+                (AnyStored::Index(plane), Part::Id(of)) => {
+                    whole(part, plane, at, *of(&mut truth), report);
+                }
+                (AnyStored::Count(plane), Part::Count(of)) => {
+                    whole(part, plane, at, *of(&mut truth), report);
+                }
+                (AnyStored::Count(plane), Part::Kind(of)) => {
+                    whole(part, plane, at, *of(&mut truth) as u8, report);
+                }
+                (AnyStored::Scalar(plane), Part::Number(of)) => {
+                    number(part, plane, at, *of(&mut truth), report);
+                }
+                (AnyStored::Triple(plane), Part::Triple(of)) => {
+                    triple(part, plane, at, *of(&mut truth), report);
+                }
+                (AnyStored::Triple(plane), Part::Direction(of)) => {
+                    let Vector3 { x, y, z } = *of(&mut truth);
+                    triple(part, plane, at, [x, y, z], report);
+                }
+                // Ids of 40 bits are judged by their ranks, which have 32.
+                _ => {}
+            }
+        }
+    }
+
+    /// Puts the values of the planes at a pixel into a record, as the next stage reads them, as far as
+    /// the scene has such planes.
+    pub(crate) fn read<T, P: Profile>(
+        &self,
+        (fields, there): (&[Field<T, Ball<P>>], &Conditions),
+        at: (u32, u32),
+        record: &mut T,
+    ) {
+        for (place, plane) in &self.planes {
+            let Field { row, part } = &fields[*place];
+            if !there.hold(row) {
+                continue;
+            }
+            match (plane, part) {
+                (AnyStored::Index(plane), Part::Id(of)) => {
+                    *of(record) = *plane.plane.at(at.0, at.1)
+                }
+                (AnyStored::Count(plane), Part::Count(of)) => {
+                    *of(record) = *plane.plane.at(at.0, at.1);
+                }
+                (AnyStored::Count(plane), Part::Kind(of)) => {
+                    // There is no other kind: what is not one was found wrong where it comes from.
+                    let kind = SampleKind::ALL.get(usize::from(*plane.plane.at(at.0, at.1)));
+                    *of(record) = kind.copied().unwrap_or_default();
+                }
+                (AnyStored::Scalar(plane), Part::Number(of)) => *of(record) = input(plane, at),
+                (AnyStored::Triple(plane), Part::Triple(of)) => *of(record) = inputs(plane, at),
+                (AnyStored::Triple(plane), Part::Direction(of)) => {
+                    let [x, y, z] = inputs(plane, at);
+                    *of(record) = Vector3::new(x, y, z);
+                }
+                _ => {}
+            }
+        }
+    }
+
+    /// The records as the next stage reads them, if the planes that the scene has are all there.
+    pub(crate) fn records<T: Copy, P: Profile>(
+        &self,
+        (fields, there): (&[Field<T, Ball<P>>], &Conditions),
+        size: [u32; 2],
+        empty: T,
+    ) -> Option<Plane<T>> {
+        let mut wanted = fields.iter().enumerate().filter(|(_, field)| there.hold(&field.row));
+        wanted.all(|(place, _)| self.has(place)).then(|| {
+            Plane::from_pixels(size, |x, y| {
+                let mut record = empty;
+                self.read((fields, there), (x, y), &mut record);
+                record
+            })
+        })
+    }
+}
+
+/// The names of the planes of several groups, each once, in the order of a table.
+pub(crate) fn names<'a, T, R>(
+    fields: &[Field<T, R>],
+    all: impl Iterator<Item = &'a RecordPlanes<'a>> + Clone,
+) -> Vec<&'static str> {
+    let names = fields.iter().map(|field| field.row.name);
+    names.filter(|name| all.clone().any(|planes| planes.names.contains(name))).collect()
+}
