@@ -14,7 +14,7 @@
 //!   [`Session::render`] draws it.
 //! - **Render many views**: one [`Session`] draws its scene from as many cameras as you like.
 //! - **Get every plane**: [`Session::define`] keeps the planes that each pass leaves.
-//! - **Save them**: [`io::exr::write`] puts all planes of a [`Frame`] into one file.
+//! - **Save them**: [`io::exr::write()`] puts all planes of a [`Frame`] into one file.
 //! - **Understand a pixel**: [`Session::explain`] lists every decision at one pixel, in words.
 //! - **Compare two pictures**: [`compare::compare`] says whether they are equal bit for bit, and
 //!   where not.
