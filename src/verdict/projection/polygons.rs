@@ -238,7 +238,7 @@ fn reach<P: Profile>(projector: &SceneProjector<'_, Ball<P>>, p: &[Vector3<Ball<
         };
         let pixels = projector.size[axis];
         let slack = 2.0 + off * (focal + center.abs() + f64::from(GUARD_BAND)) / near;
-        // Positive if the corner is beyond the coordinate.
+        // > 0 if the corner is beyond the coordinate.
         let beyond = |p: &Vector3<Ball<P>>, at: f64| {
             let s = if view.perspective { -p.z.middle } else { 1.0 };
             let c = if axis == 0 { p.x.middle } else { -p.y.middle };
