@@ -94,6 +94,8 @@ fn selects(name: &str, channel: &str, all: &[String]) -> bool {
         return channel.starts_with(start);
     }
     let letter = channel.strip_prefix(name).and_then(|rest| rest.strip_prefix('.'));
+    // All three letters must be there: a lone `n.X` is no vector, and `a.Z` is the depth of a
+    // layer.
     let component_of = |letters: [&str; 3]| {
         letter.is_some_and(|letter| letters.contains(&letter))
             && letters.iter().all(|letter| all.iter().any(|c| *c == format!("{name}.{letter}")))

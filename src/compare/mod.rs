@@ -165,6 +165,7 @@ pub fn compare(reference: &Image, picture: &Image, criteria: &Criteria) -> Resul
     all.dedup();
     let chosen = criteria.chosen(reference, &all)?;
     let sizes = [(reference.width, reference.height), (picture.width, picture.height)];
+    // Pixels of two sizes cannot be paired, so no plane is compared.
     if sizes[0] != sizes[1] {
         return Ok(Comparison { sizes, channels: Vec::new() });
     }
@@ -234,6 +235,7 @@ fn differences<T: Copy>(
             squares += difference.abs() * difference.abs();
         }
     }
+    // Where every pixel has a NaN, the RMS stays 0.
     let numbers = found.pixels - found.nan;
     if numbers > 0 {
         found.rms = (squares / numbers as f64).sqrt();

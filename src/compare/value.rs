@@ -97,9 +97,11 @@ impl Difference {
     pub(super) fn passes(&self, tolerance: Tolerance) -> bool {
         let (ChannelValue::Float(first), ChannelValue::Float(second)) = (self.first, self.second)
         else {
+            // Indices have no distance, and equal ones never get here.
             return false;
         };
         if !first.is_finite() || !second.is_finite() {
+            // An infinity has no finite distance, and a NaN none at all.
             return false;
         }
         let within_ulp =

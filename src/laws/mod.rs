@@ -90,6 +90,7 @@ fn law(
 
 /// Half the spacing of the numbers in [1, 2): the relative error of one rounding.
 fn unit<R: Exact>() -> f64 {
+    // An addend of 2^-30 is lost next to 1 in `f32`, but not in `f64`.
     let single = R::ONE + R::from_f32(1.0 / 1_073_741_824.0) == R::ONE;
     if single { f64::from(f32::EPSILON) / 2.0 } else { f64::EPSILON / 2.0 }
 }

@@ -113,6 +113,7 @@ fn component_of<P: Profile>(
     truth: Ball<P>,
     report: &mut Report<'_>,
 ) {
+    // Without a bound nothing is proved, unless the value is the midpoint itself.
     let judged = truth.radius.is_finite() || truth.middle == found.middle;
     let error = if judged { truth.misfit(found) } else { f64::NAN };
     report(part, error, &|| Fault::Value {

@@ -111,6 +111,8 @@ impl PixelMarks<'_> {
         if let Some(log) = log {
             let fault = fault();
             let unknown = matches!(&fault, Fault::Value { radius, .. } if radius.is_nan());
+            // A right value with an unknown radius would be logged as any number, which tells
+            // nothing.
             let anything = unknown && !(error > 1.0);
             if !anything {
                 log.push((error, fault));

@@ -18,11 +18,12 @@
 //! `f32` clients, in radii of `ieee`. The radii of `gpu` are wider, so there the errors are smaller
 //! fractions of them. From these probabilities:
 //!
-//! - The score is the sum of a (y - p) at s = 0, where y is 1 for a decision that passed and 0 for
-//!   one that did not.
+//! - The score is the sum of a (y - p) at s = 0. y is 1 for a decision that passed and 0 for one
+//!   that did not.
 //! - The information is the sum of a^2 p (1 - p).
 //! - The variance is the sum over surfels of the square of the sum over a surfel's decisions of a
-//!   (y - p), because the errors of one surfel's decisions go together.
+//!   (y - p). Decisions are added by surfel because the errors of one surfel's decisions go
+//!   together.
 //! - z is score / sqrt(variance), and the estimate of s is score / information.
 
 use super::doubt::Doubt;
@@ -120,6 +121,7 @@ impl ShiftSums {
         let likely = 1.0 / (1.0 + libm::exp(-slope * open.distance));
         let score = slope * (f64::from(u8::from(passed)) - likely);
         let information = slope * slope * likely * (1.0 - likely);
+        // A radius of 0 or infinity says nothing about the limit.
         if !(score.is_finite() && information.is_finite()) {
             return;
         }

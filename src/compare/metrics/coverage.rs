@@ -13,8 +13,8 @@ pub enum Region {
 
 /// The region of each pixel of a plane of coverage with `width` values a row.
 ///
-/// A pixel is covered if its value is > 0; a NaN is not. Its neighbours are the pixels among the eight
-/// around it that lie in the plane. So the border of the picture is no silhouette.
+/// A pixel is covered if its value is > 0; a NaN is not. Its neighbours are the pixels among the
+/// eight around it that lie in the plane. So the border of the picture is no silhouette.
 ///
 /// # Panics
 /// If the length of the plane is no multiple of `width`.

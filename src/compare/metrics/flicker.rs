@@ -159,6 +159,7 @@ impl Flicker {
                     *im += s * error;
                 }
             }
+            // All waves but the fastest stand for two conjugate frequencies, k and n - k.
             let weight = if 2 * k == n { 1.0 } else { 2.0 };
             let squares: f64 = real.iter().zip(&imaginary).map(|(re, im)| re * re + im * im).sum();
             weight * squares / (n * n) as f64

@@ -72,6 +72,7 @@ fn v_radius(v: f64, relative: f64, least: f64) -> f64 {
 /// How far off `scale / v` may be if v is off by `radius`, at the end where that is most.
 fn inverse_radius(value: f64, scale: f64, radius: f64) -> f64 {
     let part = radius * value.abs() / scale;
+    // If v may be 0, the quotient has no bound.
     if part < 1.0 { value.abs() * part / (1.0 - part) } else { f64::INFINITY }
 }
 

@@ -16,8 +16,9 @@
 //!
 //! 1. The surfel of the id may lie in the pixel, and Z is in the ball of its t.
 //! 2. Nothing else lies there whose t certainly is less.
-//! 3. Nothing that comes before the id's surfel by the client's tie rule lies there, if its t is
-//!    equal and exact in balls, or if all its numbers equal the numbers of the id's surfel.
+//! 3. No surfel that lies there at an equal t comes before the id's surfel by the client's tie
+//!    rule. Two t are equal if they are the same and exact in balls, or if all numbers of the two
+//!    surfels are the same.
 //! 4. In an empty pixel Z is +inf, and nothing lies there.
 //!
 //! **B(i)** is the list in the client's plane of ids. Without that plane:
@@ -37,10 +38,10 @@
 //! kept.
 //!
 //! **Normalization and shading** as in `ewa`, with a difference for Z and id of the picture. They
-//! come from pass 3 where the client's weight is > 0, and are those of an empty pixel where it is
-//! 0. Either is right if that is not certain. With `second` off, where pass 1 certainly left
-//! nothing, they come from the certificate over B(i). Where pass 1 may have left nothing, they are
-//! not judged.
+//! come from pass 3 where the client's weight is > 0. Where it is 0, they have the values of an
+//! empty pixel. Either is right if that is not certain. With `second` off, where pass 1 certainly
+//! left nothing, they come from the certificate over B(i). Where pass 1 may have left nothing, they
+//! are not judged.
 //!
 //! **[Polygons](crate::method::deferred::polygons)**: triangles beside splats
 //! [may lie](crate::verdict::projection) in a pixel, at the depth of the pixel's nearness. In the
@@ -54,14 +55,14 @@
 //!    or weight may be 0. It shows the polygon's depth or the depth of the client's pass 3, the
 //!    polygon's normal and colour, no id, and the weight 1.
 //!
-//! Among these the verdict takes the one against which the client errs least. Where only the
-//! picture says what is nearest, a pixel without an id in which polygons may lie says nothing about
-//! it, because a fragment without weight may be before the polygon.
+//! Among these the verdict takes the one against which the client errs least. If only the picture
+//! says which fragment is nearest, a pixel without an id may say nothing. This holds where polygons
+//! may lie, because a fragment without weight may be before the polygon.
 //!
 //! # Decided
 //!
-//! - A polygon may be at any depth of its corners, with any normal and colour, if it is not certain
-//!   how it is cut, or which way its corners run. It hides nothing.
+//! - If it is not certain how a polygon is cut, or which way its corners run, it may be at any
+//!   depth of its corners, with any normal and colour. It hides nothing.
 //! - A pixel that shows a polygon and is right is not undecided, whatever its sums are, if the
 //!   client has no plane of the sums.
 //! - Pass 3 is judged from the surfels of both passes, not from the client's depth of pass 1,

@@ -356,6 +356,7 @@ impl<P: Profile> Rival<'_, P> {
             Ties::Last => surfel > id && id != NO_ID,
             Ties::Any => false,
         };
+        // The distance of two exact numbers is infinite, so this asks whether both are exact.
         let exact = self.t.distance(claim.closest) == f64::INFINITY
             && self.fragment.inside.certainly()
             && self.t.middle == claim.closest.middle;

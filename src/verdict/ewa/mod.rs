@@ -23,8 +23,9 @@
 //!    depth certainly is less than Z. Without Z, its depth is compared with the depth of the id's
 //!    fragment. In an empty pixel Z is +inf, so no fragment may certainly be inside.
 //!
-//! 4. No surfel comes before the id's surfel by the client's tie rule, if its depth is equal and
-//!    exact in balls, or if all its numbers equal the numbers of the id's surfel.
+//! 4. No surfel with an equal depth comes before the id's surfel by the client's tie rule. Depths
+//!    are equal if they are the same and exact in balls, or if all numbers of the two surfels are
+//!    the same.
 //!
 //! In other near ties the id is one of a set. This is harmless, because the sums take their limit
 //! from the client's Z.
@@ -167,6 +168,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         marks: &Marks,
     ) -> Vec<Option<Errors>> {
         let mut found = vec![None; rect.pixels()];
+        // An explanation needs every check, so it takes no shortcut.
         let Some(right) = self.right.as_ref().filter(|_| !marks.logs()) else { return found };
         let mut asked = Vec::with_capacity(found.len());
         for (pixel, at) in counted(rect).filter(|(pixel, _)| sums.undecided[*pixel] == 0) {

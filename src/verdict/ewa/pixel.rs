@@ -80,6 +80,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         marks: &mut [Marks; 3],
     ) -> Option<usize> {
         let all = all(sums);
+        // An explanation needs every check, so it takes no shortcut.
         let nothing = matches!(all, [Sums { count: 0, .. }]) && !marks[ATTRIBUTES].logs();
         if nothing && self.is_right_of_nothing(at) {
             return None;

@@ -116,7 +116,7 @@ impl<P: Profile> Fragment<'_, P> {
 
 /// Runs `visit` for the fragments of the pixels of a rectangle in a tile. It skips fragments that
 /// certainly are outside, and fragments whose nearness certainly is below `least` of their pixel.
-/// +inf is above every nearness, and NaN below.
+/// Every nearness is below +inf, and none is below NaN.
 #[inline(always)]
 pub(super) fn each_fragment<P: Profile>(
     splats: &SwiftSplats<P>,

@@ -12,15 +12,16 @@
 //!    `limit_(j-1)`. In layer 1 the fragment belongs to the surfel of the id.
 //! 2. No fragment that certainly is drawn, inside and beyond `limit_(j-1)` certainly is nearer than
 //!    `t_j`. Where there is no layer, no fragment certainly is inside and beyond.
-//! 3. In layer 1 no surfel comes before the id's surfel by the client's tie rule, if its depth is
-//!    equal and exact in balls, or if all its numbers equal the numbers of the id's surfel.
+//! 3. In layer 1 no surfel with an equal depth comes before the id's surfel by the client's tie
+//!    rule. Depths are equal if they are the same and exact in balls, or if all numbers of the two
+//!    surfels are the same.
 //! 4. Count, opacity and colour come from the fragments inside, beyond `limit_(j-1)` and within
 //!    `limit_j`, summed, averaged and shaded in balls. The fragment of the depth always passes, if
 //!    only one fragment can be it. Where a decision is undecided, both continuations are kept, 2^n
 //!    for n <= 4 fragments. Beyond that these planes are not judged.
 //! 5. `layers` is the number of layers with a depth. If the last layer that leaves planes has a
-//!    depth, `layers` is at least one more if a fragment certainly is beyond its limit, at most the
-//!    setting, and not more if no fragment possibly is.
+//!    depth, fragments beyond its limit count too. `layers` is at least one more if a fragment
+//!    certainly is beyond, at most the setting, and not more if no fragment possibly is beyond.
 //!
 //! **Blending** of the client's opacities and colours, if all layers that leave planes are there. A
 //! pixel with more layers than leave planes is not judged. An environment is seen behind the layers

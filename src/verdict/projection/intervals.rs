@@ -171,6 +171,7 @@ impl Depths {
             let middle = part / whole;
             let off = (off + middle.abs() * whole_off) / least;
             let off = off + rounded * (middle.abs() + off) + self.weights_off + f64::MIN_POSITIVE;
+            // If the divisor may be 0, the weight has no bound.
             if least > 0.0 { Ball::new(middle, off * (1.0 + ROUNDINGS)) } else { anything() }
         });
         Some((weights, cover.lies))

@@ -14,8 +14,9 @@
 //!    [`PixelSample::empty`].
 //! 3. Nothing else lies in the pixel whose depth certainly is less than Z. Without Z, its depth is
 //!    compared with the depth of the id's sample. In an empty pixel Z is +inf.
-//! 4. No surfel comes before the id's surfel by the client's tie rule, if it lies there at a depth
-//!    that is equal and exact in balls, or if all its numbers equal the numbers of the id's surfel.
+//! 4. No surfel that lies there at an equal depth comes before the id's surfel by the client's tie
+//!    rule. Depths are equal if they are the same and exact in balls, or if all numbers of the two
+//!    surfels are the same.
 //!
 //! Without ids, the verdict takes the sample that errs least, among those that nothing certainly
 //! hides.

@@ -147,6 +147,7 @@ fn triangle<P: Profile>(
     drawn: &mut Vec<PossiblePolygon<P>>,
 ) {
     let p = corners(&projector.scene.primitives.triangles, &projector.points, index);
+    // Where the cut is undecided, the whole triangle is open.
     let Some(polygon) = projector.clip.certain(p) else {
         let depths = depths(projector, &p, &p);
         let bounds = reach(projector, &p);
@@ -186,6 +187,7 @@ fn piece<P: Profile>(
     }
     let intervals = Intervals::new(snap, &places);
     let bounds = intervals.bounds(projector.size);
+    // Where the sense of the corners is undecided, so is the visible side.
     if !intervals.is_turned() {
         let form = Form::OpenDecision(Some(intervals));
         return Some(PossiblePolygon { index: id.0, bounds, depths, form });

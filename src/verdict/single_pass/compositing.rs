@@ -67,6 +67,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
             }
         }
         let sums = match (choices.len(), all.as_slice()) {
+            // There were more choices than are followed.
             (0, _) => Continuations::Many,
             (1, [one]) => Continuations::One(*one),
             _ => Continuations::Several(all, Vec::new()),
@@ -214,6 +215,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
             Ties::Last => one.surfel > other.surfel,
             Ties::Any => false,
         };
+        // The distance of two exact numbers is infinite, so this asks whether both are exact.
         let exact = one.nearness.distance(other.nearness) == f64::INFINITY
             && one.nearness.middle == other.nearness.middle;
         first && (exact || self.surfels.are_equal(one.surfel, other.surfel))

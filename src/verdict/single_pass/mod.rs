@@ -9,14 +9,15 @@
 //! there. The *key* of a fragment is the number that the depth test compares: its depth, or its
 //! Voronoi-enhanced depth. A depth within a radius of a bin's border has two bins, hence two keys.
 //!
-//! 1. A fragment of the group that possibly is inside fits every plane: its surfel is the id;
-//!    depth, weight, weight times normal and colour are in its balls; the Voronoi-enhanced depth is
-//!    in the ball of one of its keys. Or every plane says that there is none.
+//! 1. A fragment of the group that possibly is inside fits every plane. Its surfel is the id.
+//!    Depth, weight, weight times normal and colour are in its balls. The Voronoi-enhanced depth is
+//!    in the ball of one of its keys. Or every plane says that there is no fragment.
 //! 2. No fragment of another surfel of the group that certainly is drawn and inside has keys that
 //!    are all certainly less than the client's stored key. Without a stored key, they are compared
 //!    with the least key of the fragment. Where there is no fragment, none certainly is inside.
-//! 3. No surfel comes before by the client's tie rule, if its key is equal and exact in balls, or
-//!    if all its numbers equal the numbers of the id's surfel.
+//! 3. No surfel with an equal key comes before the id's surfel by the client's tie rule. Keys are
+//!    equal if they are the same and exact in balls, or if all numbers of the two surfels are the
+//!    same.
 //!
 //! The *samples* of a group are all fragments (or that there is none) that satisfy 1 to 3. Each
 //! number that the client stores replaces its ball. A group has one sample if it stores depth,

@@ -98,6 +98,7 @@ pub(super) fn replay<'d, P: Profile>(
             continue;
         }
         let [first, last] = drawn.bins;
+        // More than two possible bins are not followed; a NaN counts as more.
         if !(last - first <= 1.0) {
             return Replay { all: None, doubts };
         }

@@ -17,7 +17,7 @@
 //!
 //! **Blending** and **averaging** by the rules of [`transparent`](crate::verdict::transparent). A
 //! fragment stays where the client's mask is 1 and its depth is greater than Z + epsilon, with the
-//! client's Z. Without a mask, it stays where Z is finite instead. Where that is undecided, both
+//! client's Z. Without a mask, Z must be finite instead. Where that is undecided, both
 //! continuations are followed.
 //!
 //! **Compositing** of the client's nearest layer and averages: `l`, `layers`, and the picture. It
@@ -28,9 +28,11 @@
 //! of a surface, its ball holds too much of a map to be judged. Without the client's normals a
 //! picture with refraction is not judged.
 //!
-//! A pixel is undecided in three cases: the sums of its nearest layer have more than one
-//! continuation; a group of the other layers has several continuations or is not judged; its colour
-//! is not judged.
+//! A pixel is undecided in three cases:
+//!
+//! - The sums of its nearest layer have more than one continuation.
+//! - A group of the other layers has several continuations, or is not judged.
+//! - Its colour is not judged.
 
 mod picture;
 #[cfg(test)]
