@@ -1,5 +1,5 @@
-//! How one order gives way to another, and how the controller answers [BJFM19, 4], on the scenes of the bench
-//! `blue`.
+//! Pins how one order gives way to another, and how the controller answers [BJFM19, 4], on the
+//! scenes of the bench `blue`.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![allow(dead_code, reason = "the bench uses more of what they share")]

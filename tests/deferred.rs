@@ -1,4 +1,5 @@
-//! Where deferred splatting fails [GBP04, Fig. 3 and 4], pinned on the scenes of the bench `deferred`.
+//! Pins where deferred splatting fails [GBP04, Fig. 3 and 4], on the scenes of the bench
+//! `deferred`.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 #![allow(dead_code, reason = "the bench uses more of what they share")]

@@ -1,4 +1,4 @@
-//! The pages that people read: their links lead somewhere, and each bench finds its block.
+//! Checks the pages that people read: every link leads somewhere, and each bench finds its block.
 
 #[path = "../benches/common/block.rs"]
 mod block;

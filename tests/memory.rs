@@ -1,10 +1,10 @@
-//! Peak memory of a render, measured from outside the allocator.
+//! Measures the peak memory of a render from outside the allocator.
 //!
-//! What is asked for before a picture is made, by every method, is measured in a process each: memory
-//! that was freed hides what comes after.
+//! Each method gets a process of its own, because memory that was freed hides later requests. It
+//! measures the memory that is requested before a picture is made.
 //!
 //! The budget: 100 bytes a surfel and 64 bytes a pixel beyond the scene. The images of the single
-//! pass have to live in it too, and whole they would not.
+//! pass have to fit into it too, and they would not fit as a whole.
 
 #![cfg(target_os = "linux")]
 

@@ -1,4 +1,4 @@
-//! Real scans, if they are there: `SPLATREF_MODELS`, or `../shared/models`.
+//! Tests on real scans, if they are there: `SPLATREF_MODELS`, or `../shared/models`.
 
 #![expect(clippy::unwrap_used, reason = "a test fails by panicking")]
 

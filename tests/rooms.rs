@@ -1,4 +1,4 @@
-//! The folders of `src/` stand one above the other: each imports only from those below it.
+//! Keeps the folders of `src/` in order: each folder imports only from folders below it.
 
 use std::fs;
 use std::path::{Path, PathBuf};

@@ -1,4 +1,5 @@
-//! Every setting is one row: what follows from the row is compared with it here.
+//! Every setting is one row of a table. These tests compare everything that follows from the row
+//! with it.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 

@@ -1,61 +1,68 @@
-//! What is compared, and what may differ on purpose.
+//! Choose which planes to compare, and how much each may differ.
 
 use crate::error::{Error, Result};
 use crate::frame::Image;
 
-/// What may differ on purpose in a plane. The default lets nothing differ.
+/// How much a plane may differ. The default allows no difference.
 ///
-/// A pixel passes if its bits are equal or, where both values are finite floats, if it is within
-/// either bound that is given. Indices and counts have no distance: a pixel of theirs passes by
-/// equality alone.
+/// A pixel passes if its bits are equal. Where both values are finite floats, a pixel also passes
+/// if it is within either bound that is given. Indices and counts have no distance: their pixels
+/// pass only if they are equal.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tolerance {
-    /// At most so many representable `f32` from one value to the other; -0 and +0 are the same one.
+    /// The most representable `f32` from one value to the other; -0 and +0 are the same one.
     pub max_ulp: Option<u32>,
-    /// At most this difference of the values, taken in f64; at least 0.
+    /// The largest difference of the values, taken in f64; at least 0.
     pub max_abs: Option<f32>,
-    /// So many pixels of a channel may fail to pass, each by any amount.
+    /// This many pixels of a channel may fail, each by any amount.
     pub pixels: usize,
 }
 
-/// What of two pictures is compared, and by which tolerance.
+/// Which planes of two pictures to compare, and with which tolerance.
 ///
-/// A **name** stands for the channel of that name, for the three channels of the colour or the
-/// vector of that name (`normal` for `normal.X`, `normal.Y` and `normal.Z`, where there are all
-/// three), or, with a `*` at its end, for every channel whose name starts so (`visibility.*`, `*`).
+/// A **name** selects channels in three ways:
+///
+/// - The channel of that name.
+/// - The three channels of the colour or vector of that name: `normal` selects `normal.X`,
+///   `normal.Y` and `normal.Z`, if there are all three.
+/// - With a `*` at its end, every channel whose name starts so (`visibility.*`, `*`).
+///
 /// The colour of the picture itself has the three names `R`, `G` and `B`.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Criteria {
-    /// The names of the planes to compare; none for all planes.
+    /// The names of the planes to compare; none to compare all planes.
     pub planes: Option<Vec<String>>,
-    /// The tolerance of every plane that `named` does not name.
+    /// The tolerance for every plane that `named` does not name.
     pub tolerance: Tolerance,
-    /// A name and the whole tolerance of its planes; of several that name a channel the last holds.
+    /// A name and the whole tolerance of its planes. If several names select a channel, the last
+    /// holds.
     pub named: Vec<(String, Tolerance)>,
-    /// Whether a plane that the reference has for observation ([`is_observation`]), and the other
-    /// picture has not, is left out instead of making a difference.
+    /// Whether to skip a plane that only the reference has, if the plane is an observation
+    /// ([`is_observation`]). Otherwise the missing plane counts as a difference.
     pub skip_observations: bool,
 }
 
-/// Whether a channel only observes how a picture was made: `margin`, alone or in a layer, the
-/// distance of the closest decision of a pixel from being undecided. A backend has no such plane.
+/// Whether a channel only observes how a picture was made. The one observation is `margin`, alone
+/// or in a layer: the distance of the closest decision of a pixel from being undecided. A backend
+/// has no such plane.
 #[must_use]
 pub fn is_observation(channel: &str) -> bool {
     channel.rsplit('.').next() == Some("margin")
 }
 
 impl Criteria {
-    /// The tolerance of a channel; `all` are the names of all channels, sorted.
+    /// The tolerance of a channel. `all` holds the names of all channels, sorted.
     pub(super) fn tolerance_of(&self, channel: &str, all: &[String]) -> Tolerance {
         let last = self.named.iter().rev().find(|(name, _)| selects(name, channel, all));
         last.map_or(self.tolerance, |(_, tolerance)| *tolerance)
     }
 
-    /// The channels of `all` that are compared.
+    /// The channels of `all` to compare.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if a name of `planes` stands for no channel of the reference, or one of
-    /// `named` for none at all: what was misspelt would not be compared, or not as was meant.
+    /// [`Error::Invalid`] if a name of `planes` selects no channel of the reference, or a name of
+    /// `named` selects no channel at all. Otherwise a misspelt plane would silently not be
+    /// compared, or with the wrong tolerance.
     pub(super) fn chosen(&self, reference: &Image, all: &[String]) -> Result<Vec<String>> {
         let in_reference: Vec<String> = reference.channels.iter().map(|c| c.0.clone()).collect();
         for name in self.planes.iter().flatten() {
@@ -72,7 +79,7 @@ impl Criteria {
     }
 }
 
-/// Fails unless `name` stands for one of `channels`.
+/// Fails unless `name` selects one of `channels`.
 fn require(name: &str, channels: &[String], of: &str) -> Result<()> {
     if channels.iter().any(|channel| selects(name, channel, channels)) {
         return Ok(());
@@ -81,12 +88,14 @@ fn require(name: &str, channels: &[String], of: &str) -> Result<()> {
     Err(Error::Invalid(format!("no plane of {of} is called `{name}`; there are: {there}")))
 }
 
-/// Whether `name` stands for `channel`, one of `all`.
+/// Whether `name` selects `channel`, one of `all`.
 fn selects(name: &str, channel: &str, all: &[String]) -> bool {
     if let Some(start) = name.strip_suffix('*') {
         return channel.starts_with(start);
     }
     let letter = channel.strip_prefix(name).and_then(|rest| rest.strip_prefix('.'));
+    // All three letters must be there: a lone `n.X` is no vector, and `a.Z` is the depth of a
+    // layer.
     let component_of = |letters: [&str; 3]| {
         letter.is_some_and(|letter| letters.contains(&letter))
             && letters.iter().all(|letter| all.iter().any(|c| *c == format!("{name}.{letter}")))

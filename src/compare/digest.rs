@@ -1,11 +1,11 @@
-//! One hash of many pictures, so that machines can be compared by a line.
+//! Hash many pictures into one line, so that you can compare machines by that line.
 
 use crate::frame::image::{Image, Values};
 use sha2::{Digest, Sha256};
 
-/// SHA-256 in lower-case hexadecimal of named pictures, in the order given.
+/// SHA-256 of named pictures, in lower-case hexadecimal, in the order given.
 ///
-/// Of each picture the bytes, numbers in little-endian order:
+/// Each picture contributes these bytes, numbers in little-endian order:
 ///
 /// ```text
 ///   name, a byte 0
@@ -13,7 +13,7 @@ use sha2::{Digest, Sha256};
 ///   each channel: name, a byte 0; a byte 0 for floats or 1 for indices; the values' 32 bits
 /// ```
 ///
-/// The text of a picture is not part of it.
+/// The text of a picture is not hashed.
 #[must_use]
 pub fn sha256<'a>(pictures: impl IntoIterator<Item = (&'a str, &'a Image)>) -> String {
     let mut hash = Sha256::new();
@@ -55,7 +55,7 @@ mod tests {
         let expected: String = Sha256::digest(bytes).iter().map(|b| format!("{b:02x}")).collect();
         let picture = image("Z", Values::Float(vec![1.0, -0.0]));
         assert_eq!(sha256([("a", &picture)]), expected);
-        // Of nothing: the hash that every implementation prints first.
+        // With no picture: the hash of no bytes, which is easy to recognize.
         assert!(sha256([]).starts_with("e3b0c44298fc1c149afbf4c8996fb924"));
     }
 

@@ -1,7 +1,9 @@
-//! Two pictures, plane by plane: equal bit for bit, or where, and by how much, not.
+//! Compare two pictures plane by plane: are they equal bit for bit, and if not, where and by how
+//! much?
 //!
-//! [`mod@metrics`] says how far a picture is off in numbers that rank methods, [`mod@digest`] is one hash of
-//! many pictures.
+//! [`compare`] compares every plane, or the planes that you name, and allows the differences that
+//! you state. [`mod@metrics`] gives numbers that rank methods, e.g. RMSE, SSIM and FLIP.
+//! [`mod@digest`] hashes many pictures into one line.
 //!
 //! ```
 //! use splatref::frame::{Frame, Image, Plane, Samples};
@@ -40,34 +42,35 @@ use crate::frame::image::{Image, Values};
 pub enum Verdict {
     /// Every bit is equal; -0 is not +0, and a NaN equals one of the same bits.
     Equal,
-    /// Something differs, and all of that is within the tolerance.
+    /// Something differs, but all differences are within the tolerance.
     Within,
     /// Something differs beyond the tolerance: values, planes, types or sizes.
     Different,
 }
 
-/// What the comparison of two pictures found.
+/// The result of comparing two pictures.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Comparison {
     /// Width and height of the first and the second picture, in pixels.
     pub sizes: [(u32, u32); 2],
-    /// An entry for each chosen channel of either, sorted by name; empty if the sizes differ.
+    /// One entry for each chosen channel of either picture, sorted by name. Empty if the sizes
+    /// differ.
     pub channels: Vec<ChannelComparison>,
 }
 
-/// What was found of one channel.
+/// The result for one channel.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ChannelComparison {
     /// The channel's name.
     pub name: String,
-    /// What was found.
+    /// How the two channels of this name relate.
     pub relation: Relation,
 }
 
-/// What two channels of one name are to each other.
+/// How two channels of one name relate to each other.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Relation {
-    /// Only the first picture has it, for observation; nothing was compared.
+    /// Only the first picture has this channel. It is an observation, so nothing was compared.
     Observation,
     /// Only the first picture has it.
     OnlyFirst,
@@ -82,27 +85,28 @@ pub enum Relation {
 /// How the values of two planes of one size differ.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Differences {
-    /// Pixels in all.
+    /// All pixels of the plane.
     pub pixels: usize,
     /// Pixels whose bits differ.
     pub differing: usize,
-    /// Pixels beyond either bound of the tolerance, of those that differ.
+    /// Pixels that differ and lie beyond both bounds of the tolerance.
     pub failing: usize,
-    /// So many of these the tolerance lets fail.
+    /// Number of failing pixels that the tolerance allows.
     pub allowed: usize,
     /// Pixels where either value is NaN, whether their bits differ or not.
     pub nan: usize,
-    /// The first pixel, in the order of rows, that is beyond the tolerance; where there is none,
-    /// the first whose bits differ.
+    /// The first failing pixel in the order of rows. If no pixel fails, the first pixel whose bits
+    /// differ.
     pub first: Option<Difference>,
-    /// The pixel with the largest difference of values among those that `first` is the first of. A
-    /// NaN counts as an infinite difference; of several the first.
+    /// The pixel with the largest difference of values, among the failing pixels, or among all that
+    /// differ if none fails. A NaN counts as an infinite difference. On a tie, the first pixel.
     pub worst: Option<Difference>,
-    /// The largest distance in representable numbers, NaN aside; of indices, in integers.
+    /// The largest distance in representable numbers, ignoring NaN. For indices, the distance in
+    /// integers.
     pub max_ulp: u32,
-    /// The largest difference of values, NaN aside.
+    /// The largest difference of values, ignoring NaN.
     pub max_abs: f64,
-    /// The root of the mean squared difference of values, NaN aside.
+    /// The root of the mean squared difference of values, ignoring NaN.
     pub rms: f64,
 }
 
@@ -121,7 +125,7 @@ impl Differences {
 }
 
 impl ChannelComparison {
-    /// The verdict on this channel; none if it was not compared.
+    /// The verdict on this channel, or none if the channel was not compared.
     #[must_use]
     pub fn verdict(&self) -> Option<Verdict> {
         match &self.relation {
@@ -135,7 +139,8 @@ impl ChannelComparison {
 }
 
 impl Comparison {
-    /// The verdict on the whole: the worst of its channels, and different if the sizes are.
+    /// The verdict on both pictures: the worst verdict of any channel, and `Different` if the sizes
+    /// differ.
     #[must_use]
     pub fn verdict(&self) -> Verdict {
         let worst = self.channels.iter().filter_map(ChannelComparison::verdict).max();
@@ -152,7 +157,7 @@ impl Comparison {
 /// [`crate::Error::Invalid`] if the criteria name a plane that is not there.
 ///
 /// # Panics
-/// If a channel has not one value a pixel.
+/// If the number of values of a channel is not the number of pixels.
 pub fn compare(reference: &Image, picture: &Image, criteria: &Criteria) -> Result<Comparison> {
     let mut all: Vec<String> = Vec::new();
     all.extend([reference, picture].iter().flat_map(|i| &i.channels).map(|(name, _)| name.clone()));
@@ -160,6 +165,7 @@ pub fn compare(reference: &Image, picture: &Image, criteria: &Criteria) -> Resul
     all.dedup();
     let chosen = criteria.chosen(reference, &all)?;
     let sizes = [(reference.width, reference.height), (picture.width, picture.height)];
+    // Pixels of two sizes cannot be paired, so no plane is compared.
     if sizes[0] != sizes[1] {
         return Ok(Comparison { sizes, channels: Vec::new() });
     }
@@ -175,7 +181,7 @@ pub fn compare(reference: &Image, picture: &Image, criteria: &Criteria) -> Resul
     Ok(Comparison { sizes, channels: channels.collect() })
 }
 
-/// What two channels are to each other, `width` values a row.
+/// Relates two channels, each with `width` values a row.
 fn relation(
     channels: (Option<&Values>, Option<&Values>),
     width: u32,
@@ -194,7 +200,7 @@ fn relation(
     }
 }
 
-/// Compares two channels of one type, `width` values a row.
+/// Compares two channels of one type, each with `width` values a row.
 fn differences<T: Copy>(
     first: &[T],
     second: &[T],
@@ -229,6 +235,7 @@ fn differences<T: Copy>(
             squares += difference.abs() * difference.abs();
         }
     }
+    // Where every pixel has a NaN, the RMS stays 0.
     let numbers = found.pixels - found.nan;
     if numbers > 0 {
         found.rms = (squares / numbers as f64).sqrt();
@@ -241,7 +248,7 @@ impl Differences {
     fn count(&mut self, difference: Difference, tolerance: Tolerance) {
         let fails = !difference.passes(tolerance);
         if fails && self.failing == 0 {
-            // Those that pass are of no more interest.
+            // Once a pixel fails, the pixels that pass no longer matter.
             (self.first, self.worst) = (None, None);
         }
         if fails || self.failing == 0 {

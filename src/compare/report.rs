@@ -1,10 +1,10 @@
-//! What a comparison found, in words.
+//! The result of a comparison as text.
 
 use super::{ChannelComparison, Comparison, Difference, Differences, Relation, Verdict};
 use std::fmt;
 
 impl Comparison {
-    /// The findings as text: a line a channel, and a last line with the verdict.
+    /// The findings as text: one line for each channel, and a last line with the verdict.
     #[must_use]
     pub fn lines(&self) -> Vec<String> {
         let mut lines: Vec<String> =
@@ -38,7 +38,7 @@ impl fmt::Display for ChannelComparison {
     }
 }
 
-/// The pixel, both values, and their distance.
+/// Writes the pixel, both values, and their distance.
 impl fmt::Display for Difference {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(f, "({}, {}): {} against {}", self.x, self.y, self.first, self.second)?;
@@ -46,7 +46,7 @@ impl fmt::Display for Difference {
     }
 }
 
-/// The worst pixel is named where it is not the first.
+/// Names the worst pixel only where it is not the first.
 impl fmt::Display for Differences {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (Some(first), Some(worst)) = (&self.first, &self.worst) else {

@@ -1,8 +1,8 @@
-//! Comparators held to pairs whose answer is known.
+//! The comparators give the known answer on known pairs.
 
 use super::*;
 
-/// Compares every plane by one tolerance.
+/// Compares every plane with one tolerance.
 fn compare(first: &Image, second: &Image, tolerance: Tolerance) -> Comparison {
     let criteria = Criteria { tolerance, ..Criteria::default() };
     super::compare(first, second, &criteria).unwrap()
@@ -13,7 +13,7 @@ fn image(width: u32, height: u32, channels: &[(&str, Values)]) -> Image {
     Image { width, height, channels: channels.collect(), text: None }
 }
 
-/// A 3 x 2 picture of one channel.
+/// A 3 x 2 picture with one channel.
 fn floats(values: [f32; 6]) -> Image {
     image(3, 2, &[("Z", Values::Float(values.into()))])
 }
@@ -173,7 +173,7 @@ fn the_worst_pixel_is_named_beside_the_first() {
     let line = &report.lines()[0];
     assert!(line.contains("first (1, 0): 1.0 (0x3f800000) against 1.5 (0x3fc00000), 4194304 ulp"));
     assert!(line.contains("; worst (0, 1): 1.0 (0x3f800000) against 4.0 (0x40800000), 16777216"));
-    // Beyond the tolerance there are two; the worst of all that differ is one of these.
+    // Two pixels are beyond the tolerance, and the worst pixel of all is one of them.
     let loose = Tolerance { max_abs: Some(0.5), ..EXACT };
     let found = of(&compare(&a, &b, loose));
     assert_eq!((at(found.first), at(found.worst), found.failing), ((0, 1), (0, 1), 2));
@@ -193,7 +193,7 @@ fn so_many_pixels_may_fail() {
         let says = report.lines()[0].contains("2 beyond tolerance where 2 may be, first (1, 0)");
         assert_eq!(says, pixels == 2, "{:?}", report.lines());
     }
-    // Of floats they are those beyond the bounds.
+    // For floats, `first` and `worst` are among the pixels beyond the bounds.
     let (a, b) = (floats([1.0; 6]), floats([1.0, 1.25, f32::NAN, 1.0, 1.0, 1.0]));
     let tolerance = Tolerance { pixels: 1, ..ABS };
     assert_eq!(compare(&a, &b, tolerance).verdict(), Verdict::Within);
@@ -227,7 +227,7 @@ fn a_tolerance_holds_for_the_planes_that_it_names() {
         found.channels.iter().filter_map(ChannelComparison::verdict).collect()
     };
     let (within, different) = (Verdict::Within, Verdict::Different);
-    // Z, id, n.X, n.Y, n.Z: the last that names a channel holds.
+    // Z, id, n.X, n.Y, n.Z: the last name that selects a channel holds.
     assert_eq!(verdicts(&criteria), [within, within, different, within, different]);
     criteria.planes = Some(vec!["id".into(), "Z".into()]);
     assert_eq!(verdicts(&criteria), [within; 2]);

@@ -1,4 +1,4 @@
-//! Two values of a pixel, and how far they are apart.
+//! The two values of a pixel, and the distance between them.
 
 use super::Tolerance;
 use crate::number::real::ordered_f32;
@@ -17,12 +17,12 @@ pub struct Difference {
     pub second: ChannelValue,
 }
 
-/// One value of a channel; shown with its bits.
+/// One value of a channel. Display shows its bits too.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum ChannelValue {
-    /// Of a channel of floats.
+    /// A value in a channel of floats.
     Float(f32),
-    /// Of a channel of indices.
+    /// A value in a channel of indices.
     Index(u32),
 }
 
@@ -36,7 +36,7 @@ impl ChannelValue {
         }
     }
 
-    /// Whether it is no number.
+    /// Whether the value is NaN.
     pub(super) fn is_nan(self) -> bool {
         self.number().is_nan()
     }
@@ -49,8 +49,8 @@ impl ChannelValue {
         }
     }
 
-    /// The place in the ordered list of all values of the type; NaN, beyond the infinities, has one
-    /// too.
+    /// The position in the ordered list of all values of the type. NaN has a position too, beyond
+    /// the infinities.
     fn rank(self) -> i64 {
         match self {
             Self::Float(value) => ordered_f32(value),
@@ -69,8 +69,8 @@ impl fmt::Display for ChannelValue {
 }
 
 impl Difference {
-    /// How many values of the type lie from one to the other, at least 1 unless they are the two
-    /// zeros; none if either is NaN.
+    /// How many values of the type lie from one to the other: at least 1, except between the two
+    /// zeros. None if either value is NaN.
     #[must_use]
     pub fn ulps(&self) -> Option<u32> {
         if self.first.is_nan() || self.second.is_nan() {
@@ -80,24 +80,28 @@ impl Difference {
         Some(self.first.rank().abs_diff(self.second.rank()) as u32)
     }
 
-    /// The absolute difference of the numbers; infinite if one is, NaN if one is.
+    /// The absolute difference of the numbers. Infinite if one number is infinite, NaN if one is
+    /// NaN.
     #[must_use]
     pub fn abs(&self) -> f64 {
         (self.first.number() - self.second.number()).abs()
     }
 
-    /// How bad it is: the absolute difference, infinite where either value is NaN.
+    /// The size of the difference for ranking pixels: the absolute difference, infinite where
+    /// either value is NaN.
     pub(super) fn weight(&self) -> f64 {
         if self.ulps().is_some() { self.abs() } else { f64::INFINITY }
     }
 
-    /// Whether it lies within a bound of `tolerance`.
+    /// Whether the difference lies within either bound of `tolerance`.
     pub(super) fn passes(&self, tolerance: Tolerance) -> bool {
         let (ChannelValue::Float(first), ChannelValue::Float(second)) = (self.first, self.second)
         else {
+            // Indices have no distance, and equal ones never get here.
             return false;
         };
         if !first.is_finite() || !second.is_finite() {
+            // An infinity has no finite distance, and a NaN none at all.
             return false;
         }
         let within_ulp =

@@ -1,12 +1,15 @@
-//! Laws of low-precision and Voronoi-enhanced depth \[ZP06, eq. 6 and 10\]: `bin`, of a range and a
-//! depth, and `voronoi`, of a range, a depth and a ratio; both in units of a bin.
+//! Laws of low-precision and Voronoi-enhanced depth \[ZP06, eq. 6 and 10\].
+//!
+//! The operators are `bin(range, depth)` and `voronoi(range, depth, ratio)`. Both return units of a
+//! bin.
 
 use super::inputs::{CASES, Inputs};
 use super::{Lawful, law};
 use crate::composite::bins::{MAX_BINS, Range};
 use crate::number::Exact;
 
-/// Tries the laws of [`one`] and [`pair`] at ranges of every size, from one bin to the most.
+/// Tries the laws of [`one`] and [`pair`] at ranges of every size, from one bin to the largest
+/// number of bins.
 ///
 /// # Errors
 /// The first counterexample.
@@ -24,7 +27,8 @@ pub fn bins<R: Exact>(
         };
         let range = Range { nearest, farthest: nearest + extent, count };
         let low: R = inputs.between(nearest, nearest + extent);
-        // Close together, so that many fall on either side of the end of a bin.
+        // The two depths are close together, so that many pairs lie on either side of the end of a
+        // bin.
         let step = inputs.between::<R>(0.0, 3.0) * R::from_f32(extent / count as f32);
         let far = inputs.between(0.0, 30.0);
         let ratios = [inputs.between(0.0, 1.25), R::from_f32(inputs.of(&[0.0, 1.0, 1e-40]))];
@@ -36,14 +40,14 @@ pub fn bins<R: Exact>(
     Ok(())
 }
 
-/// The bins of one depth t >= 0, and its Voronoi-enhanced depths of ratios >= 0.
+/// The laws of one depth t >= 0: its bin, and its Voronoi-enhanced depths for ratios >= 0.
 ///
-/// - A bin is an integer in \[0, n\]; the nearest depth and all before are in bin 0, the farthest and
-///   all behind in bin n.
-/// - A depth inside is in the bin of its position `(t - d_min) / (d_max - d_min) n`, which rounding
-///   may move by 2^-5.
-/// - The Voronoi-enhanced depth lies from its bin to 255/256 above, never falls as the ratio grows,
-///   and no longer grows from 255/256 on.
+/// - A bin is an integer in \[0, n\]. The nearest depth and all depths before it are in bin 0. The
+///   farthest depth and all depths behind it are in bin n.
+/// - A depth inside the range is in the bin of its position `(t - d_min) / (d_max - d_min) n`,
+///   which rounding may move by 2^-5.
+/// - The Voronoi-enhanced depth lies between its bin and 255/256 above its bin. It never falls as
+///   the ratio grows, and it no longer grows from 255/256 on.
 ///
 /// # Errors
 /// The first counterexample.
@@ -89,11 +93,11 @@ pub fn one<R: Exact>(
     law("it no longer grows from 255/256 on", z[2] == z[3], &inputs, &z[2], &z[3])
 }
 
-/// Two depths >= 0 and a ratio of each.
+/// The laws of two depths >= 0, with a ratio each.
 ///
 /// - The bin never falls as depth grows.
 /// - Depths in the range that differ by at least `(1 + 2^-5) (d_max - d_min) / n` are in different
-///   bins, and then the Voronoi-enhanced depths are in the same order, whatever the ratios.
+///   bins. Their Voronoi-enhanced depths are then in the same order, whatever the ratios.
 ///
 /// # Errors
 /// The first counterexample.

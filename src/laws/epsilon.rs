@@ -1,5 +1,7 @@
-//! Laws of the epsilon-z test: `(t, nearest, epsilon)` to whether the fragment of depth `t` belongs
-//! to the surface whose nearest fragment lies at `nearest`.
+//! Laws of the epsilon-z test.
+//!
+//! The operator is `visible(t, nearest, epsilon)`: whether the fragment of depth `t` belongs to the
+//! surface whose nearest fragment lies at `nearest`.
 
 use super::inputs::{CASES, Inputs};
 use super::{Lawful, law, unit};
@@ -27,10 +29,10 @@ pub fn epsilon<R: Exact>(visible: &impl Fn(R, R, R) -> bool) -> Lawful {
 /// The laws at one place, for finite depths > 0 and bands >= 0, which may be +inf.
 ///
 /// - The nearest fragment passes, whatever epsilon.
-/// - epsilon = +inf keeps everything, epsilon = 0 the depth of the nearest alone.
-/// - A greater epsilon keeps what a smaller one keeps, and whatever is nearer than a fragment that
-///   passes does too.
-/// - The limit is `nearest + epsilon`, rounded once, and belongs to the surface.
+/// - epsilon = +inf keeps everything; epsilon = 0 keeps only the depth of the nearest.
+/// - A larger epsilon keeps every fragment that a smaller one keeps. A fragment nearer than one
+///   that passes, passes too.
+/// - The limit is `nearest + epsilon`, rounded once, and a fragment at the limit passes.
 ///
 /// # Errors
 /// The first counterexample.

@@ -1,13 +1,16 @@
-//! Laws of the operator over the depth-images of groups \[ZP06, section 3.2, Fig. 5\]: the samples of
-//! all images at a pixel and epsilon, to the sums and how many samples passed.
+//! Laws of the operator over the depth-images of groups \[ZP06, section 3.2, Fig. 5\].
+//!
+//! The operator is `compose(samples, epsilon)`: from the samples of all images at a pixel it
+//! computes the sums, and how many samples passed.
 
 use super::inputs::{CASES, Inputs};
 use super::{Lawful, law, same, unit};
 use crate::composite::groups::WeightedFragment;
 use crate::number::Exact;
 
-/// Tries the laws of [`definition`], [`empty`], [`order`] and [`apart`] at up to 24 images, among
-/// them empty ones and ties, and the three depths that tell an operator that folds over pairs.
+/// Tries the laws of [`definition`], [`empty`], [`order`] and [`apart`] at up to 24 images, some of
+/// them empty and some tied. It also tries three depths at which an operator that folds over pairs
+/// fails.
 ///
 /// # Errors
 /// The first counterexample.
@@ -33,7 +36,7 @@ pub fn groups<R: Exact>(
     Ok(())
 }
 
-/// A sample; of few depths, so that there are ties.
+/// A sample. Half of the depths are among three values, so that there are ties.
 fn sample<R: Exact>(inputs: &mut Inputs) -> WeightedFragment<R> {
     if inputs.below(6) == 0 {
         return WeightedFragment::EMPTY;
@@ -44,13 +47,13 @@ fn sample<R: Exact>(inputs: &mut Inputs) -> WeightedFragment<R> {
     WeightedFragment::new(depth, inputs.weight(), normal, inputs.color(), inputs.alpha())
 }
 
-/// What is summed: weight, normal, colour, opacity.
+/// The attributes that are summed: weight, normal, colour, opacity.
 fn attributes<R: Exact>(s: &WeightedFragment<R>) -> [R; 8] {
     let ([nx, ny, nz], [r, g, b]) = (s.normal, s.color);
     [s.weight, nx, ny, nz, r, g, b, s.opacity]
 }
 
-/// The samples that pass the epsilon-z test, by the definition in words.
+/// The samples that pass the epsilon-z test, straight from its definition.
 fn visible<R: Exact>(samples: &[WeightedFragment<R>], epsilon: R) -> Vec<WeightedFragment<R>> {
     let full = || samples.iter().filter(|s| s.depth < R::INFINITY);
     let nearest = full().fold(R::INFINITY, |a, s| if s.depth < a { s.depth } else { a });
@@ -61,8 +64,9 @@ fn equal<R: Exact>(a: &(WeightedFragment<R>, u32), b: &(WeightedFragment<R>, u32
     same(attributes(&a.0), attributes(&b.0)) && same([a.0.depth], [b.0.depth]) && a.1 == b.1
 }
 
-/// The sums over all samples within epsilon of the nearest, in ascending order from 0, to the bit;
-/// the nearest depth; and how many these samples are. An empty image adds nothing.
+/// The operator returns the sums over all samples within epsilon of the nearest, in ascending order
+/// from 0, to the bit. It also returns the nearest depth and how many samples passed. An empty
+/// image adds nothing.
 ///
 /// # Errors
 /// The first counterexample.
@@ -103,8 +107,8 @@ pub fn empty<R: Exact>(
     law("an empty image is neutral", equal(&found, &expected), &inputs, &expected, &found)
 }
 
-/// Images in another order, `order[i]` the one that comes i-th, give the same but for the order of
-/// the sums.
+/// Images in another order give the same result, except for the order of the sums. `order[i]` is
+/// the image that comes i-th.
 ///
 /// # Errors
 /// The first counterexample.
@@ -123,7 +127,7 @@ pub fn order<R: Exact>(
     )
 }
 
-/// A sample that moves to an image of its own changes nothing but the order of the sums.
+/// Moving a sample to an image of its own changes nothing but the order of the sums.
 ///
 /// # Errors
 /// The first counterexample.
@@ -140,8 +144,8 @@ pub fn apart<R: Exact>(
     same_but_order("a sample may have an image of its own", compose, [samples, &moved], epsilon)
 }
 
-/// The same terms in two orders: each sum of m terms is within (m - 1) half ulp of the sum of their
-/// magnitudes, so the two are within twice that.
+/// Compares the same terms in two orders. Each sum of m terms is within (m - 1) half ulp of the sum
+/// of their magnitudes, so the two sums are within twice that bound.
 fn same_but_order<R: Exact>(
     what: &'static str,
     compose: &impl Fn(&[WeightedFragment<R>], R) -> (WeightedFragment<R>, u32),

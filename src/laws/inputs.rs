@@ -1,29 +1,29 @@
-//! What the laws are tried at: random numbers of a fixed seed, and the edges between them.
+//! Inputs for the laws: random numbers from a fixed seed, and the edges between them.
 
 use crate::number::{Exact, random};
 
-/// How many random cases a law is tried at.
+/// Number of random cases for each law.
 pub(super) const CASES: u32 = 1024;
 
-/// A stream of inputs.
+/// A stream of test inputs.
 pub(super) struct Inputs {
     seed: u64,
     next: u64,
 }
 
 impl Inputs {
-    /// The stream of a law.
+    /// The stream for one law.
     pub(super) fn new(seed: u64) -> Self {
         Self { seed, next: 0 }
     }
 
-    /// In [0, 1).
+    /// A number in [0, 1).
     pub(super) fn unit(&mut self) -> f32 {
         self.next += 1;
         random::unit(self.seed, self.next)
     }
 
-    /// In [low, high), or so; a number that fills the digits of its type.
+    /// A number in [low, high), up to rounding, that fills the digits of its type.
     pub(super) fn between<R: Exact>(&mut self, low: f32, high: f32) -> R {
         let fine = R::from_f32(self.unit()) * R::from_f32(1.0 / 16_777_216.0);
         R::from_f32(low) + R::from_f32(high - low) * (R::from_f32(self.unit()) + fine)
@@ -31,7 +31,7 @@ impl Inputs {
 
     /// An integer in [0, `count`).
     pub(super) fn below(&mut self, count: usize) -> usize {
-        // A part of less than 1, so the product is less than the count.
+        // `unit` is less than 1, so the product is less than the count.
         (f64::from(self.unit()) * count as f64) as usize
     }
 
@@ -40,7 +40,7 @@ impl Inputs {
         all[self.below(all.len())]
     }
 
-    /// Whether, half of the time.
+    /// True half of the time.
     pub(super) fn flag(&mut self) -> bool {
         self.unit() < 0.5
     }
@@ -66,7 +66,7 @@ impl Inputs {
         }
     }
 
-    /// A weight that a pipeline can make: of the kernel, or as small as it becomes.
+    /// A weight that a pipeline can make: ordinary, or as small as the kernel's weights become.
     pub(super) fn weight<R: Exact>(&mut self) -> R {
         if self.below(5) == 0 { self.between(1e-30, 1e-20) } else { self.between(1e-4, 1.0) }
     }
@@ -84,7 +84,7 @@ impl Inputs {
         [(); 3].map(|()| if self.below(5) == 0 { R::ZERO } else { self.between(0.0, 4.0) })
     }
 
-    /// Layers: opacity and colour, fewer than `most`.
+    /// Fewer than `most` layers, each an opacity and a colour.
     pub(super) fn layers<R: Exact>(&mut self, most: usize) -> Vec<(R, [R; 3])> {
         (0..self.below(most)).map(|_| (self.alpha(), self.color())).collect()
     }

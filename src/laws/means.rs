@@ -1,5 +1,7 @@
-//! Laws of the average of up to four neighbours \[MKC08, sections 3.2 and 3.3\]: which take part,
-//! their weights > 0 and their values, to the average. At least one takes part.
+//! Laws of the average of up to four neighbours \[MKC08, sections 3.2 and 3.3\].
+//!
+//! The operator is `mean(takes, weights, values)`: which neighbours take part, their weights > 0
+//! and their values. At least one neighbour takes part.
 
 use super::inputs::{CASES, Inputs};
 use super::{Lawful, law, same, unit};
@@ -40,7 +42,7 @@ pub fn constant<R: Exact>(
     law("the average of a constant is the constant", found == value, &inputs, &value, &found)
 }
 
-/// An average lies between the least and the greatest of those that take part, and is the exact
+/// An average lies between the least and the greatest value that takes part, and is the exact
 /// quotient up to nine roundings.
 ///
 /// # Errors
@@ -60,7 +62,8 @@ pub fn hull<R: Exact>(
     let total: f64 = taken().map(|j| weights[j].to_f64()).sum();
     let sum: f64 = taken().map(|j| weights[j].to_f64() * a[j].to_f64()).sum();
     let largest = taken().map(|j| a[j].to_f64().abs()).fold(0.0, |m, v| if v > m { v } else { m });
-    // Products, sums, total, its inverse, the product; the quotient here has as many in f64.
+    // Products, sums, total, its inverse, the product; the quotient in this test has as many in
+    // f64.
     let bound = 9.0 * (unit::<R>() + f64::EPSILON / 2.0) * largest;
     let (exact, near) = (sum / total, (found.to_f64() - sum / total).abs() <= bound);
     law("an average is the quotient, up to rounding", near, &inputs, &exact, &found)

@@ -1,10 +1,10 @@
-//! The laws of compositing, over anybody's operator: what must hold whatever draws the picture.
+//! Test your compositing operators: laws that must hold, whatever draws the picture.
 //!
-//! Each function takes an operator, evaluates it at many inputs, and gives the first counterexample.
-//! The inputs are a function of nothing but this version of the crate ([`crate::number::random`] and
-//! the edge cases of each law), so a backend that fails, fails again. An operator is a closure in
-//! `f32` (or `f64`); a backend that runs on a GPU evaluates its shader in the closure, or writes its
-//! formula down a second time.
+//! Pass your operator to a function of this page. The function evaluates the operator at many
+//! inputs and returns the first counterexample. The inputs depend only on the version of this crate
+//! ([`crate::number::random`] and the edge cases of each law), so a backend that fails, fails
+//! again. An operator is a closure in `f32` (or `f64`). If your operator runs on a GPU, evaluate
+//! your shader in the closure, or write its formula a second time in Rust.
 //!
 //! ```
 //! use splatref::laws;
@@ -16,8 +16,8 @@
 //! # Ok::<(), laws::Counterexample>(())
 //! ```
 //!
-//! The module of each function has its laws one by one, as functions of the inputs too, for
-//! property tests with a generator that shrinks.
+//! The module of each function also has its laws one by one, as functions of the inputs. Use these
+//! for property tests with a generator that shrinks.
 //!
 //! - [`mod@epsilon`]: which fragments belong to the visible surface.
 //! - [`mod@sums`]: weighted accumulation and normalization.
@@ -70,10 +70,10 @@ impl fmt::Display for Counterexample {
 
 impl std::error::Error for Counterexample {}
 
-/// What a law says of an operator.
+/// The result of testing an operator: it keeps the law, or a counterexample.
 pub type Lawful = Result<(), Counterexample>;
 
-/// A counterexample unless the law holds.
+/// Returns a counterexample unless the law holds.
 fn law(
     law: &'static str,
     holds: bool,
@@ -90,6 +90,7 @@ fn law(
 
 /// Half the spacing of the numbers in [1, 2): the relative error of one rounding.
 fn unit<R: Exact>() -> f64 {
+    // An addend of 2^-30 is lost next to 1 in `f32`, but not in `f64`.
     let single = R::ONE + R::from_f32(1.0 / 1_073_741_824.0) == R::ONE;
     if single { f64::from(f32::EPSILON) / 2.0 } else { f64::EPSILON / 2.0 }
 }

@@ -1,5 +1,7 @@
-//! Laws of alpha-blending from back to front \[ZP06, section 3.3\]: what is there, the opacity and
-//! the colour of the next nearer layer, to what is there then.
+//! Laws of alpha-blending from back to front \[ZP06, section 3.3\].
+//!
+//! The operator is `over(below, opacity, colour)`: it blends the next nearer layer over the layers
+//! below, and returns the result.
 
 use super::inputs::{CASES, Inputs};
 use super::{Lawful, law, same, unit};
@@ -23,7 +25,7 @@ pub fn over<R: Exact>(over: &impl Fn(Blend<R>, R, [R; 3]) -> Blend<R>) -> Lawful
     Ok(())
 }
 
-/// Layers from back to front over nothing.
+/// Blends layers from back to front over nothing.
 fn blend<R: Exact>(
     over: &impl Fn(Blend<R>, R, [R; 3]) -> Blend<R>,
     layers: &[(R, [R; 3])],
@@ -35,10 +37,13 @@ fn equal<R: Exact>(a: &Blend<R>, b: &Blend<R>) -> bool {
     same(a.color, b.color) && same([a.alpha], [b.alpha])
 }
 
-/// Of layers from back to front, opacities in \[0, 1\] and finite colours >= 0: the opacity is 1 -
-/// the product of all 1 - alpha, and in \[0, 1\]; the colour is the sum of alpha c times the product
-/// of the 1 - alpha of the nearer ones; both up to 4 (m + 1) half ulp of the greatest colour, at
-/// least 1, for m layers.
+/// Blending m layers from back to front equals its closed form. The opacities are in \[0, 1\] and
+/// the colours finite and >= 0.
+///
+/// - The opacity is 1 - the product of all 1 - alpha, and in \[0, 1\].
+/// - The colour is the sum of alpha c times the product of the 1 - alpha of the nearer layers.
+///
+/// Both hold up to 4 (m + 1) half ulp of the greatest colour, at least 1.
 ///
 /// # Errors
 /// The first counterexample.
@@ -64,7 +69,7 @@ pub fn closed_form<R: Exact>(
     law("blending is its closed form, up to rounding", holds, &layers, &expected, &found)
 }
 
-/// An opaque layer leaves itself alone, and a clear layer leaves what was, to the bit.
+/// An opaque layer hides everything below, and a clear layer changes nothing, to the bit.
 ///
 /// # Errors
 /// The first counterexample.
@@ -81,7 +86,7 @@ pub fn ends<R: Exact>(
     law("a clear layer changes nothing", equal(&found, &below), &inputs, &below, &found)
 }
 
-/// What lies behind an opaque layer changes no bit, whatever is in front of that layer.
+/// Layers behind an opaque layer change no bit, whatever is in front of the opaque layer.
 ///
 /// # Errors
 /// The first counterexample.

@@ -1,5 +1,7 @@
-//! Laws of weighted accumulation and normalization \[ZP06, eq. 1\]: `add`, of a sum, a weight and a
-//! value, and `average`, of a sum and the sum of weights.
+//! Laws of weighted accumulation and normalization \[ZP06, eq. 1\].
+//!
+//! The operators are `add(sum, weight, value)` and `average(sum, total)`, where `total` is the sum
+//! of weights.
 
 use super::inputs::{CASES, Inputs};
 use super::{Lawful, law, same, unit};
@@ -24,13 +26,13 @@ pub fn sums<R: Exact>(
     nothing(average, [R::INFINITY, -R::INFINITY, R::ZERO])
 }
 
-/// Of a value that every fragment has, for weights > 0 and values > 0 whose products do not
-/// underflow.
+/// The laws of a value that every fragment has, for weights > 0 and values > 0 whose products do
+/// not underflow.
 ///
-/// - Its average is the value up to the rounding of the sums: (2 n + 2) half ulp for n fragments.
-/// - The average of 1 is 1 exactly, since its sum is that of the weights.
-/// - Weights that are all 1024 times as large give the same bits. (So nothing is added to the
-///   weight to keep a quotient finite.)
+/// - The average is the value up to the rounding of the sums: (2 n + 2) half ulp for n fragments.
+/// - The average of 1 is 1 exactly, because its sum is the sum of the weights.
+/// - Weights that are all 1024 times as large give the same bits. (So the operator must not add a
+///   small number to the weight to keep a quotient finite.)
 ///
 /// # Errors
 /// The first counterexample.
@@ -70,7 +72,7 @@ pub fn constant<R: Exact>(
     law(what, same(scaled, found), &inputs, &found, &scaled)
 }
 
-/// Where no weight has arrived the average is +0, whatever the sum holds; a sum of -0, of an
+/// Where no weight has arrived, the average is +0, whatever the sum holds. A sum of -0, after an
 /// underflow, averages to +0.
 ///
 /// # Errors

@@ -1,4 +1,4 @@
-//! The crate's operators keep every law, and every law catches an operator that breaks it.
+//! The crate's operators keep every law, and each law catches an operator that breaks it.
 
 use super::*;
 use crate::composite::bins::{DepthBins, Range};
@@ -9,7 +9,7 @@ use crate::composite::sum;
 use crate::composite::under::Under;
 use crate::number::Real;
 
-/// The operator broke this law, and the line has all that a person needs.
+/// Asserts that the operator broke this law, and that the line has all a person needs.
 fn breaks(found: Lawful, law: &str) {
     let counterexample = found.expect_err(law);
     assert!(counterexample.law.contains(law), "{counterexample}");
@@ -47,7 +47,7 @@ fn a_broken_epsilon_test_is_caught() {
     let of = |op: fn(f32, f32, f32) -> bool| epsilon(&op);
     breaks(of(|t, nearest, e| t < nearest + e), "the limit is nearest + epsilon");
     breaks(of(|t, nearest, e| t - nearest <= e), "the limit is nearest + epsilon");
-    // Each law by itself.
+    // Each law alone.
     type Test = fn(f32, f32, f32) -> bool;
     let at = |t, nearest, bands, op: Test| epsilon::case(&op, t, nearest, bands);
     let found = at(1.0, 1.0, [0.0; 2], |t, nearest, e| t < nearest + e);
@@ -101,7 +101,7 @@ fn broken_blending_is_caught() {
         }),
         "blending is its closed form",
     );
-    // A sum that is right but for its last digits.
+    // A sum that is right except for its last digits.
     breaks(
         of(|below, a, color| {
             let plus = |c: f32, below: f32| below + a * (c - below);
@@ -182,14 +182,14 @@ fn broken_bins_are_caught() {
     );
 }
 
-/// An operator over the depth-images of groups: samples and epsilon to sums and count.
+/// An operator over the depth-images of groups, from samples and epsilon to sums and count.
 type Compose = fn(&[WeightedFragment<f32>], f32) -> (WeightedFragment<f32>, u32);
 
 #[test]
 fn a_broken_operator_over_groups_is_caught() {
     let of = |op: Compose| groups(&op);
     let in_order = "in order";
-    // Folding over pairs, as images come.
+    // Folds over pairs, in the order of the images.
     breaks(
         of(|samples, epsilon| {
             samples.iter().fold((WeightedFragment::EMPTY, 0), |(sums, count), s| {
@@ -208,7 +208,7 @@ fn a_broken_operator_over_groups_is_caught() {
     );
     breaks(of(|samples, epsilon| compose(samples, epsilon / 2.0)), in_order);
     breaks(of(|samples, epsilon| (compose(samples, epsilon).0, samples.len() as u32)), in_order);
-    // Each of the other laws by itself.
+    // Each of the other laws alone.
     let two = [1.0, 2.0].map(|t| WeightedFragment::new(t, t, [0.0; 3], [0.5; 3], 1.0));
     let counts =
         |samples: &[WeightedFragment<f32>], e: f32| (compose(samples, e).0, samples.len() as u32);

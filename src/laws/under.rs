@@ -1,5 +1,7 @@
-//! Laws of alpha-blending from front to back: what is there, the opacity and the colour of the next
-//! farther layer, to what is there then.
+//! Laws of alpha-blending from front to back.
+//!
+//! The operator is `under(above, opacity, colour)`: it blends the next farther layer under the
+//! layers above, and returns the result.
 
 use super::inputs::{CASES, Inputs};
 use super::{Lawful, law, same, unit};
@@ -21,7 +23,7 @@ pub fn under<R: Exact>(under: &impl Fn(Under<R>, R, [R; 3]) -> Under<R>) -> Lawf
     Ok(())
 }
 
-/// Layers from front to back under nothing.
+/// Blends layers from front to back under nothing.
 fn blend<R: Exact>(
     under: &impl Fn(Under<R>, R, [R; 3]) -> Under<R>,
     layers: &[(R, [R; 3])],
@@ -33,12 +35,13 @@ fn equal<R: Exact>(a: &Under<R>, b: &Under<R>) -> bool {
     same(a.color, b.color) && same([a.alpha, a.through], [b.alpha, b.through])
 }
 
-/// Of layers from front to back, opacities in \[0, 1\] and finite colours >= 0, up to 6 (m + 1) half
-/// ulp for m layers, and of the greatest colour, at least 1:
+/// Blending m layers from front to back equals its closed form, up to 6 (m + 1) half ulp, for the
+/// colour times the greatest colour, at least 1. The opacities are in \[0, 1\] and the colours
+/// finite and >= 0.
 ///
-/// - What is let through is the product of all 1 - alpha, the opacity is the rest to 1.
-/// - The colour is the sum of alpha c times the product of the 1 - alpha of the nearer ones: what
-///   blending from back to front gives.
+/// - The light let through is the product of all 1 - alpha. The opacity is the rest to 1.
+/// - The colour is the sum of alpha c times the product of the 1 - alpha of the nearer layers.
+///   Blending from back to front gives the same.
 ///
 /// # Errors
 /// The first counterexample.
@@ -73,8 +76,8 @@ pub fn closed_form<R: Exact>(
     law("the colour is its closed form, up to rounding", holds, &layers, &expected, &found)
 }
 
-/// An opaque layer on a clear pixel leaves its colour, and hides the layers that come under it; a
-/// clear layer changes nothing, even one of an infinite colour. To the bit.
+/// An opaque layer on a clear pixel leaves its colour, and hides the layers that come under it. A
+/// clear layer changes nothing, even with an infinite colour. Both hold to the bit.
 ///
 /// # Errors
 /// The first counterexample.

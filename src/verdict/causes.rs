@@ -1,10 +1,11 @@
-//! Known mistakes, by what is wrong of a picture: what a client most probably does.
+//! Name the mistake that a client most probably makes, from its wrong pixels.
 //!
-//! Some mistakes show in what the wrong pixels have in common. For the others the client is judged
-//! again, as if a mistake were the rule: with another setting, another camera, or with its planes
-//! turned back. A mistake is named if of the wrong pixels of the first wrong stage and the next at
-//! most one in five stays wrong; of several the one that leaves the fewest in all stages. The rarer
-//! mistakes are supposed where a common one does not explain everything.
+//! Some mistakes show directly, because the wrong pixels have something in common. For the others
+//! the client is judged again, as if the mistake were the rule: with another setting, with another
+//! camera, or with the mistake undone in its planes. Count the wrong pixels in the first wrong
+//! stage and the next one. A mistake is named if at most one in five of these stays wrong. If
+//! several mistakes qualify, the one that leaves the fewest wrong pixels in all stages is named.
+//! The rarer mistakes are tried only where no common one explains everything.
 
 mod epsilon;
 
@@ -17,7 +18,7 @@ use crate::number::srgb;
 use crate::scene::Camera;
 use crate::setting::{Fields, Value};
 
-/// What would be otherwise if a mistake were the rule.
+/// What to change so that a mistake becomes the rule.
 enum Change {
     Method(Method),
     Camera(Camera),
@@ -25,19 +26,20 @@ enum Change {
     Stored(&'static str, Storage),
     Accumulator(Storage),
     Flipped,
-    /// The picture is encoded.
+    /// Decode the picture as sRGB.
     Decoded,
-    /// Colours are not divided by the weight.
+    /// Divide colours by the weight, because the client did not.
     Divided,
     Band(Band),
-    /// The depths are moved by this.
+    /// Move the depths back by this much.
     Moved(f64),
-    /// What is added up lies behind the band.
+    /// Judge sums of fragments that lie behind the band.
     Behind,
 }
 
 impl Change {
-    /// The wrong pixels if this were the rule. The planes of one changed client are there at a time.
+    /// Judges the client as if this were the rule. Only one changed copy of the client is in memory
+    /// at a time.
     fn judge(
         &self,
         session: &Session<'_>,
@@ -63,7 +65,7 @@ impl Change {
                 None => as_if(client.clone()),
             },
             Self::Decoded => {
-                // An encoding in f32 is no better, for the power of a shading language.
+                // Even an encoding in f32 loses this much, because a shading language's power does.
                 let lost = 1.0 / 262_144.0;
                 let storage = Storage::Srgb { relative: lost, least: lost };
                 let decoded = client.colors(&[""], |color, _| color.map(srgb::to_linear));
@@ -76,7 +78,7 @@ impl Change {
     }
 }
 
-/// The mistake that a client most probably makes, in words; none that is known.
+/// The mistake that a client most probably makes, in words; none if no known mistake fits.
 ///
 /// # Errors
 /// As [`Session::verify`].
@@ -92,10 +94,11 @@ pub fn likely_cause(
     }
     let all = wrong_of(verdict, wrong.stage);
     let mut best: Option<(u64, String)> = None;
-    // A stage that is not judged shows its mistakes in the first that is.
+    // A stage without planes is not judged, so its mistakes show in the first stage that is.
     let before = verdict.stages.iter().take_while(|stage| stage.stage != wrong.stage);
     let unseen = before.filter(|stage| stage.planes.is_empty()).chain([wrong]);
     let stages: Vec<_> = unseen.map(|stage| stage.stage).collect();
+    // Common mistakes come first; the rare ones are tried only if some pixels stay wrong.
     for supposed in [common_mistakes, rare_mistakes] {
         for (what, change) in stages.iter().flat_map(|of| supposed(session, camera, client, of)) {
             let verdict = change.judge(session, camera, client, verdict.budget)?;
@@ -111,14 +114,14 @@ pub fn likely_cause(
     Ok(best.map(|(_, what)| what).or_else(|| common(session.method(), verdict, wrong)))
 }
 
-/// How many pixels are wrong in a stage and the one after it, and in all stages.
+/// The number of wrong pixels in a stage and the next one, and in all stages.
 fn wrong_of(verdict: &Verdict, stage: &str) -> [u64; 2] {
     let from = verdict.stages.iter().skip_while(|own| own.stage != stage);
     let all = verdict.stages.iter().map(|stage| stage.wrong).sum();
     [from.take(2).map(|stage| stage.wrong).sum(), all]
 }
 
-/// What the wrong pixels of a stage plainly say.
+/// The mistake that all wrong pixels of a stage show directly.
 fn plain(wrong: &StageVerdict) -> Option<String> {
     let causes = &wrong.causes;
     let all = |count: u64| count == wrong.wrong;
@@ -135,17 +138,18 @@ fn plain(wrong: &StageVerdict) -> Option<String> {
     one.then(|| format!("surfel {surfel} is missing"))
 }
 
-/// What the wrong pixels of a stage have in common, if no rule explains them.
+/// What the wrong pixels of a stage have in common, if no changed rule explains them.
 fn common(method: &Method, verdict: &Verdict, wrong: &StageVerdict) -> Option<String> {
     let causes = &wrong.causes;
     let most = |count: u64| 20 * count >= 19 * wrong.wrong;
     let discarded = most(causes.outside + causes.absent) && 2 * causes.outside > wrong.wrong;
-    // Depths that are too near, also where there is no surfel.
+    // Some depths are too near, and some lie where there is no surfel.
     if discarded || (most(causes.below) && causes.strays > 0) {
         return Some("depth and id come from fragments that should be discarded".into());
     }
     let cutoff = method.splats().map(|splats| f64::from(splats.kernel.cutoff));
-    // Where a surfel is left out its weight is missing too; more is wrong where shapes are.
+    // Where a surfel is left out, only its weight is missing later. If later stages have many more
+    // wrong pixels, the shapes are wrong instead.
     let others = verdict.stages.iter().any(|stage| stage.wrong > 3 * wrong.wrong);
     if !most(causes.lacking()) || others {
         None
@@ -160,7 +164,7 @@ fn common(method: &Method, verdict: &Verdict, wrong: &StageVerdict) -> Option<St
     }
 }
 
-/// The mistakes that show in a stage first, in words and as changes.
+/// The mistakes that show first in this stage, in words and as changes.
 fn common_mistakes(
     session: &Session<'_>,
     camera: &Camera,
@@ -204,7 +208,7 @@ fn common_mistakes(
     all
 }
 
-/// Those that are made less often.
+/// The mistakes that are made less often.
 fn rare_mistakes(
     session: &Session<'_>,
     camera: &Camera,
@@ -218,7 +222,8 @@ fn rare_mistakes(
     }
 }
 
-/// A setting that is wrong: its name, what follows from its value, and in words.
+/// A wrong setting: its name, the wrong value computed from the right one, and the mistake in
+/// words.
 type WrongSetting = (&'static str, fn(&Method, f32) -> Option<Value>, &'static str);
 
 const VISIBILITY: [WrongSetting; 4] = [
@@ -244,7 +249,8 @@ fn switched(method: &Method, _: f32) -> Option<Value> {
     method.splats().map(|splats| Value::Switch(!splats.cull))
 }
 
-/// The method with each of some wrong settings, as far as the method has them.
+/// The method with each of some wrong settings. Settings that the method does not have are left
+/// out.
 fn settings(session: &Session<'_>, wrong: &[WrongSetting]) -> Vec<(String, Change)> {
     let method = session.method();
     let with = |(name, value, what): &WrongSetting| {
@@ -262,15 +268,15 @@ fn settings(session: &Session<'_>, wrong: &[WrongSetting]) -> Vec<(String, Chang
 }
 
 impl Client {
-    /// The planes with their rows in the other order.
+    /// The planes with their rows in reverse order.
     fn flipped(&self) -> Self {
         let radii = self.radii.iter().map(|(name, radii)| (name.clone(), radii.flipped()));
         let radii = radii.collect();
         Self { radii, ..self.mapped(|_, samples| samples.flipped()) }
     }
 
-    /// The planes with other colours in those of these names; each is told the weight at its pixel, 1 if
-    /// there is none.
+    /// The planes with changed colours in the planes of these names. `of` gets each colour and the
+    /// weight at its pixel, or 1 if there is no weight.
     fn colors(&self, names: &[&str], of: impl Fn([f64; 3], f64) -> [f64; 3]) -> Self {
         let weight = ["weight", "attributes.weight"];
         let weight = weight.iter().find_map(|name| self.frame().scalar(name).ok());

@@ -1,4 +1,4 @@
-//! What is asked of every client, whatever its method: numbers against balls, copies, and shading.
+//! Checks for the clients of every method: numbers against balls, copies, and shading.
 
 use crate::composite::over::Blend;
 use crate::frame::named::{COLOR, VECTOR, component};
@@ -14,12 +14,12 @@ use crate::verdict::Fault;
 use crate::verdict::client::{Client, Storage, StoredPlane};
 use std::ops::Range;
 
-/// Told of a check: the place of its stage among those that are judged together, by how many bounds
-/// the client errs, NaN if there are none, and what is wrong if that is above 1.
+/// Receives a check: the index of its stage among the stages that are judged together, the error in
+/// bounds (NaN if there are none), and the fault if the error is above 1.
 pub(crate) type Report<'a> = dyn FnMut(usize, f64, &dyn Fn() -> Fault) + 'a;
 
-/// What a client has not of these levels of a stage, if it has any of them: a level of which it has
-/// nothing, else each plane by its name.
+/// Lists the planes that a client lacks in these levels of a stage, if it has any plane of them. A
+/// level without any plane is listed as a whole, else each missing plane by its name.
 pub(crate) fn missing(
     client: &Client,
     rows: &[PlaneRow],
@@ -38,18 +38,18 @@ pub(crate) fn missing(
     if any { missing } else { Vec::new() }
 }
 
-/// Any number, or none.
+/// A ball of any number, NaN included.
 pub(crate) fn anything<P: Profile>() -> Ball<P> {
     Ball::new(0.0, f64::NAN)
 }
 
-/// A ball that is larger by this much.
+/// A ball with a radius that is larger by this much.
 pub(crate) fn widened<P: Profile>(ball: Ball<P>, by: f64) -> Ball<P> {
     if by > 0.0 { Ball::new(ball.middle, ball.radius + by) } else { ball }
 }
 
-/// What the next stage reads of a stored value of this format: floats as they are; none of anything
-/// that each reader turns into a number.
+/// The value that the next stage reads from a stored value of this format. Floats are read as they
+/// are. None for formats that each reader converts to a number.
 fn read<P: Profile>(value: f64, storage: Storage) -> Option<Ball<P>> {
     let flushed = P::FLUSHES && value.abs() < f64::from(f32::MIN_POSITIVE);
     let radius = if value.is_nan() {
@@ -79,7 +79,7 @@ pub(crate) fn inputs<P: Profile>(
     if plane.radii.is_some() { balls } else { balls.map(exact) }
 }
 
-/// One number against what it may be.
+/// Compares one number with the numbers that are allowed.
 pub(crate) fn number<P: Profile>(
     part: usize,
     plane: &StoredPlane<'_, f64>,
@@ -90,7 +90,8 @@ pub(crate) fn number<P: Profile>(
     component_of(part, || plane.channel(), plane.ball(at), truth, report);
 }
 
-/// Three numbers against what they may be; their letters are those of what the plane holds.
+/// Compares three numbers with the numbers that are allowed. Their letters follow from the kind of
+/// the plane.
 pub(crate) fn triple<P: Profile>(
     part: usize,
     plane: &StoredPlane<'_, [f64; 3]>,
@@ -112,18 +113,19 @@ fn component_of<P: Profile>(
     truth: Ball<P>,
     report: &mut Report<'_>,
 ) {
+    // Without a bound nothing is proved, unless the value is the midpoint itself.
     let judged = truth.radius.is_finite() || truth.middle == found.middle;
     let error = if judged { truth.misfit(found) } else { f64::NAN };
     report(part, error, &|| Fault::Value {
         channel: channel(),
         found: found.middle,
         truth: truth.middle,
-        // Of what is not a number nothing is known.
+        // A NaN has no meaningful radius of its own.
         radius: if found.middle.is_nan() { truth.radius } else { truth.radius + found.radius },
     });
 }
 
-/// An index or a count against what it must be.
+/// Compares an index or a count with the required value.
 pub(crate) fn whole<T: Copy + Into<u32>>(
     part: usize,
     plane: &StoredPlane<'_, T>,
@@ -136,8 +138,8 @@ pub(crate) fn whole<T: Copy + Into<u32>>(
     report(part, error, &|| Fault::Whole { channel: plane.channel(), found, truth });
 }
 
-/// Of several truths the one that the client errs least against, by the worst of each of N stages: a
-/// stage counts before those that follow it, and what is right is equally right.
+/// Among several truths, the one against which the client errs least, by the worst error in each of
+/// N stages. An earlier stage counts before later ones. Errors up to 1 count as equal.
 pub(crate) fn least_wrong<T, const N: usize>(
     all: &[T],
     check: impl Fn(&T, &mut Report<'_>),
@@ -156,7 +158,7 @@ pub(crate) fn least_wrong<T, const N: usize>(
     best.map(|(_, truth)| truth)
 }
 
-/// The number of the only truth of several against which nothing is wrong.
+/// The index of the only truth among several against which nothing is wrong.
 pub(crate) fn only_fitting<T>(all: &[T], check: impl Fn(&T, &mut Report<'_>)) -> Option<usize> {
     let fits = |truth: &T| {
         let mut fits = true;
@@ -168,7 +170,7 @@ pub(crate) fn only_fitting<T>(all: &[T], check: impl Fn(&T, &mut Report<'_>)) ->
     fitting.next().filter(|_| fitting.next().is_none())
 }
 
-/// What is seen behind all layers of a client.
+/// The environment behind all layers of a client.
 pub(crate) struct Backdrop<'a, P: Profile> {
     environment: Option<&'a Environment>,
     view: View<Ball<P>>,
@@ -179,36 +181,36 @@ impl<'a, P: Profile> Backdrop<'a, P> {
         Self { environment: job.scene.environment.as_ref(), view: View::new(job.camera) }
     }
 
-    /// Layers before the environment, if there is one.
+    /// Puts layers before the environment, if there is one.
     pub(crate) fn behind(&self, layers: Blend<Ball<P>>, (x, y): (u32, u32)) -> Blend<Ball<P>> {
         let Some(environment) = self.environment else { return layers };
         before_light(layers, || environment.enclosure(self.view.ray(x, y)))
     }
 }
 
-/// Whether a colour is bounded, so that it is judged.
+/// Whether a colour is bounded, so that it can be judged.
 pub(crate) fn is_bounded<P: Profile>(color: &[Ball<P>; 3]) -> bool {
     color.iter().all(|part| part.radius.is_finite())
 }
 
-/// Deferred shading of a client's surfaces.
+/// Deferred shading for a client's surfaces.
 pub(crate) struct Shading<'a, P: Profile> {
     shader: Shader<Ball<P>>,
-    /// Whether surfaces have colours; else the material has one.
+    /// Whether surfels have colours; if not, the material has one.
     colored: bool,
-    /// What is seen where nothing else is; none if that is black.
+    /// The environment where nothing else is seen; none if that is black.
     backdrop: Option<Backdrop<'a, P>>,
 }
 
-/// What lies at a pixel.
+/// The surface at a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Surface<P: Profile> {
-    /// Depth; exactly +inf where nothing is.
+    /// The depth; exactly +inf in an empty pixel.
     pub(crate) depth: Ball<P>,
-    /// Normal and tangent in world space; without a tangent a surface, else a tube.
+    /// Normal and tangent in world space. A surface has no tangent; a tube has one.
     pub(crate) normal: [Ball<P>; 3],
     pub(crate) tangent: Option<[Ball<P>; 3]>,
-    /// Its colour, if surfaces have colours.
+    /// The colour, if surfels have colours.
     pub(crate) color: [Ball<P>; 3],
 }
 
@@ -222,20 +224,20 @@ impl<'a, P: Profile> Shading<'a, P> {
         }
     }
 
-    /// The same of a layer: where there is nothing, it is black.
+    /// Shading for a layer: an empty pixel is black.
     pub(crate) fn of_layer(job: &Job<'a>, colored: bool) -> Self {
         Self { backdrop: None, ..Self::new(job, colored) }
     }
 
-    /// Whether a pixel is black where nothing is.
+    /// Whether an empty pixel is black.
     pub(crate) fn is_black(&self) -> bool {
         self.backdrop.is_none()
     }
 
-    /// The colour of a pixel; any where the depth is not known.
+    /// The colour of a pixel; any colour where the depth is unknown.
     pub(crate) fn color(&self, (x, y): (u32, u32), surface: &Surface<P>) -> [Ball<P>; 3] {
         let Surface { depth, normal, tangent, color } = *surface;
-        // What is not known may have any midpoint.
+        // An unknown depth may have any midpoint, so the radius is tested too.
         let empty = depth.middle == f64::INFINITY && depth.radius == 0.0;
         if empty {
             let shown = self.backdrop.as_ref().map(|all| all.behind(Blend::CLEAR, (x, y)));
@@ -253,7 +255,7 @@ impl<'a, P: Profile> Shading<'a, P> {
         }
     }
 
-    /// The opacity of a pixel in which something is seen if `seen` is greater than 0.
+    /// The opacity of a pixel, where something is seen if `seen` is greater than 0.
     pub(crate) fn alpha(&self, seen: Ball<P>) -> Ball<P> {
         if self.backdrop.is_some() {
             Ball::ONE

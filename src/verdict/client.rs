@@ -1,4 +1,5 @@
-//! What somebody hands in: planes by the names of a method's rows, and how exactly each is stored.
+//! Hand in the planes of your renderer: planes by the names of a method's rows, and how exactly
+//! each is stored.
 
 mod storage;
 
@@ -13,14 +14,14 @@ use crate::setting::Words;
 use crate::splat::record::SplatRecord;
 use std::collections::BTreeMap;
 
-/// What a client promises of its operations.
+/// The rounding that a client promises for its operations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Rounding {
-    /// What shading languages publish, see [`Gpu`](crate::number::ball::Gpu).
+    /// The rounding that shading languages publish, see [`Gpu`](crate::number::ball::Gpu).
     #[default]
     Gpu,
-    /// One rounding an operation, to nearest, see [`Ieee`](crate::number::ball::Ieee); sums in
-    /// ascending surfel index.
+    /// One rounding to nearest for each operation, see [`Ieee`](crate::number::ball::Ieee). Sums
+    /// run in ascending surfel index.
     Ieee,
 }
 
@@ -28,13 +29,13 @@ impl Words for Rounding {
     const WORDS: &'static [(&'static str, Self)] = &[("gpu", Self::Gpu), ("ieee", Self::Ieee)];
 }
 
-/// Which of equally near fragments a client says that it keeps.
+/// The fragment that a client keeps, by its own word, among equally near fragments.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Ties {
-    /// That of the lowest surfel index: the rule of this crate.
+    /// The fragment with the lowest surfel index: the rule of this crate.
     #[default]
     Lowest,
-    /// That of the highest.
+    /// The fragment with the highest surfel index.
     Last,
     /// Any of them.
     Any,
@@ -56,8 +57,8 @@ impl Words for Ties {
         &[("lowest", Self::Lowest), ("last", Self::Last), ("any", Self::Any)];
 }
 
-/// Where the band of visible fragments behind a nearest one at depth t ends, as a client is supposed to
-/// have it. Of the method `ewa`; every other client has [`Band::Depth`].
+/// The end of the band of visible fragments behind a nearest fragment at depth t, as assumed for a
+/// client. It is used for the method `ewa`; every other client has [`Band::Depth`].
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) enum Band {
     /// The rule: t + epsilon.
@@ -65,33 +66,33 @@ pub(crate) enum Band {
     Depth,
     /// t - epsilon, so that no fragment is in it, not even the nearest.
     Before,
-    /// Where nearness is less than 1/t - u epsilon, of this u.
+    /// The depth where nearness is 1/t - u epsilon, for this u.
     OfNearness(f64),
-    /// Where the ray of the pixel is epsilon longer.
+    /// The depth where the ray of the pixel is epsilon longer.
     AlongRay,
-    /// t and so many radii of the surfel of the nearest fragment.
+    /// t plus this many radii of the nearest fragment's surfel.
     RadiiOfNearest(f32),
 }
 
 /// The planes of a client.
 ///
-/// Depth is t in world units, +inf where a pixel is empty, whatever the client stores; ids are
-/// [`NO_ID`](crate::frame::NO_ID) there; rows run from the top.
+/// Depth is t in world units, and +inf where a pixel is empty, whatever the client stores. In an
+/// empty pixel the id is [`NO_ID`](crate::frame::NO_ID). Rows run from the top.
 #[derive(Clone, Debug)]
 pub struct Client {
     pub(super) frame: Frame<f64>,
     pub(super) storage: BTreeMap<String, Storage>,
     pub(super) radii: BTreeMap<String, Plane<[f64; 3]>>,
-    /// What the client promises of its operations.
+    /// The rounding that the client promises for its operations.
     pub rounding: Rounding,
-    /// Which of equally near fragments it says that it keeps.
+    /// The fragment that the client keeps among equally near ones.
     pub ties: Ties,
-    /// What is supposed of its epsilon.
+    /// The end of the visible band that is assumed for the client.
     pub(crate) band: Band,
-    /// How the sums of the attribute pass are stored between two additions.
+    /// The format of the attribute pass's sums between two additions.
     pub accumulator: Storage,
-    /// The splats that the client has projected, in ascending surfel index: the stages that follow are
-    /// judged from these. Of the method `ewa`.
+    /// The splats that the client has projected, in ascending surfel index. The later stages are
+    /// judged from these records. Only for the method `ewa`.
     pub records: Option<Vec<SplatRecord>>,
     /// The channels of the file that are no planes of the method.
     pub unknown: Vec<String>,
@@ -102,13 +103,13 @@ pub struct Client {
 pub(crate) struct StoredPlane<'a, T> {
     /// The name of the row.
     pub(crate) name: &'static str,
-    /// What it holds.
+    /// The kind of values in the plane.
     pub(crate) holds: Holds,
-    /// What stands for `#` in it.
+    /// The number in place of `#` in the name.
     pub(crate) number: usize,
     pub(crate) plane: &'a Plane<T>,
     pub(crate) storage: Storage,
-    /// How far each number may be off, in place of what the storage says.
+    /// How far each number may be off; replaces the radius that the storage gives.
     pub(crate) radii: Option<&'a Plane<[f64; 3]>>,
 }
 
@@ -120,7 +121,7 @@ impl<T> StoredPlane<'_, T> {
 }
 
 impl StoredPlane<'_, f64> {
-    /// The number at a pixel, as far as it is known.
+    /// The number at a pixel, with its radius.
     #[inline(always)]
     pub(crate) fn ball<P: Profile>(&self, (x, y): (u32, u32)) -> Ball<P> {
         let value = *self.plane.at(x, y);
@@ -129,11 +130,11 @@ impl StoredPlane<'_, f64> {
 }
 
 impl StoredPlane<'_, [f64; 3]> {
-    /// The numbers at a pixel, as far as they are known.
+    /// The numbers at a pixel, with their radii.
     #[inline(always)]
     pub(crate) fn balls<P: Profile>(&self, (x, y): (u32, u32)) -> [Ball<P>; 3] {
         let [a, b, c] = *self.plane.at(x, y);
-        // Written out, as the map of an array goes through memory.
+        // Written out because the map of an array goes through memory.
         let [r, s, t] = match self.radii {
             Some(radii) => *radii.at(x, y),
             None => [self.storage.radius(a), self.storage.radius(b), self.storage.radius(c)],
@@ -142,7 +143,7 @@ impl StoredPlane<'_, [f64; 3]> {
     }
 }
 
-/// A stored number with the radius that its storage gives; of NaN nothing is known, and what is below the
+/// A stored number with the radius of its storage. A NaN gives an unknown ball. A number below the
 /// normal numbers may be read as 0.
 #[inline(always)]
 pub(crate) fn known<P: Profile>(value: f64, radius: f64) -> Ball<P> {
@@ -153,7 +154,7 @@ pub(crate) fn known<P: Profile>(value: f64, radius: f64) -> Ball<P> {
 }
 
 impl From<&Frame<f32>> for Client {
-    /// The planes of a frame that a client has computed.
+    /// Takes the planes of a frame that a client has computed.
     fn from(frame: &Frame<f32>) -> Self {
         let Frame { width, height, ref planes } = *frame;
         let planes = planes.iter().map(|NamedPlane { name, samples }| NamedPlane {
@@ -171,7 +172,7 @@ impl From<&Frame<f32>> for Client {
 }
 
 impl Client {
-    /// The planes of a frame, all stored as `f32`.
+    /// Takes the planes of a frame, all stored as `f32`.
     #[must_use]
     pub fn new(frame: Frame<f64>) -> Self {
         Self {
@@ -187,15 +188,15 @@ impl Client {
         }
     }
 
-    /// Says how a plane is stored; of planes that are numbered the name of their row says it of all.
+    /// Sets the storage of a plane. For numbered planes, the name of their row sets it for all.
     #[must_use]
     pub fn stored(mut self, plane: &str, storage: Storage) -> Self {
         self.storage.insert(plane.to_owned(), storage);
         self
     }
 
-    /// Says how far each number of a plane of colours or vectors may be off, where the value alone
-    /// does not tell; in place of its [`Storage`].
+    /// Sets how far each number of a plane of colours or vectors may be off, where the value alone
+    /// does not tell. The radii replace the plane's [`Storage`].
     ///
     /// # Errors
     /// [`Error::Invalid`] if there is no such plane of this size.
@@ -212,13 +213,13 @@ impl Client {
         Ok(self)
     }
 
-    /// How far each number of a plane may be off, where [`Client::within`] said so.
+    /// How far each number of a plane may be off, if [`Client::within`] has set it.
     #[must_use]
     pub fn radii(&self, plane: &str) -> Option<&Plane<[f64; 3]>> {
         self.radii.get(plane)
     }
 
-    /// How a plane is stored.
+    /// The storage of a plane.
     #[must_use]
     pub fn storage(&self, plane: &str) -> Storage {
         self.storage.get(plane).copied().unwrap_or_default()
@@ -230,12 +231,12 @@ impl Client {
         &self.frame
     }
 
-    /// The planes, to be changed.
+    /// The planes, for changing them.
     pub(crate) fn frame_mut(&mut self) -> &mut Frame<f64> {
         &mut self.frame
     }
 
-    /// The same client with other planes, each made of one by its name.
+    /// The same client with other planes. `of` makes each plane from the one with its name.
     pub(crate) fn mapped(&self, of: impl Fn(&str, &Samples<f64>) -> Samples<f64>) -> Self {
         let Frame { width, height, ref planes } = self.frame;
         let planes = planes.iter().map(|NamedPlane { name, samples }| NamedPlane {
@@ -246,12 +247,12 @@ impl Client {
         Self { frame, ..self.clone() }
     }
 
-    /// One number a pixel, if the plane was handed in.
+    /// A plane of one number a pixel, if the client hands it in.
     pub(crate) fn scalar(&self, row: &PlaneRow) -> Option<StoredPlane<'_, f64>> {
         self.scalar_of(row, 0)
     }
 
-    /// The same of a row that has numbers.
+    /// The same for a numbered row.
     pub(crate) fn scalar_of(&self, row: &PlaneRow, number: usize) -> Option<StoredPlane<'_, f64>> {
         match self.samples(row, number)? {
             Samples::Scalar(plane) => Some(self.of(row, number, plane)),
@@ -259,12 +260,12 @@ impl Client {
         }
     }
 
-    /// Colours or vectors, if the plane was handed in.
+    /// A plane of colours or vectors, if the client hands it in.
     pub(crate) fn triple(&self, row: &PlaneRow) -> Option<StoredPlane<'_, [f64; 3]>> {
         self.triple_of(row, 0)
     }
 
-    /// The same of a row that has numbers.
+    /// The same for a numbered row.
     pub(crate) fn triple_of(
         &self,
         row: &PlaneRow,
@@ -276,12 +277,12 @@ impl Client {
         }
     }
 
-    /// Indices, if the plane was handed in.
+    /// A plane of indices, if the client hands it in.
     pub(crate) fn index(&self, row: &PlaneRow) -> Option<StoredPlane<'_, u32>> {
         self.index_of(row, 0)
     }
 
-    /// The same of a row that has numbers.
+    /// The same for a numbered row.
     pub(crate) fn index_of(&self, row: &PlaneRow, number: usize) -> Option<StoredPlane<'_, u32>> {
         match self.samples(row, number)? {
             Samples::Index(plane) => Some(self.of(row, number, plane)),
@@ -289,12 +290,12 @@ impl Client {
         }
     }
 
-    /// Small counts, if the plane was handed in.
+    /// A plane of small counts, if the client hands it in.
     pub(crate) fn count(&self, row: &PlaneRow) -> Option<StoredPlane<'_, u8>> {
         self.count_of(row, 0)
     }
 
-    /// The same of a row that has numbers.
+    /// The same for a numbered row.
     pub(crate) fn count_of(&self, row: &PlaneRow, number: usize) -> Option<StoredPlane<'_, u8>> {
         match self.samples(row, number)? {
             Samples::Count(plane) => Some(self.of(row, number, plane)),
@@ -331,7 +332,7 @@ mod tests {
         let quotient = |divisor| Ball::<Gpu>::exact(1e-30) / known(divisor, 0.0);
         assert!(!quotient(tiny).radius.is_finite());
         assert!(quotient(f64::from(f32::MIN_POSITIVE)).radius.is_finite());
-        // An implementation that flushes nothing divides.
+        // An implementation that flushes nothing divides by the tiny number.
         let quotient = Ball::<Ieee>::exact(tiny) / known(tiny, 0.0);
         assert_eq!((quotient.middle, quotient.radius), (1.0, 0.0));
     }

@@ -1,94 +1,95 @@
-//! One value of a client against what it may be, in words.
+//! Compare one value of a client with the values that are allowed, in words.
 
 use crate::frame::NO_ID;
 use std::fmt;
 
-/// What is wrong at a pixel.
+/// The fault at a pixel.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Fault {
-    /// A number that no right implementation leaves.
+    /// A number that no correct implementation leaves.
     Value {
         /// The channel.
         channel: String,
-        /// What the client has.
+        /// The client's number.
         found: f64,
-        /// The truth of the stage.
+        /// The exact result of the stage.
         truth: f64,
-        /// How far from that a right implementation may be.
+        /// How far a correct implementation may be from the truth.
         radius: f64,
     },
-    /// An index or a count that no right implementation leaves.
+    /// An index or a count that no correct implementation leaves.
     Whole {
         /// The channel.
         channel: String,
-        /// What the client has.
+        /// The client's value.
         found: u32,
-        /// What must be there.
+        /// The required value.
         truth: u32,
     },
-    /// A surfel that certainly is drawn has no record.
+    /// A surfel is certainly drawn, but has no record.
     NotProjected {
         /// The surfel.
         surfel: u32,
     },
-    /// A surfel that certainly is not drawn has a record.
+    /// A surfel is certainly not drawn, but has a record.
     Projected {
         /// The surfel.
         surfel: u32,
     },
-    /// Normal, opacity or colour of a record are not those of its surfel.
+    /// The normal, opacity or colour of a record differs from its surfel's.
     Copied {
         /// The surfel.
         surfel: u32,
     },
-    /// The surfel of the client has no fragment at the pixel, or is not of the group.
+    /// The client's surfel has no fragment at the pixel, or belongs to another group.
     Absent {
-        /// The surfel, or the primitive by its id.
+        /// The surfel, or the id of the primitive.
         surfel: u32,
     },
-    /// The surfel of the client has a fragment at the pixel, which is outside the cut-off.
+    /// The client's surfel has a fragment at the pixel, but the fragment is outside the cut-off.
     Outside {
         /// The surfel.
         surfel: u32,
         /// q of the fragment divided by the limit of q.
         rim: f64,
     },
-    /// No fragment has the client's depth; one that comes closest.
+    /// No fragment has the client's depth.
     NoSuchDepth {
         /// The client's depth.
         found: f64,
-        /// The closest.
+        /// The closest depth that a fragment has.
         closest: f64,
     },
-    /// Of equally near surfels the client has another than it says.
+    /// Two surfels are equally near, and the client keeps another one than its tie rule says.
     Tie {
         /// The surfel that should be there.
         surfel: u32,
-        /// The client's.
+        /// The client's surfel.
         found: u32,
     },
-    /// A surfel that certainly is in front was left out.
+    /// A surfel is certainly in front, but was left out.
     LeftOut {
-        /// The surfel, or the primitive by its id.
+        /// The surfel, or the id of the primitive.
         surfel: u32,
-        /// q of its fragment divided by the limit of q; 0 of what has no rim.
+        /// q of its fragment divided by the limit of q; 0 for a primitive without a rim.
         rim: f64,
         /// Its depth.
         depth: f64,
-        /// The client's; +inf if the pixel is empty.
+        /// The client's depth; +inf if the pixel is empty.
         found: f64,
     },
-    /// A polygon without an id that certainly is in front was left out.
+    /// A polygon without an id is certainly in front, but was left out.
     Hidden {
         /// Its depth.
         depth: f64,
-        /// The client's; +inf if the pixel is empty.
+        /// The client's depth; +inf if the pixel is empty.
         found: f64,
     },
 }
 
 impl Fault {
-    /// Other numbers of surfels. A channel that says a number of one of a record keeps it.
+    /// Replaces the numbers of surfels. A channel that is numbered inside a record keeps its
+    /// number.
     pub(crate) fn renumber(&mut self, of: impl Fn(u32) -> u32) {
         let numbers: [Option<&mut u32>; 2] = match self {
             Self::Whole { channel, found, truth } if channel.rsplit('.').next() == Some("id") => {
@@ -163,7 +164,8 @@ impl fmt::Display for Fault {
     }
 }
 
-/// A number as short as it can be read back: with a power of ten where it has more than a few zeros.
+/// Writes a number as short as it can be read back, with a power of ten where it has more than a
+/// few zeros.
 struct Plain(f64);
 
 impl fmt::Display for Plain {
@@ -183,14 +185,14 @@ fn whole(value: u32) -> String {
     if value == NO_ID { "none".into() } else { value.to_string() }
 }
 
-/// One value of a client at a pixel, against what it may be.
+/// One value of a client at a pixel, and the values that are allowed there.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Check {
-    /// The stage that leaves it.
+    /// The stage that leaves the value.
     pub stage: &'static str,
-    /// The value, and what may be there; wrong only if the error is above 1.
+    /// The value, and the allowed values. The value is wrong only if the error is above 1.
     pub fault: Fault,
-    /// By how many bounds it errs; NaN if it has none.
+    /// The error in bounds; NaN if the value has no bound.
     pub error: f64,
 }
 

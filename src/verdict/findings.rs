@@ -1,4 +1,4 @@
-//! What was found of a client's planes: stage by stage, pixel by pixel, and in one word.
+//! The findings about a client's planes: stage by stage, pixel by pixel, and in one word.
 
 use super::doubt::Doubt;
 use super::fault::Fault;
@@ -11,16 +11,16 @@ use std::collections::BTreeMap;
 pub struct Finding {
     /// Column and row.
     pub pixel: (u32, u32),
-    /// What is wrong.
+    /// The fault.
     pub fault: Fault,
-    /// By how many bounds: above 1; +inf if no bound can be given.
+    /// The error in bounds: above 1, or +inf if there is no bound.
     pub error: f64,
 }
 
-/// What is wrong at a pixel, as far as [`Causes`] count it.
+/// The kind of a fault, as [`Causes`] counts it.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) enum Cause {
-    /// A surfel lacks; where in its splat, as in [`Fault::LeftOut`].
+    /// A surfel is missing. `rim` says where in its splat, as in [`Fault::LeftOut`].
     Lacking {
         surfel: u32,
         rim: f32,
@@ -36,7 +36,7 @@ pub(crate) enum Cause {
 }
 
 impl Cause {
-    /// That of a fault.
+    /// The kind of this fault.
     pub(crate) fn of(fault: &Fault) -> Self {
         match fault {
             Fault::LeftOut { surfel, rim, .. } => {
@@ -58,28 +58,28 @@ impl Cause {
 /// What the wrong pixels of a stage have in common.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Causes {
-    /// How many pixels lack a surfel, by surfel.
+    /// For each missing surfel, the number of pixels that lack it.
     pub left_out: BTreeMap<u32, u64>,
-    /// The least q of what is left out, divided by the limit of q; +inf if nothing is.
+    /// The smallest q of a missing fragment, divided by the limit of q; +inf if none is missing.
     pub least_rim: f64,
-    /// How many have the id of a fragment that is outside.
+    /// Number of pixels with the id of a fragment that is outside.
     pub outside: u64,
-    /// How many have the id of a surfel that has no fragment there.
+    /// Number of pixels with the id of a surfel that has no fragment there.
     pub absent: u64,
-    /// How many have the id of one of two equally near that should not be there.
+    /// Number of pixels where two surfels are equally near and the wrong one is kept.
     pub ties: u64,
-    /// How many have a number where there should be +inf: a depth without a surfel.
+    /// Number of pixels with a number where +inf is right: a depth without a surfel.
     pub strays: u64,
-    /// How many have a number that is too small, these included.
+    /// Number of pixels with a number that is too small, including `strays`.
     pub below: u64,
-    /// How many are NaN.
+    /// Number of pixels with NaN.
     pub nan: u64,
-    /// How many are wrong otherwise.
+    /// Number of pixels that are wrong in another way.
     pub others: u64,
 }
 
 impl Causes {
-    /// One more wrong pixel.
+    /// Counts one more wrong pixel.
     pub(crate) fn count(&mut self, cause: Cause) {
         match cause {
             Cause::Lacking { surfel, rim } => {
@@ -101,78 +101,80 @@ impl Causes {
         }
     }
 
-    /// How many pixels lack a surfel.
+    /// Number of pixels that lack a surfel.
     #[must_use]
     pub fn lacking(&self) -> u64 {
         self.left_out.values().sum()
     }
 }
 
-/// What was found of one stage.
+/// The findings about one stage.
 #[derive(Clone, Debug)]
 pub struct StageVerdict {
-    /// The stage.
+    /// The name of the stage.
     pub stage: &'static str,
-    /// The planes of the client that were judged; empty if there are none.
+    /// The client's planes that were judged; empty if the client has none of this stage.
     pub planes: Vec<&'static str>,
-    /// What the client has not of a stage that has levels, if it has others: whole levels, or planes. What
-    /// follows from these is not judged.
+    /// Whole levels or planes that the client lacks, in a stage with levels where it has others.
+    /// Anything that follows from a missing one is not judged.
     pub missing: Vec<String>,
-    /// The error of each pixel in bounds: up to 1 it is right.
+    /// The error of each pixel in bounds. A pixel with an error up to 1 is right.
     pub errors: Plane<f32>,
     /// The [`Doubt`]s at each pixel.
     pub doubts: Plane<u8>,
-    /// How many pixels are wrong.
+    /// Number of wrong pixels.
     pub wrong: u64,
-    /// What they have in common.
+    /// What the wrong pixels have in common.
     pub causes: Causes,
-    /// The worst of them; of equals the first.
+    /// The worst wrong pixel; on a tie, the first.
     pub worst: Option<Finding>,
 }
 
 impl StageVerdict {
-    /// How many pixels have one of these doubts.
+    /// Number of pixels with any of these doubts.
     #[must_use]
     pub fn doubtful(&self, doubts: u8) -> u64 {
         self.doubts.values().iter().filter(|at| **at & doubts != 0).count() as u64
     }
 }
 
-/// The verdict in a word.
+/// The verdict in one word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Outcome {
-    /// A right implementation may leave these planes.
+    /// A correct implementation may leave these planes.
     Right,
-    /// No right implementation leaves them.
+    /// No correct implementation leaves these planes.
     Wrong,
-    /// So many sums may be either way, or have no bounds, that nothing is proved, or no plane is judged.
+    /// Nothing is proved, because too many sums may be either way or have no bounds, or because no
+    /// plane is judged.
     Undecidable,
 }
 
-/// What was found of a client.
+/// The findings about a client.
 #[derive(Clone, Debug)]
 pub struct Verdict {
-    /// Stage by stage, in their order.
+    /// The findings stage by stage, in the order of the stages.
     pub stages: Vec<StageVerdict>,
-    /// How many pixels of the picture may be covered.
+    /// Number of pixels of the picture that may be covered.
     pub covered: u64,
-    /// In how many of them the sums are undecided.
+    /// Number of covered pixels with undecided sums.
     pub undecided: u64,
-    /// How many pixels have a number in some stage of which no bound can be given.
+    /// Number of pixels with a number in some stage that has no bound.
     pub unbounded: u64,
-    /// The greatest share of undecided pixels of which a picture can be judged.
+    /// The largest fraction of undecided pixels with which a picture can still be judged.
     pub budget: f64,
-    /// To which side the undecided decisions lean, by limit, where the method asks.
+    /// To which side the undecided decisions lean, for each limit, where the method takes account
+    /// of them.
     pub shifts: Shifts,
 }
 
 impl Verdict {
-    /// The share of undecided sums of which a picture is still judged, unless somebody says
-    /// otherwise. `Decided:` one pixel in fifty; the scenes of the bench `verdicts` have 0.2 to
-    /// 1.3 % under `gpu`, at most 0.2 % under `ieee`.
+    /// The default budget: the largest fraction of undecided sums with which a picture is still
+    /// judged. `Decided:` one pixel in fifty; the scenes of the bench `verdicts` have 0.2 to 1.3 %
+    /// under `gpu`, at most 0.2 % under `ieee`.
     pub const BUDGET: f64 = 0.02;
 
-    /// Of what was found stage by stage, and of pixels that may be covered and that are undecided.
+    /// A verdict from the findings of each stage, and the number of covered and undecided pixels.
     pub(crate) fn new(
         stages: Vec<StageVerdict>,
         [covered, undecided]: [u64; 2],
@@ -183,13 +185,13 @@ impl Verdict {
         Self { stages, covered, undecided, unbounded, budget, shifts }
     }
 
-    /// The same with a stage before the others.
+    /// The same verdict with a stage before the others.
     pub(crate) fn after(mut self, first: StageVerdict) -> Self {
         self.stages.insert(0, first);
         Self { unbounded: unbounded(&self.stages), ..self }
     }
 
-    /// The same with other numbers of surfels.
+    /// The same verdict with other numbers of surfels.
     pub(crate) fn renumbered(mut self, of: impl Fn(u32) -> u32) -> Self {
         for stage in &mut self.stages {
             let lacking = std::mem::take(&mut stage.causes.left_out);
@@ -201,7 +203,7 @@ impl Verdict {
         self
     }
 
-    /// In a word. What is wrong is wrong, however much is undecided.
+    /// The verdict in one word. A wrong pixel is wrong, however much is undecided.
     #[must_use]
     pub fn outcome(&self) -> Outcome {
         if self.first_wrong().is_some() {
@@ -213,12 +215,12 @@ impl Verdict {
         }
     }
 
-    /// Whether so many pixels may be undecided.
+    /// Whether this many pixels may be undecided.
     fn within(&self, pixels: u64) -> bool {
         pixels as f64 <= self.budget * self.covered as f64
     }
 
-    /// Whether any plane of the client is judged.
+    /// Whether any of the client's planes is judged.
     #[must_use]
     pub fn judges(&self) -> bool {
         self.stages.iter().any(|stage| !stage.planes.is_empty())
@@ -231,7 +233,7 @@ impl Verdict {
     }
 }
 
-/// How many pixels have a number in some stage of which no bound can be given.
+/// Number of pixels with a number in some stage that has no bound.
 fn unbounded(stages: &[StageVerdict]) -> u64 {
     let pixels = stages.iter().map(|stage| stage.doubts.values().len()).max();
     let at = |pixel: &usize| {

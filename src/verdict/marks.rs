@@ -1,4 +1,4 @@
-//! What is found of a client, tile by tile, until it is planes.
+//! Collect the findings tile by tile, until they become planes.
 
 use crate::error::Result;
 use crate::frame::{Grid, Plane, Rect};
@@ -9,22 +9,22 @@ use crate::number::Real;
 use crate::verdict::shift::ShiftSums;
 use crate::verdict::{Cause, Causes, Check, Doubt, Fault, Finding, StageVerdict, Verdict};
 
-/// What was found at a pixel: of wrong ones no more than is counted, as every pixel may be wrong.
+/// The findings at a pixel. It keeps only what is counted, because every pixel may be wrong.
 #[derive(Clone, Copy, Debug, Default)]
 struct AtPixel {
     error: f32,
     doubts: u8,
-    /// That of the worst fault, if the error is above 1.
+    /// The cause of the worst fault, if the error is above 1.
     cause: Cause,
 }
 
-/// What was found of one stage at the pixels of a tile.
+/// The findings about one stage at the pixels of a tile.
 #[derive(Debug)]
 pub(crate) struct Marks {
     rect: Rect,
     found: Vec<AtPixel>,
     worst: Option<Finding>,
-    /// Everything that was checked, if somebody wants to know.
+    /// Every check, if the caller wants to explain a pixel.
     log: Option<Vec<(f64, Fault)>>,
 }
 
@@ -35,43 +35,43 @@ pub(crate) struct PixelMarks<'a> {
 }
 
 impl Marks {
-    /// Nothing found yet.
+    /// Marks without a finding.
     pub(crate) fn new(rect: Rect) -> Self {
         Self { rect, found: vec![AtPixel::default(); rect.pixels()], worst: None, log: None }
     }
 
-    /// The same, and everything that is checked will be told.
+    /// Marks without a finding that will record every check.
     pub(crate) fn logging(rect: Rect) -> Self {
         Self { log: Some(Vec::new()), ..Self::new(rect) }
     }
 
-    /// Whether everything that is checked will be told.
+    /// Whether every check is recorded.
     pub(crate) fn logs(&self) -> bool {
         self.log.is_some()
     }
 
-    /// Nothing found yet in a part of the picture, and told as much of.
+    /// Marks without a finding for another part of the picture, which record as much as these.
     pub(crate) fn beside(&self, rect: Rect) -> Self {
         Self { log: self.log.as_ref().map(|_| Vec::new()), ..Self::new(rect) }
     }
 
-    /// Everything that was checked.
+    /// All recorded checks.
     pub(crate) fn checks(self, stage: &'static str) -> impl Iterator<Item = Check> {
         let log = self.log.into_iter().flatten();
         log.map(move |(error, fault)| Check { stage, fault, error })
     }
 
-    /// Nothing found yet in a whole picture.
+    /// Marks without a finding for a whole picture.
     pub(crate) fn picture(job: &Job<'_>) -> Self {
         Self::new(job.picture())
     }
 
-    /// The marks of a whole picture as what was found of a stage.
+    /// Turns the marks of a whole picture into the findings about a stage.
     pub(crate) fn whole(self, stage: &'static str, planes: Vec<&'static str>) -> StageVerdict {
         whole(self.rect, (stage, planes), [self])
     }
 
-    /// Adds what was found in a part of the picture: at each pixel the greater error, all doubts.
+    /// Adds the findings of a part of the picture: at each pixel the larger error, and all doubts.
     pub(crate) fn put(&mut self, part: Self) {
         for ((x, y), own) in part.pixels() {
             let found = &mut self.found[place(self.rect, (x, y))];
@@ -87,30 +87,32 @@ impl Marks {
         keep_worse(&mut self.worst, part.worst);
     }
 
-    /// What was found at each pixel.
+    /// The findings at each pixel.
     fn pixels(&self) -> impl Iterator<Item = ((u32, u32), AtPixel)> {
         pixels(self.rect).zip(self.found.iter().copied())
     }
 
-    /// At how many pixels there is one of these doubts.
+    /// Number of pixels with any of these doubts.
     pub(crate) fn doubtful(&self, doubts: u8) -> u64 {
         self.found.iter().filter(|at| at.doubts & doubts != 0).count() as u64
     }
 
-    /// The marks of a pixel, counted row by row.
+    /// The marks of one pixel. Pixels are numbered row by row.
     pub(crate) fn at(&mut self, pixel: usize) -> PixelMarks<'_> {
         PixelMarks { marks: self, pixel }
     }
 }
 
 impl PixelMarks<'_> {
-    /// What was found, and by how many bounds it errs, NaN if there are none; `fault` says what is wrong
-    /// if that is above 1.
+    /// Records a value and its error in bounds, or NaN if it has no bounds. `fault` describes the
+    /// fault if the error is above 1.
     pub(crate) fn found(&mut self, error: f64, fault: impl Fn() -> Fault) {
         let Marks { rect, found, worst, log } = &mut *self.marks;
         if let Some(log) = log {
             let fault = fault();
             let unknown = matches!(&fault, Fault::Value { radius, .. } if radius.is_nan());
+            // A right value with an unknown radius would be logged as any number, which tells
+            // nothing.
             let anything = unknown && !(error > 1.0);
             if !anything {
                 log.push((error, fault));
@@ -120,11 +122,11 @@ impl PixelMarks<'_> {
         if error.is_nan() {
             at.doubts |= Doubt::Unbounded as u8;
         }
-        // A comparison that NaN fails.
+        // Written so that a NaN returns here.
         if !(error > f64::from(at.error)) {
             return;
         }
-        // Not rounded to 1 from above.
+        // An error above 1 must not be rounded to 1.
         let single = error as f32;
         at.error = if error > 1.0 && single <= 1.0 { 1.0_f32.next_up() } else { single };
         if error > 1.0 {
@@ -139,32 +141,32 @@ impl PixelMarks<'_> {
         }
     }
 
-    /// The same of an error of at most 1: nothing is wrong.
+    /// Records an error of at most 1: nothing is wrong.
     pub(crate) fn right(&mut self, error: f64) {
         let at = &mut self.marks.found[self.pixel];
         at.error = at.error.at_least(error as f32);
     }
 
-    /// A decision that may be either way.
+    /// Records a decision that may be either way.
     pub(crate) fn doubt(&mut self, doubt: Doubt, there: bool) {
         if there {
             self.doubts(doubt as u8);
         }
     }
 
-    /// Nothing depends on the decisions that may be either way.
+    /// Clears the doubts, because nothing depends on the open decisions.
     pub(crate) fn settle(&mut self) {
         self.marks.found[self.pixel].doubts = 0;
     }
 
-    /// Decisions that may be either way, as bits.
+    /// Records decisions that may be either way, as bits.
     pub(crate) fn doubts(&mut self, doubts: u8) {
         self.marks.found[self.pixel].doubts |= doubts;
     }
 }
 
-/// The marks of all tiles as what was found of each of `stages`: their names, and the planes that were
-/// judged.
+/// Turns the marks of all tiles into the findings about each stage. `stages` holds the names of the
+/// stages, and the planes that were judged.
 pub(crate) fn stage_verdicts<const N: usize>(
     job: &Job<'_>,
     stages: [(&'static str, Vec<&'static str>); N],
@@ -178,7 +180,8 @@ pub(crate) fn stage_verdicts<const N: usize>(
     job.exec.ordered(all, |(stage, parts)| whole(job.picture(), stage, parts))
 }
 
-/// What was found in the parts of a picture, which share no pixel, as what was found of a stage.
+/// Turns the marks of the parts of a picture, which share no pixel, into the findings about a
+/// stage.
 fn whole(
     picture: Rect,
     (stage, planes): (&'static str, Vec<&'static str>),
@@ -214,12 +217,12 @@ fn whole(
     judged
 }
 
-/// Where a pixel is in a rectangle, row by row.
+/// The index of a pixel in a rectangle, row by row.
 fn place(rect: Rect, (x, y): (u32, u32)) -> usize {
     (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize
 }
 
-/// The worse of two findings; of equals the one that comes first, row by row.
+/// Keeps the worse of two findings; on a tie, the one that comes first, row by row.
 fn keep_worse(worst: &mut Option<Finding>, own: Option<Finding>) {
     let Some(own) = own else { return };
     let place = |finding: &Finding| (finding.pixel.1, finding.pixel.0);
@@ -231,25 +234,25 @@ fn keep_worse(worst: &mut Option<Finding>, own: Option<Finding>) {
     }
 }
 
-/// The pixels of planes that are judged.
+/// Which pixels of the planes to judge.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Watch {
     All,
-    /// This one, and everything that is checked there is told.
+    /// Judge only this pixel, and record every check there.
     One((u32, u32)),
 }
 
 impl Watch {
-    /// A pixel of the picture.
+    /// Watches one pixel of the picture.
     ///
     /// # Errors
-    /// [`crate::Error::Usage`] if the pixel is outside.
+    /// [`crate::Error::Usage`] if the pixel is outside the picture.
     pub(crate) fn one(job: &Job<'_>, (x, y): (u32, u32)) -> Result<Self> {
         job.camera.check_pixel(x, y)?;
         Ok(Self::One((x, y)))
     }
 
-    /// The parts of planes that are judged, each in its tile.
+    /// The parts of the planes to judge, each in its tile.
     pub(crate) fn parts(self, grid: &Grid) -> Vec<(usize, Rect)> {
         match self {
             Self::All => grid.rects().into_iter().enumerate().collect(),
@@ -260,7 +263,7 @@ impl Watch {
         }
     }
 
-    /// The marks of a part.
+    /// Empty marks for a part.
     pub(crate) fn marks(self, rect: Rect) -> Marks {
         match self {
             Self::All => Marks::new(rect),
@@ -268,17 +271,17 @@ impl Watch {
         }
     }
 
-    /// The marks of all parts.
+    /// Empty marks for all parts.
     pub(crate) fn picture(self, job: &Job<'_>) -> Marks {
         self.marks(if let Self::One(at) = self { Rect::pixel(at) } else { job.picture() })
     }
 }
 
-/// What was found of a stage: its name, the planes that were judged, and the marks.
+/// The findings about a stage: its name, the planes that were judged, and the marks.
 pub(crate) type StageMarks = (&'static str, Vec<&'static str>, Marks);
 
-/// What was found of a method that has levels before its picture, whose last N stages are judged tile by
-/// tile.
+/// The findings about a method that has levels before its picture. Its last N stages are judged
+/// tile by tile.
 pub(crate) struct MethodMarks<const N: usize> {
     pub(crate) levels: Vec<StageMarks>,
     pub(crate) stages: [(&'static str, Vec<&'static str>); N],
@@ -286,14 +289,14 @@ pub(crate) struct MethodMarks<const N: usize> {
 }
 
 impl<const N: usize> MethodMarks<N> {
-    /// All stages as planes.
+    /// Turns the findings about all stages into planes.
     pub(crate) fn stage_verdicts(self, job: &Job<'_>) -> Vec<StageVerdict> {
         let levels = self.levels.into_iter();
         let levels = levels.map(|(stage, planes, marks)| marks.whole(stage, planes));
         levels.chain(stage_verdicts(job, self.stages, self.tiles)).collect()
     }
 
-    /// Everything that was checked.
+    /// All recorded checks.
     pub(crate) fn checks(self) -> Vec<Check> {
         let names = self.stages.map(|(stage, _)| stage);
         let tiles = self.tiles.into_iter().flat_map(|tile| names.into_iter().zip(tile));
@@ -302,19 +305,19 @@ impl<const N: usize> MethodMarks<N> {
     }
 }
 
-/// What is known of a tile beside its marks.
+/// Counts of a tile beside its marks.
 #[derive(Debug, Default)]
 pub(crate) struct Counts {
-    /// How many pixels may be covered.
+    /// Number of pixels that may be covered.
     pub(crate) covered: u64,
-    /// In how many of them the sums are undecided.
+    /// Number of covered pixels with undecided sums.
     pub(crate) undecided: u64,
-    /// The undecided decisions whose outcome is known.
+    /// The undecided decisions whose outcome the client's numbers tell.
     pub(crate) shifts: ShiftSums,
 }
 
 impl Counts {
-    /// With those of another tile.
+    /// Adds the counts of another tile.
     pub(crate) fn add(&mut self, tile: Self) {
         self.covered += tile.covered;
         self.undecided += tile.undecided;
@@ -322,8 +325,8 @@ impl Counts {
     }
 }
 
-/// The verdict of a method whose stages are judged tile by tile: `judge` marks what is wrong at the
-/// pixels of a rectangle in a tile.
+/// The verdict on a method whose stages are judged tile by tile. `judge` marks the wrong pixels of
+/// a rectangle in a tile.
 pub(crate) fn verdict<const N: usize>(
     job: &Job<'_>,
     stages: [(&'static str, Vec<&'static str>); N],
@@ -347,7 +350,7 @@ pub(crate) fn verdict<const N: usize>(
     Verdict::new(stages, [covered, undecided], budget, shifts.sums())
 }
 
-/// Everything that `judge` asks at one pixel.
+/// Every check that `judge` makes at one pixel.
 ///
 /// # Errors
 /// [`crate::Error::Usage`] if the pixel is outside the picture.
@@ -363,7 +366,7 @@ pub(crate) fn checks<const N: usize>(
     Ok(marks.into_iter().zip(stages).flat_map(|(marks, stage)| marks.checks(stage)).collect())
 }
 
-/// The pixels of a tile with their count, row by row.
+/// The pixels of a tile, numbered row by row.
 pub(crate) fn counted(rect: Rect) -> impl Iterator<Item = (usize, (u32, u32))> {
     pixels(rect).enumerate()
 }

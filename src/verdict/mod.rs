@@ -1,20 +1,24 @@
-//! Whether a client's picture is right: verdicts on its planes, stage by stage.
+//! Verify a client's picture: verdicts on its planes, stage by stage.
 //!
-//! A verdict takes no tolerance. [`Session::verify`](crate::method::Session::verify) recomputes each
-//! stage in [balls](crate::number::ball) from the planes that a [`client::Client`] has of the stage before,
-//! and says whether an implementation that keeps its promise of rounding may have left the client's
-//! planes: [`Outcome`]. The page of each method says what is asked of each of its stages: [`mod@ewa`],
-//! [`mod@deferred`], [`mod@single_pass`], [`mod@transparent`], [`mod@transparent_hq`], [`mod@peeling`],
-//! [`mod@pyramid`], [`mod@template`], [`mod@blue`]; the projection that `pyramid` and `template` begin with
-//! has a page too: [`mod@projection`].
+//! Hand in your planes and get a verdict. It needs no tolerance.
+//! [`Session::verify`](crate::method::Session::verify) recomputes each stage in
+//! [balls](crate::number::ball), from the planes that a [`client::Client`] has of the stage before.
+//! The verdict says whether an implementation that keeps its promise of rounding may have left the
+//! client's planes: [`Outcome`].
 //!
-//! - [`client`]: the planes of a client, and how exactly each is stored. Files: [`io::client`](crate::io::client).
-//! - [`Verdict`]: what was found, with a [`Fault`] for each wrong pixel.
+//! The page of each method says what a verdict tests in each of its stages: [`mod@ewa`],
+//! [`mod@deferred`], [`mod@single_pass`], [`mod@transparent`], [`mod@transparent_hq`],
+//! [`mod@peeling`], [`mod@pyramid`], [`mod@template`], [`mod@blue`]. The projection that `pyramid`
+//! and `template` begin with has a page too: [`mod@projection`].
+//!
+//! - [`client`]: the planes of a client, and how exactly each is stored. Files:
+//!   [`io::client`](crate::io::client).
+//! - [`Verdict`]: the findings, with a [`Fault`] for each wrong pixel.
 //! - [`causes`]: known mistakes, and which of them a client makes.
-//! - [`shift`]: whether the decisions that may be either way lean to one side, over a suite of scenes.
+//! - [`shift`]: whether the undecided decisions lean to one side, over a suite of scenes.
 //!
-//! Without verdicts: [`crate::compare`] holds planes against planes, [`crate::laws`] says what must hold of
-//! compositing operators.
+//! If you do not need a verdict: [`crate::compare`] compares planes with planes, and
+//! [`crate::laws`] tests compositing operators.
 
 pub mod blue;
 pub mod causes;

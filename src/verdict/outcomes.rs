@@ -1,24 +1,27 @@
-//! Which of four neighbours become one, where the decisions on them may be undecided: every outcome
-//! that the truths allow.
+//! List every outcome of merging four neighbours, where the decisions may be undecided.
 //!
-//! The formulas of pull, push and propagation have the same shape. Of the candidates the foremost is
-//! the one of the least depth, which must be less than +inf, ties to the earlier; with it go all
-//! that join it. If there is no candidate, or if the foremost does not join itself, nothing comes
-//! out. The foremost may do so: that it joins itself is a law where it is undecided.
+//! The formulas of pull, push and propagation have the same shape:
+//!
+//! - The foremost candidate is the one with the least depth, which must be less than +inf. On a
+//!   tie, the earlier candidate is foremost.
+//! - All candidates that join the foremost are merged with it.
+//! - If there is no candidate, or if the foremost does not join itself, the result is empty.
+//! - Where it is undecided whether the foremost joins itself, it does so by law.
 
 use crate::composite::decide;
 use crate::number::{Real, Truth};
 use crate::verdict::Doubt;
 
-/// Which of four take part, and which of them is foremost; none if nothing comes out.
+/// Which of the four candidates take part, and which of them is foremost; none if the result is
+/// empty.
 pub(crate) type Outcome = Option<([bool; 4], usize)>;
 
-/// The most outcomes that are followed.
+/// The largest number of outcomes that are followed.
 pub(crate) const MOST: usize = 16;
 
-/// Every outcome, each once, in a fixed order, and the doubts that there are.
+/// Every outcome, each once, in a fixed order, and the doubts behind them.
 ///
-/// `joins` says whether one joins the foremost, given after it.
+/// `joins(one, foremost)` says whether a candidate joins the foremost.
 pub(crate) fn outcomes<R: Real>(
     candidates: [R::Truth; 4],
     depths: [R; 4],
@@ -78,11 +81,11 @@ fn subsets<T: Truth>(truths: [T; 4]) -> impl Iterator<Item = [bool; 4]> {
     })
 }
 
-/// Whether one of those present may be the foremost.
+/// Whether candidate j, among those present, may be the foremost.
 fn may_be_first<R: Real>(present: [bool; 4], depths: [R; 4], j: usize) -> bool {
     let passes = |k: usize| match k {
         _ if k == j || !present[k] => true,
-        // The earlier stays unless the later is before it.
+        // The earlier candidate stays foremost unless the later is before it.
         _ if k < j => decide::before(depths[j], depths[k]).possibly(),
         _ => !decide::before(depths[k], depths[j]).certainly(),
     };
@@ -99,7 +102,7 @@ mod tests {
     #[test]
     fn of_exact_numbers_there_is_one_outcome_and_it_is_that_of_the_definition() {
         for i in 0..4000_u64 {
-            // Few values, so that there are ties.
+            // Few different values, so that there are ties.
             let of = |k: usize| (unit(i, k as u64) * 4.0).floor() * 0.25;
             let fronts = [0, 1, 2, 3].map(|j| if of(j) == 0.75 { f32::INFINITY } else { of(j) });
             let backs = [0, 1, 2, 3].map(|j| fronts[j] + of(4 + j) - 0.25);

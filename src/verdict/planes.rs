@@ -1,5 +1,5 @@
-//! The planes of a record that a client has handed in: found, judged and read by the table of the
-//! record's planes.
+//! The planes of a record that a client hands in. One table, the record's planes, says how to find,
+//! judge and read them.
 
 use super::checks::{Report, input, inputs, number, triple, whole};
 use super::client::{Client, StoredPlane};
@@ -22,21 +22,21 @@ enum AnyStored<'a> {
 /// The planes of a record that are there.
 #[derive(Clone, Debug)]
 pub(crate) struct RecordPlanes<'a> {
-    /// Each with its place in the table, in the order in which they are judged: indices, counts,
-    /// numbers, then vectors and colours.
+    /// Each plane with its index in the table, in the order in which they are judged: indices,
+    /// counts, numbers, then vectors and colours.
     planes: Vec<(usize, AnyStored<'a>)>,
-    /// In the order of the table.
+    /// The names in the order of the table.
     names: Vec<&'static str>,
 }
 
 impl<'a> RecordPlanes<'a> {
-    /// The planes of a table; `number` stands for the rows' `#`.
+    /// Finds the planes of a table. `number` replaces the `#` in the rows.
     pub(crate) fn new<T, R>(client: &'a Client, fields: &[Field<T, R>], number: usize) -> Self {
         Self::of_rows(client, fields.iter().map(|field| field.row).enumerate(), number)
     }
 
-    /// The planes of some rows, each with the place in the table of the plane that it stands for; those of
-    /// one type are judged in this order.
+    /// Finds the planes of some rows. Each row comes with the table index of the plane that it
+    /// stands for. Planes of one type are judged in this order.
     pub(crate) fn of_rows(
         client: &'a Client,
         rows: impl Iterator<Item = (usize, PlaneRow)>,
@@ -70,7 +70,7 @@ impl<'a> RecordPlanes<'a> {
         &self.names
     }
 
-    /// The ids.
+    /// The plane of ids.
     pub(crate) fn ids(&self) -> Option<StoredPlane<'a, u32>> {
         self.planes.iter().find_map(|(_, plane)| match plane {
             AnyStored::Index(plane) => Some(*plane),
@@ -78,7 +78,7 @@ impl<'a> RecordPlanes<'a> {
         })
     }
 
-    /// The depths.
+    /// The plane of depths.
     pub(crate) fn depths(&self) -> Option<StoredPlane<'a, f64>> {
         self.planes.iter().find_map(|(_, plane)| match plane {
             AnyStored::Scalar(plane) if plane.holds == Holds::Depth => Some(*plane),
@@ -86,12 +86,12 @@ impl<'a> RecordPlanes<'a> {
         })
     }
 
-    /// Whether the plane at a place of the table is there.
+    /// Whether the plane at an index of the table is there.
     pub(crate) fn has(&self, place: usize) -> bool {
         self.planes.iter().any(|(own, _)| *own == place)
     }
 
-    /// Every plane at a pixel against what may be there, in a part of the report.
+    /// Checks every plane at a pixel, in one part of the report.
     pub(crate) fn check<T: Copy, P: Profile>(
         &self,
         (part, fields): (usize, &[Field<T, Ball<P>>]),
@@ -127,8 +127,8 @@ impl<'a> RecordPlanes<'a> {
         }
     }
 
-    /// Puts the values of the planes at a pixel into a record, as the next stage reads them, as far as
-    /// the scene has such planes.
+    /// Puts the values of the planes at a pixel into a record, as the next stage reads them. Only
+    /// planes that the scene has are read.
     pub(crate) fn read<T, P: Profile>(
         &self,
         (fields, there): (&[Field<T, Ball<P>>], &Conditions),
@@ -148,7 +148,7 @@ impl<'a> RecordPlanes<'a> {
                     *of(record) = *plane.plane.at(at.0, at.1);
                 }
                 (AnyStored::Count(plane), Part::Kind(of)) => {
-                    // There is no other kind: what is not one was found wrong where it comes from.
+                    // There is no other kind, and a wrong number was found where it comes from.
                     let kind = SampleKind::ALL.get(usize::from(*plane.plane.at(at.0, at.1)));
                     *of(record) = kind.copied().unwrap_or_default();
                 }
@@ -163,7 +163,8 @@ impl<'a> RecordPlanes<'a> {
         }
     }
 
-    /// The records as the next stage reads them, if the planes that the scene has are all there.
+    /// The records as the next stage reads them. None unless all planes that the scene has are
+    /// there.
     pub(crate) fn records<T: Copy, P: Profile>(
         &self,
         (fields, there): (&[Field<T, Ball<P>>], &Conditions),

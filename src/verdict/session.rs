@@ -1,4 +1,4 @@
-//! Verdicts on the pictures of a session.
+//! Verify the pictures of a session.
 
 use super::client::{Client, Rounding};
 use super::table;
@@ -11,18 +11,19 @@ use crate::scene::Camera;
 use std::borrow::Cow;
 
 impl Session<'_> {
-    /// Judges the planes of a client, stage by stage: whether a right implementation may leave them.
-    /// A picture in which the sums of more than the share `budget` of its pixels are undecided cannot
-    /// be judged, see [`Verdict::BUDGET`].
+    /// Judges the planes of a client, stage by stage: may a correct implementation leave them? The
+    /// picture cannot be judged if the sums of more than the fraction `budget` of its pixels are
+    /// undecided, see [`Verdict::BUDGET`].
     ///
     /// # Errors
-    /// [`Error::Invalid`] if no plane is one of the method's, if the picture has another size than
-    /// the camera's, or if there are records of another method than `ewa`; else as [`Session::render`].
+    /// [`Error::Invalid`] if no plane belongs to the method, if the picture has another size than
+    /// the camera's, or if there are records for another method than `ewa`; else as
+    /// [`Session::render`].
     pub fn verify(&self, camera: &Camera, client: &Client, budget: f64) -> Result<Verdict> {
         self.verify_as(self.method(), camera, client, budget)
     }
 
-    /// As [`Session::verify`], as if the method were another one, with the same scene and groups.
+    /// Judges as [`Session::verify`] does, but with another method for the same scene and groups.
     pub(crate) fn verify_as(
         &self,
         method: &Method,
@@ -42,7 +43,8 @@ impl Session<'_> {
         Ok(verdict.renumbered(|index| named(names.as_ref(), index)))
     }
 
-    /// Every value of a client at one pixel that is judged, against what it may be.
+    /// Every check at one pixel: each judged value of the client, and the values that are allowed
+    /// there.
     ///
     /// # Errors
     /// As [`Session::verify`] and [`Session::explain`].
@@ -66,7 +68,8 @@ impl Session<'_> {
         Ok(checks)
     }
 
-    /// Whether there is something to judge, and nothing that is not.
+    /// Fails unless the client has planes to judge, of the right size, and no records that cannot
+    /// be judged.
     fn check_client(&self, camera: &Camera, client: &Client) -> Result<()> {
         let frame = client.frame();
         let (found, picture) = ([frame.width, frame.height], camera.size());
@@ -91,7 +94,7 @@ impl Session<'_> {
     }
 }
 
-/// A client with indices of surfels in the place of their ids.
+/// The client with indices of surfels in place of their ids.
 fn numbered<'c>(
     names: Option<&Names<'_>>,
     method: &Method,

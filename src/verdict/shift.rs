@@ -1,54 +1,62 @@
-//! Whether the decisions that may be either way lean to one side.
+//! Test whether the undecided decisions lean to one side, over a suite of scenes.
 //!
-//! A limit that is a little off turns no decision that is certain. Of those beside the limit it turns
-//! some, all to one side, where roundings turn about as many to either. One picture has too few of
-//! them; the sums of several are added ([`Shift::add`]).
+//! A limit that is slightly off changes no decision that is certain. It changes some decisions
+//! close to the limit, all to one side, while rounding changes about as many to either side. One
+//! picture has too few such decisions. Therefore the sums of several pictures are added
+//! ([`Shift::add`]).
 //!
-//! Of every undecided decision that the client's numbers tell, let x be its distance from the limit
-//! and r the radius of that distance, both as shares of the limit; x is positive where the midpoint
-//! passes. A client whose limit is off by the share s is taken to pass it with the probability
+//! Take every undecided decision whose outcome the client's numbers tell. Let x be its distance
+//! from the limit and r the radius of that distance, both as fractions of the limit. x is positive
+//! where the midpoint passes. If the client's limit is off by the fraction s, the decision passes
+//! with the probability
 //!
 //! ```text
 //! p = 1 / (1 + exp(-a (x + s))),  a = 1.702 / (0.15 r)
 //! ```
 //!
-//! which is nearly that of a normal error with a deviation of 0.15 r, what a prototype measured of `f32`
-//! clients in radii of `ieee`; of the wider radii of `gpu` the errors are smaller parts. The score is the sum of a (y - p) at s = 0, y being 1 of what passed and 0 of what did not;
-//! the information the sum of a^2 p (1 - p). The errors of one surfel's decisions go together. So the
-//! variance is the sum over surfels of the square of the sum over a surfel's decisions of a (y - p).
-//! z is score / sqrt(variance), the estimate of s score / information.
+//! This is nearly a normal error with a deviation of 0.15 r. A prototype measured this deviation on
+//! `f32` clients, in radii of `ieee`. The radii of `gpu` are wider, so there the errors are smaller
+//! fractions of them. From these probabilities:
+//!
+//! - The score is the sum of a (y - p) at s = 0. y is 1 for a decision that passed and 0 for one
+//!   that did not.
+//! - The information is the sum of a^2 p (1 - p).
+//! - The variance is the sum over surfels of the square of the sum over a surfel's decisions of a
+//!   (y - p). Decisions are added by surfel because the errors of one surfel's decisions go
+//!   together.
+//! - z is score / sqrt(variance), and the estimate of s is score / information.
 
 use super::doubt::Doubt;
 use std::collections::BTreeMap;
 
-/// How many radii a decision is off, one standard deviation.
+/// The standard deviation of a decision's error, in radii.
 const DEVIATION: f64 = 0.15;
-/// The slope of a logistic function that is nearly the normal distribution's.
+/// The slope of a logistic function that nearly equals the normal distribution's.
 const NORMAL: f64 = 1.702;
 
-/// What the undecided decisions at one limit say of it, of a picture or of several.
+/// The evidence that the undecided decisions give about one limit, from one picture or several.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Shift {
-    /// How many there are whose outcome the client's numbers tell.
+    /// Number of undecided decisions whose outcome the client's numbers tell.
     pub decisions: u64,
     /// The score.
     pub score: f64,
-    /// Its information.
+    /// The information of the score.
     pub information: f64,
-    /// Its variance.
+    /// The variance of the score.
     pub variance: f64,
 }
 
 impl Shift {
-    /// The |z| from which a picture leans visibly: a remark: a normal z does so in one
-    /// of 370 pictures.
+    /// The |z| from which a picture visibly leans, which gets a remark. A normal z reaches it in
+    /// one of 370 pictures.
     pub const REMARK: f64 = 3.0;
-    /// The |z| from which pictures together are wrong, if operations round to nearest.
+    /// The |z| from which several pictures together are wrong, if operations round to nearest.
     pub const ALARM: f64 = 4.5;
-    /// The estimate up to which nothing is wrong: a limit that is itself rounded, and a little more.
+    /// The estimate up to which nothing is wrong: a rounded limit, and a little more.
     pub const LAWFUL: f64 = 4.0 / 16_777_216.0;
 
-    /// Adds what another picture says.
+    /// Adds the evidence of another picture.
     pub fn add(&mut self, other: &Self) {
         self.decisions += other.decisions;
         self.score += other.score;
@@ -62,42 +70,43 @@ impl Shift {
         if self.variance > 0.0 { self.score / self.variance.sqrt() } else { 0.0 }
     }
 
-    /// By what share of itself the limit seems to be too large; too small if negative.
+    /// The fraction by which the limit seems too large; too small if negative.
     #[must_use]
     pub fn estimate(&self) -> f64 {
         if self.information > 0.0 { self.score / self.information } else { 0.0 }
     }
 
-    /// Whether operations that round to nearest do not lean like this.
+    /// Whether this lean cannot come from operations that round to nearest.
     #[must_use]
     pub fn alarms(&self) -> bool {
         self.z().abs() >= Self::ALARM && self.estimate().abs() > Self::LAWFUL
     }
 }
 
-/// The limits that are asked: their doubts, in the order of [`Shifts`].
+/// The limits that are tested: their doubts, in the order of [`Shifts`].
 pub const LIMITS: [Doubt; 2] = [Doubt::CutOff, Doubt::Epsilon];
 
-/// The places of the cut-off and of epsilon among [`LIMITS`].
+/// The indices of the cut-off and of epsilon in [`LIMITS`].
 pub(crate) const CUT_OFF: usize = 0;
 pub(crate) const EPSILON: usize = 1;
 
-/// What a picture says of each of [`LIMITS`].
+/// The evidence of a picture about each of [`LIMITS`].
 pub type Shifts = [Shift; LIMITS.len()];
 
 /// An undecided decision.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct OpenDecision {
     pub(crate) surfel: u32,
-    /// Which of [`LIMITS`]; none if another decision on the fragment is undecided too.
+    /// The index in [`LIMITS`]; none if another decision on the fragment is undecided too.
     pub(crate) limit: Option<usize>,
-    /// The distance from the limit, as a share of it: positive where the midpoint passes.
+    /// The distance from the limit, as a fraction of it; positive where the midpoint passes.
     pub(crate) distance: f64,
-    /// The radius of that.
+    /// The radius of the distance.
     pub(crate) radius: f64,
 }
 
-/// The decisions of a part of a picture that the client's numbers tell: those of each surfel together.
+/// The decisions of a part of a picture whose outcome the client's numbers tell, added for each
+/// surfel.
 #[derive(Debug, Default)]
 pub(crate) struct ShiftSums {
     surfels: [BTreeMap<u32, f64>; LIMITS.len()],
@@ -105,13 +114,14 @@ pub(crate) struct ShiftSums {
 }
 
 impl ShiftSums {
-    /// One more decision, and how the client took it.
+    /// Adds one decision, and the way the client took it.
     pub(crate) fn take(&mut self, open: &OpenDecision, passed: bool) {
         let Some(limit) = open.limit else { return };
         let slope = NORMAL / (DEVIATION * open.radius);
         let likely = 1.0 / (1.0 + libm::exp(-slope * open.distance));
         let score = slope * (f64::from(u8::from(passed)) - likely);
         let information = slope * slope * likely * (1.0 - likely);
+        // A radius of 0 or infinity says nothing about the limit.
         if !(score.is_finite() && information.is_finite()) {
             return;
         }
@@ -122,14 +132,14 @@ impl ShiftSums {
         *self.surfels[limit].entry(open.surfel).or_default() += score;
     }
 
-    /// The decisions of a pixel: decision i was passed if bit i of `taken` is set.
+    /// Adds the decisions of a pixel. Decision i passed if bit i of `taken` is set.
     pub(crate) fn take_all(&mut self, open: &[OpenDecision], taken: usize) {
         for (bit, open) in open.iter().enumerate() {
             self.take(open, taken >> bit & 1 == 1);
         }
     }
 
-    /// Those of another part.
+    /// Adds the decisions of another part.
     pub(crate) fn add(&mut self, other: Self) {
         for (own, other) in self.shifts.iter_mut().zip(&other.shifts) {
             own.add(other);
@@ -139,7 +149,7 @@ impl ShiftSums {
         }
     }
 
-    /// What all of them say.
+    /// The evidence of all decisions together.
     pub(crate) fn sums(self) -> Shifts {
         let mut shifts = self.shifts;
         for (shift, surfels) in shifts.iter_mut().zip(self.surfels) {
@@ -154,7 +164,8 @@ mod tests {
     use super::*;
     use crate::number::random;
 
-    /// Decisions by a limit that is off by so many radii, whose errors are the sums of uniform ones.
+    /// Decisions with a limit that is off by this many radii. Their errors are sums of uniform
+    /// ones.
     fn simulated(off: f64, seed: u64) -> Shift {
         let mut index = 0;
         let mut between = |low: f64, high: f64| {
@@ -181,11 +192,11 @@ mod tests {
             assert!(lawful.z().abs() < Shift::ALARM && !lawful.alarms(), "{lawful:?}");
             let off = simulated(0.3, seed);
             assert!(off.alarms() && off.z() > 5.0, "{off:?}");
-            // Of radii of 0.5e-6 to 2e-6, the sharper ones weigh more.
+            // The radii are 0.5e-6 to 2e-6; the sharper decisions weigh more.
             assert!((0.1e-6..0.6e-6).contains(&off.estimate()), "{}", off.estimate());
             let other = simulated(-0.3, seed);
             assert!(other.alarms() && other.z() < -5.0, "{other:?}");
-            // Twice the decisions, a root of two times the z.
+            // Twice the decisions give the square root of two times the z.
             let mut both = off;
             both.add(&off);
             assert!((both.z() / off.z() - 2.0_f64.sqrt()).abs() < 1e-12);

@@ -9,8 +9,8 @@ use crate::error::Result;
 use crate::method::{Job, Method};
 use crate::number::ball::Profile;
 
-/// Judges the planes of a client: what a right implementation may leave of each stage. A picture
-/// whose share of undecided sums exceeds `budget` cannot be judged.
+/// Judges the planes of a client against the planes that a correct implementation may leave of each
+/// stage. If the fraction of undecided sums exceeds `budget`, the picture cannot be judged.
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] if the method cannot draw the scene with these settings.
@@ -35,7 +35,7 @@ pub(super) fn verify<P: Profile>(
     }
 }
 
-/// Everything of a client that is judged at one pixel.
+/// Every check of a client at one pixel.
 ///
 /// # Errors
 /// [`crate::Error::Usage`] if the pixel is outside the picture; else as [`verify`].

@@ -1,4 +1,4 @@
-//! What the tests of verdicts share.
+//! Helpers that the tests of verdicts share.
 
 use crate::frame::{Exec, Frame, NO_ID, Plane, Samples};
 use crate::method::session::tests::two_spheres;
@@ -12,14 +12,15 @@ use crate::source::Shape;
 use crate::verdict::client::{Client, Rounding, Storage};
 use crate::verdict::{Finding, Outcome, Verdict};
 
-/// Surfels of opacities from 0.25 to 1, some of them opaque.
+/// Surfels with opacities from 0.25 to 1, some of them opaque.
 pub(crate) fn transparent(surfels: Surfels) -> Surfels {
     let opacity = |i| if i % 7 == 0 { 1.0 } else { 0.25 + 0.5 * unit(7, i) };
     let opacity = (0..surfels.len() as u64).map(opacity).collect();
     Surfels::new(Cloud { opacity: Some(opacity), ..surfels.into_cloud() }).unwrap().0
 }
 
-/// A map of 32 x 16 pixels of any colour, turned by so many columns, upside down or not.
+/// An environment map of 32 x 16 pixels in many colours, turned by this many columns, upside down
+/// or not.
 pub(crate) fn surroundings(turned: u32, flipped: bool) -> Environment {
     let pixel = |i: u32| {
         let (x, y) = ((i + turned) % 32, if flipped { 15 - i / 32 } else { i / 32 });
@@ -29,7 +30,7 @@ pub(crate) fn surroundings(turned: u32, flipped: bool) -> Environment {
     Environment::Map(Map::new(Plane::from_values(32, 16, pixels)).unwrap())
 }
 
-/// What the crate renders before one environment is right, and wrong in a stage before another.
+/// Asserts that a picture before one environment is right, and before another is wrong in a stage.
 pub(crate) fn assert_environment_found(
     scene: &Scene,
     camera: &Camera,
@@ -53,13 +54,13 @@ pub(crate) fn assert_environment_found(
     }
 }
 
-/// A camera before a shape; without a lens by that of the shape.
+/// A camera before a shape; without a lens, the shape's own lens.
 pub(crate) fn camera(shape: Shape, size: [u32; 2], lens: Option<Lens>) -> Camera {
     let lens = lens.unwrap_or(shape.default_lens());
     Camera::new(size[0], size[1], shape.default_pose(), lens).unwrap()
 }
 
-/// What is said of a frame as a client's.
+/// The verdict on a frame as a client's planes.
 pub(crate) fn verdict(
     session: &Session<'_>,
     camera: &Camera,
@@ -71,12 +72,12 @@ pub(crate) fn verdict(
     session.verify(camera, &client, Verdict::BUDGET).unwrap()
 }
 
-/// The worst of all that is wrong in the first stage that is.
+/// The worst fault in the first wrong stage.
 fn wrong(verdict: &Verdict) -> Option<(&'static str, Finding)> {
     verdict.first_wrong().and_then(|stage| Some((stage.stage, stage.worst.clone()?)))
 }
 
-/// What the crate renders is right: with all stages, without, and each plane alone.
+/// Asserts that the crate's own planes are right: with all stages, with none, and each plane alone.
 pub(crate) fn assert_right(scene: &Scene, camera: &Camera, method: Method) {
     let exec = Exec::new(1, 16).unwrap();
     let session = Session::new(scene, method, &exec).unwrap();
@@ -103,12 +104,12 @@ pub(crate) fn assert_right(scene: &Scene, camera: &Camera, method: Method) {
     }
 }
 
-/// What a client leaves that keeps every plane in `f16` and works on with that is right.
+/// Asserts that a client is right that stores every plane in `f16` and continues from it.
 pub(crate) fn assert_right_in_halves(scene: &Scene, camera: &Camera, method: Method) {
     assert_eq!(assert_none_wrong_in_halves(scene, camera, method), [Outcome::Right; 2]);
 }
 
-/// The same, of which much may be undecided.
+/// Asserts that such a client is not wrong, where much may be undecided.
 pub(crate) fn assert_none_wrong_in_halves(
     scene: &Scene,
     camera: &Camera,
@@ -118,14 +119,16 @@ pub(crate) fn assert_none_wrong_in_halves(
     outcomes_in(scene, camera, method, Storage::Half, half)
 }
 
-/// What a client leaves that computes each stage in `f64` and keeps every plane in `f32` is right.
+/// Asserts that a client is right that computes each stage in `f64` and stores every plane in
+/// `f32`.
 pub(crate) fn assert_right_in_doubles(scene: &Scene, camera: &Camera, method: Method) {
     let single = |v: &mut f64| *v = f64::from(*v as f32);
     let outcomes = outcomes_in(scene, camera, method, Storage::Single, single);
     assert_eq!(outcomes, [Outcome::Right; 2]);
 }
 
-/// What a client leaves that rounds every number of a plane so has nothing wrong; both outcomes.
+/// Asserts that nothing is wrong for a client that rounds every number of a plane this way; returns
+/// both outcomes.
 fn outcomes_in<R: Exact>(
     scene: &Scene,
     camera: &Camera,
@@ -137,7 +140,7 @@ fn outcomes_in<R: Exact>(
     let session = Session::new(scene, method, &exec).unwrap();
     let mut frame = session.define::<R>(camera, true).unwrap().frame;
     for stage in method.stages().iter().filter(|stage| !stage.leaves.is_empty()) {
-        // A level is computed from the last, so that each is right after as many runs as there are.
+        // A level is computed from the last level, so it takes as many runs as there are levels.
         loop {
             let before = format!("{frame:?}");
             let left = session.stage(camera, stage.name, &frame).unwrap();
@@ -171,27 +174,28 @@ fn outcomes_in<R: Exact>(
     })
 }
 
-/// Whether a plane is of the row of this name.
+/// Whether a plane belongs to the row with this name.
 fn leaves_called(leaves: &[crate::method::PlaneRow], row: &str, plane: &str) -> bool {
     leaves.iter().any(|leaf| leaf.name == row && leaf.is_called(plane))
 }
 
-/// One value of a client that is not what was computed.
+/// A wrong value of a client.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Slip {
-    /// Too large by this part of itself.
+    /// Too large by this fraction of itself.
     Off(f32),
     /// The next float.
     Next,
     /// Not a number.
     NotANumber,
-    /// One more, of an id or a count.
+    /// One more; for an id or a count.
     More,
-    /// What an empty cell has, in all planes of this layer.
+    /// The value of an empty cell, in all planes of this layer.
     Dropped,
 }
 
-/// Each slip is found in its stage: of a value in the middle of those that say something.
+/// Asserts that each slip is found in its stage. The slip is in the middle of the values that say
+/// something.
 pub(crate) fn assert_found(
     scene: &Scene,
     camera: &Camera,
@@ -201,7 +205,7 @@ pub(crate) fn assert_found(
     assert_found_where(scene, camera, method, slips, |_, _| true);
 }
 
-/// The same, of the values of pixels of which something holds.
+/// Asserts the same for the values of pixels where a condition holds.
 pub(crate) fn assert_found_where(
     scene: &Scene,
     camera: &Camera,
@@ -230,11 +234,11 @@ pub(crate) fn assert_found_where(
             let found = wrong(&verdict(&session, camera, &frame, rounding));
             let (first, worst) = found.unwrap_or_else(|| panic!("{plane}, {slip:?} is right"));
             assert_eq!(first, *stage, "{plane}, {slip:?}, {rounding:?}");
-            // Replayed at its pixel, the fault is there.
+            // When the pixel is explained, the fault is there.
             let mut client = Client::from(&frame);
             client.rounding = rounding;
             let checks = session.checks(camera, &client, worst.pixel).unwrap();
-            // In words, as NaN equals nothing.
+            // Compared in words, because NaN equals nothing.
             let fault = format!("{:?}", worst.fault);
             let there = checks.iter().any(|check| {
                 check.stage == first && check.error > 1.0 && format!("{:?}", check.fault) == fault
@@ -244,7 +248,8 @@ pub(crate) fn assert_found_where(
     }
 }
 
-/// Whether a slip of one plane changes another: all of its layer if a cell is dropped.
+/// Whether a slip in one plane changes another plane. A dropped cell changes all planes of its
+/// layer.
 fn touches(other: &str, plane: &str, slip: Slip) -> bool {
     let layer = |name: &str| name.split('.').next().unwrap_or_default().to_owned();
     other == plane || (matches!(slip, Slip::Dropped) && layer(other) == layer(plane))
@@ -265,7 +270,7 @@ fn those<T>(values: &[T], says: impl Fn(&T) -> bool) -> Vec<usize> {
     (0..values.len()).filter(|&i| says(&values[i])).collect()
 }
 
-/// Changes one value; `empty` is what an empty cell has.
+/// Changes one value. `empty` is the value of an empty cell.
 fn change(samples: &mut Samples<f32>, place: usize, slip: Slip, empty: f32) {
     let number = |v: &mut f32| {
         *v = match slip {
@@ -294,7 +299,7 @@ fn change(samples: &mut Samples<f32>, place: usize, slip: Slip, empty: f32) {
     }
 }
 
-/// A verdict on the picture of objects is the one on the same surfels without objects.
+/// The verdict on a picture of objects is the verdict on the same surfels without objects.
 #[test]
 fn ids_of_objects_change_no_verdict() {
     let exec = Exec::sequential();

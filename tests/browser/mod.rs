@@ -1,6 +1,7 @@
-//! Pages in a real browser: Chromium, over its debugging pipe.
+//! Tests pages in a real browser: Chromium, over its debugging pipe.
 //!
-//! Without Chromium (`SPLATREF_CHROMIUM` or the command `chromium`) the tests say so and are skipped.
+//! Without Chromium (`SPLATREF_CHROMIUM` or the command `chromium`) the tests say so and are
+//! skipped.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 

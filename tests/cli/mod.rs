@@ -1,4 +1,5 @@
-//! The program as a person meets it: exit codes, one line of complaint, files whole or not there.
+//! Tests the program as a person meets it: exit codes, errors of one line, and files that are
+//! either whole or not there.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 

@@ -1,23 +1,23 @@
-//! Holes and spill: how far two pictures agree on what is covered.
+//! Count holes and spill: where two pictures disagree on the pixels that they cover.
 
-/// Where a pixel lies in what a picture covers, see [`regions`].
+/// The region of a pixel in a picture's coverage, see [`regions`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Region {
-    /// Covered, and so are all its neighbours.
+    /// The pixel and all its neighbours are covered.
     Interior,
-    /// The silhouette: neither of the others. It is two pixels wide, one on either side.
+    /// The silhouette: neither interior nor exterior. It is two pixels wide, one on either side.
     Edge,
-    /// Not covered, and neither is any of its neighbours.
+    /// Neither the pixel nor any of its neighbours is covered.
     Exterior,
 }
 
-/// The region of each pixel of a plane of coverage, `width` values a row.
+/// The region of each pixel of a plane of coverage with `width` values a row.
 ///
-/// A pixel is covered if its value is > 0; a NaN is not. Its neighbours are those of the eight
-/// pixels around it that are in the plane, so that the border of the picture is no silhouette.
+/// A pixel is covered if its value is > 0; a NaN is not. Its neighbours are the pixels among the
+/// eight around it that lie in the plane. So the border of the picture is no silhouette.
 ///
 /// # Panics
-/// If the plane is no multiple of `width`.
+/// If the length of the plane is no multiple of `width`.
 #[must_use]
 pub fn regions(coverage: &[f32], width: usize) -> Vec<Region> {
     let height = coverage.len().checked_div(width).unwrap_or(0);
@@ -39,30 +39,31 @@ pub fn regions(coverage: &[f32], width: usize) -> Vec<Region> {
     (0..height).flat_map(|y| (0..width).map(move |x| (x, y))).map(|(x, y)| region(x, y)).collect()
 }
 
-/// How far a picture covers what a reference does, in pixels; see [`coverage`].
+/// Counts of pixels that compare the coverage of a picture with a reference; see [`coverage`].
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Coverage {
-    /// That the reference covers.
+    /// Pixels that the reference covers.
     pub covered: u64,
-    /// In the reference's interior.
+    /// Pixels in the reference's interior.
     pub interior: u64,
-    /// Of those, that the picture leaves empty.
+    /// Interior pixels that the picture leaves empty.
     pub holes: u64,
-    /// In the reference's exterior that the picture covers.
+    /// Pixels in the reference's exterior that the picture covers.
     pub spill: u64,
-    /// On the reference's edge.
+    /// Pixels on the reference's edge.
     pub edge: u64,
-    /// Of those, that one covers and the other does not.
+    /// Edge pixels that one picture covers and the other does not.
     pub mismatch: u64,
 }
 
-/// Holes and spill of a plane of coverage against that of a reference, `width` values a row.
+/// Counts holes and spill of a plane of coverage against a reference, both with `width` values a
+/// row.
 ///
 /// Pixels are counted by their [`regions`] in the reference. So a silhouette that is off by a pixel
-/// counts in `mismatch` alone.
+/// counts only in `mismatch`.
 ///
 /// # Panics
-/// If the planes differ in length, or it is no multiple of `width`.
+/// If the planes differ in length, or their length is no multiple of `width`.
 #[must_use]
 pub fn coverage(picture: &[f32], reference: &[f32], width: usize) -> Coverage {
     assert_eq!(picture.len(), reference.len(), "planes of one size");
@@ -93,7 +94,7 @@ mod tests {
     #[test]
     fn regions_of_a_drawing() {
         let drawing = ["......", ".###..", ".###..", ".###.#", "....##"];
-        // i interior, e edge, x exterior; the corner has no neighbours beyond the picture.
+        // i interior, e edge, x exterior. The corner has no neighbours beyond the picture.
         let expected = ["eeeeex", "eeeeex", "eeieee", "eeeeee", "eeeeee"];
         let plane: Vec<f32> =
             drawing.concat().bytes().map(|c| if c == b'#' { 0.25 } else { 0.0 }).collect();

@@ -1,26 +1,27 @@
-//! How far the depth of a surface is off.
+//! Measure how far the depth of a surface is off.
 
 use super::percentile;
 
-/// How far the depths of some pixels are off, in world units; see [`depth`].
+/// Errors of the depths of some pixels, in world units; see [`depth`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct DepthError {
     /// How many pixels were compared, at least 1.
     pub pixels: u64,
     /// The root of the mean squared error.
     pub rms: f64,
-    /// What 99 % of the errors do not exceed: the one at ceil(0.99 n) of n in ascending order.
+    /// The error that 99 % of the errors do not exceed: the one at ceil(0.99 n) of n in ascending
+    /// order.
     pub most: f64,
-    /// The greatest error.
+    /// The largest error.
     pub max: f64,
-    /// `rms` in parts of the mean depth of the reference in these pixels.
+    /// `rms` divided by the mean depth of the reference in these pixels.
     pub relative: f64,
 }
 
-/// The errors |Z - `Z_true`| of the depths of those pixels that are to be compared.
+/// Takes the errors |Z - `Z_true`| of the depths in the pixels that `compared` names.
 ///
-/// Left out is also a pixel where either depth is not finite: where nothing is seen there is no
-/// depth. None if no pixel is left.
+/// A pixel where either depth is not finite is left out too, because an empty pixel has no depth.
+/// None if no pixel is left.
 ///
 /// # Panics
 /// If the planes differ in length.

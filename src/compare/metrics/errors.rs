@@ -1,4 +1,4 @@
-//! All errors of a picture against its truth, and the table of their names.
+//! Take all errors of a picture against its truth, and list them by name and unit.
 //!
 //! ```
 //! use splatref::frame::{Exec, Frame, Plane, Samples};
@@ -30,31 +30,33 @@ use super::{
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Frame, Plane, Samples};
 
-/// What is wrong with one picture.
+/// All errors of one picture.
 ///
-/// A pixel is *covered* where a surface is seen: `A` > 0 and `Z` finite. So an environment, which has
-/// no depth, covers nothing.
+/// A pixel is *covered* where a surface is seen: `A` > 0 and `Z` finite. An environment covers
+/// nothing, because it has no depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Errors {
     /// RMSE, PSNR and SSIM of the colours.
     pub color: Summary,
     /// The mean of [FLIP](flip::flip()) at [`flip::PIXELS_PER_DEGREE`].
     pub flip: f64,
-    /// Holes and spill of what is covered.
+    /// Holes and spill of the covered pixels.
     pub coverage: Coverage,
-    /// The length of the [outline](outline::outline()) of what the picture covers, in pixels.
+    /// The length of the [outline](outline::outline()) of the pixels that the picture covers, in
+    /// pixels.
     pub outline: f64,
-    /// That of the truth.
+    /// The length of the truth's outline.
     pub true_outline: f64,
-    /// Of the pixels that both cover and that are interior in the truth; none if there are none.
+    /// Depth errors in the pixels that both pictures cover and that are interior in the truth. None
+    /// if there are no such pixels.
     pub depth: Option<DepthError>,
-    /// Of the same pixels, if both frames have normals.
+    /// Normal errors in the same pixels, if both frames have normals.
     pub normal: Option<NormalError>,
 }
 
 impl Errors {
-    /// The errors of a picture against its truth: the frame of a
-    /// [`Picture`](crate::method::Picture), whose planes are the colour, `A`, `Z` and, where there is
+    /// Takes the errors of a picture against its truth. Give the frame of a
+    /// [`Picture`](crate::method::Picture): its planes are the colour, `A`, `Z` and, where there is
     /// light, `normal`.
     ///
     /// # Errors
@@ -70,6 +72,7 @@ impl Errors {
         let [covered, expected] = [covered(picture)?, covered(truth)?];
         let width = truth.width as usize;
         let pairs = covered.iter().zip(&expected).zip(regions(&expected, width));
+        // A scene without light has no normals, which is no error.
         let compared: Vec<bool> = pairs
             .map(|((covered, _), region)| *covered > 0.0 && region == Region::Interior)
             .collect();
@@ -99,14 +102,15 @@ impl Errors {
         })
     }
 
-    /// Pixels in per mille of what the truth covers; none if it covers nothing.
+    /// Pixels in per mille of the pixels that the truth covers. None if the truth covers nothing.
     fn per_mille(&self, pixels: u64) -> Option<f64> {
         let covered = self.coverage.covered;
         (covered > 0).then(|| 1000.0 * pixels as f64 / covered as f64)
     }
 }
 
-/// Whether to take the two numbers that take most of the time; none and NaN if not.
+/// Whether to take SSIM and FLIP, the two slowest numbers. A number that is not wanted is none or
+/// NaN.
 #[derive(Clone, Copy, Debug)]
 struct Wanted {
     ssim: bool,
@@ -120,31 +124,32 @@ fn covered(frame: &Frame<f32>) -> Result<Vec<f32>> {
     Ok(pixels.map(|(a, z)| if *a > 0.0 && z.is_finite() { 1.0 } else { 0.0 }).collect())
 }
 
-/// Which of two numbers is the better one.
+/// Which of two numbers is better.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Better {
     /// The smaller one; 0 is perfect.
     Less,
-    /// The greater one.
+    /// The larger one.
     More,
     /// The one nearer to 1.
     NearOne,
 }
 
-/// A number of [`Errors`]: how it is called, and where it is.
+/// A number of [`Errors`]: its names, and how to take it.
 #[derive(Clone, Copy, Debug)]
 pub struct Metric {
-    /// Its name in files and options: `rmse`.
+    /// The name in files and options: `rmse`.
     pub name: &'static str,
-    /// Its name in sentences and charts.
+    /// The name in sentences and charts.
     pub title: &'static str,
-    /// What it is counted in; empty for a plain number.
+    /// The unit; empty for a plain number.
     pub unit: &'static str,
-    /// Which of two is the better one.
+    /// Which of two numbers is better.
     pub better: Better,
-    /// The number; none where there is nothing to take it of. PSNR of equal pictures is infinite.
+    /// Returns the number, or none where there is nothing to measure. PSNR of equal pictures is
+    /// infinite.
     pub of: fn(&Errors) -> Option<f64>,
-    /// What it takes of [`Errors`].
+    /// Which slow numbers of [`Errors`] it needs.
     wanted: Wanted,
 }
 
@@ -196,8 +201,8 @@ const fn metric(
 }
 
 impl Metric {
-    /// The number of a picture against its truth, as that of [`Errors::measure`]; faster, as no other is taken that takes
-    /// long.
+    /// Takes this one number of a picture against its truth, the same as with [`Errors::measure`]. It is
+    /// faster because it skips the slow numbers that it does not need.
     ///
     /// # Errors
     /// As [`Errors::measure`].
@@ -210,10 +215,10 @@ impl Metric {
         Ok((self.of)(&Errors::with(picture, truth, self.wanted, exec)?))
     }
 
-    /// The row of [`METRICS`] that is called `name`.
+    /// The row of [`METRICS`] with this name.
     ///
     /// # Errors
-    /// [`Error::Usage`], which lists the names, if there is none.
+    /// [`Error::Usage`] with all names, if no metric has this name.
     pub fn named(name: &str) -> Result<&'static Self> {
         const { &METRICS }.iter().find(|metric| metric.name == name).ok_or_else(|| {
             let names = METRICS.map(|metric| metric.name).join(", ");
@@ -305,7 +310,7 @@ mod tests {
     fn each_error_shows_in_its_number() {
         let truth = disc();
         let Some(Samples::Scalar(alphas)) = truth.plane("A") else { panic!("no A") };
-        // A pixel in the middle is missing, one far away is there.
+        // A pixel in the middle is missing, and a pixel far away is there.
         let covered = |x, y| (*alphas.at(x, y) > 0.0 && (x, y) != (20, 14)) || (x, y) == (2, 3);
         let tilted = [sin(0.25) as f32, 0.0, cos(0.25) as f32];
         let picture = frame(covered, |x| 4.25 + x as f32 / 8.0, tilted);
@@ -328,10 +333,10 @@ mod tests {
             let value = number(&found, name).unwrap();
             assert!((value - expected).abs() < 1e-5, "{name}: {value} against {expected}");
         }
-        // The disc is mirror symmetric about x = 19.5, but for the pixel that is missing.
+        // The disc is mirror symmetric about x = 19.5, except for the missing pixel.
         let relative = number(&found, "depth-relative").unwrap();
         assert!((relative - 0.25 / (4.0 + 19.5 / 8.0)).abs() < 1e-3, "{relative}");
-        // Two single pixels more: 4 sides and 4 corners each.
+        // Two more single pixels: 4 sides and 4 corners each.
         let more = 2.0 * std::f64::consts::FRAC_PI_8 * (4.0 + 8.0_f64.sqrt());
         assert!((found.outline - found.true_outline - more).abs() < 1e-9);
         assert!(number(&found, "flip").unwrap() > 0.0 && number(&found, "ssim").unwrap() < 1.0);
@@ -343,7 +348,7 @@ mod tests {
     fn a_surface_is_not_compared_at_the_silhouette() {
         let (truth, mut picture) = (disc(), disc());
         let Samples::Scalar(depths) = &mut picture.planes[2].samples else { panic!("no Z") };
-        // The uppermost row of the disc is that of y = 7.
+        // The uppermost row of the disc is y = 7.
         depths.values_mut()[7 * SIZE[0] as usize + 19] = 100.0;
         assert_eq!(of(&picture, &truth), of(&truth, &truth));
     }

@@ -1,32 +1,32 @@
-//! Flicker: what of the error of a sequence is not constant, and how fast it changes.
+//! Measure flicker: the part of a sequence's error that is not constant, and how fast it changes.
 //!
-//! Of n frames, each with its truth, the error of a pixel at frame t is the difference of
-//! luminances,
+//! A sequence has n frames, each with its truth. The error of a pixel at frame t is the difference
+//! of luminances,
 //!
 //! ```text
 //! e_t = 0.2126 dR + 0.7152 dG + 0.0722 dB,    d = picture - truth
 //! ```
 //!
-//! of linear colours, not clipped. Its mean over the frames, m, is an error that does not flicker.
-//! What is left is a sum of waves of k/n cycles a frame, k = 1 to n/2 rounded down; the power of one is
+//! of linear colours, not clipped. The mean of the error over the frames, m, does not flicker. The
+//! rest is a sum of waves of k/n cycles a frame, k = 1 to n/2 rounded down. The power of a wave is
 //!
 //! ```text
 //! P_k = w_k |1/n sum_t (e_t - m) exp(-2 pi i k t/n)|^2,    w_k = 1 if 2 k = n, else 2
 //! ```
 //!
-//! as a mean over the pixels. By Parseval's theorem the sum of all `P_k` is the mean over the pixels of
-//! the variance of `e_t` over the frames. The *flicker* is its root: 0 for an error that stays, however
-//! large. With the root of the mean of m^2, the *constant* error, it makes up the RMSE of the whole
-//! sequence: `constant^2 + flicker^2 = mean e_t^2`.
+//! as a mean over the pixels. By Parseval's theorem the sum of all `P_k` is the mean over the
+//! pixels of the variance of `e_t` over the frames. The *flicker* is the root of this sum: 0 for an
+//! error that stays, however large. The root of the mean of m^2 is the *constant* error. Both make
+//! up the RMSE of the whole sequence: `constant^2 + flicker^2 = mean e_t^2`.
 //!
-//! The frames are those of a path of the camera, or of one scene under shifts by parts of a pixel.
-//! They are taken as they are: no window tapers them. So an error that drifts from the first frame to
-//! the last shows at all frequencies, with a power that falls as 1/k^2; only if the path closes, or
-//! the shifts go through a whole pixel, is the sequence a period.
+//! The frames follow a path of the camera, or show one scene shifted by parts of a pixel. They are
+//! taken as they are: no window tapers them. So an error that drifts from the first frame to the
+//! last shows at all frequencies, with a power that falls as 1/k^2. The sequence is a period only
+//! if the path closes, or the shifts go through a whole pixel.
 //!
-//! `Decided:` pixels are those of the picture; they are not followed along the motion of the surface.
-//! A pixel that flickers in colour alone, at equal luminance, is not seen here. A NaN or an infinity
-//! in a colour makes the numbers NaN.
+//! `Decided:` a pixel is a pixel of the picture; the motion of the surface is not followed. A pixel
+//! that flickers only in colour, at equal luminance, does not count. A NaN or an infinity in a
+//! colour makes the numbers NaN.
 
 use super::same_size;
 use crate::error::{Error, Result};
@@ -38,7 +38,7 @@ use std::f64::consts::PI;
 /// The weights of linear red, green and blue in the luminance (Rec. 709).
 const LUMINANCE: [f64; 3] = [0.2126, 0.7152, 0.0722];
 
-/// The errors of a sequence, added frame by frame: an `f32` a pixel and frame.
+/// The errors of a sequence, added frame by frame. Each pixel of each frame takes an `f32`.
 #[derive(Clone, Debug)]
 pub struct Flicker {
     width: u32,
@@ -46,21 +46,21 @@ pub struct Flicker {
     frames: Vec<Plane<f32>>,
 }
 
-/// How a sequence flickers, see the [page](self); in luminance, of which 1 is white.
+/// The flicker of a sequence, see the [page](self). Numbers are luminances; white is 1.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Spectrum {
-    /// How many frames there were.
+    /// Number of frames.
     pub frames: usize,
     /// The root of the mean square of the mean errors, at least 0.
     pub constant: f64,
     /// The root of the sum of [`Spectrum::power`], at least 0.
     pub flicker: f64,
-    /// The power of each frequency, `P_1`, `P_2` ...; [`Spectrum::frequency`] says of which.
+    /// The power of each frequency, `P_1`, `P_2` ...; [`Spectrum::frequency`] gives the frequency.
     pub power: Vec<f64>,
 }
 
 impl Spectrum {
-    /// The frequency of a place in [`Spectrum::power`] in cycles a frame, in (0, 1/2].
+    /// The frequency of an entry of [`Spectrum::power`] in cycles a frame, in (0, 1/2].
     #[must_use]
     pub fn frequency(&self, place: usize) -> f64 {
         (place + 1) as f64 / self.frames as f64
@@ -68,7 +68,7 @@ impl Spectrum {
 }
 
 impl Flicker {
-    /// No frame yet, of at most `frames` that are to come.
+    /// Starts a sequence of at most `frames` frames.
     ///
     /// # Errors
     /// [`Error::Invalid`] if there is not enough memory.
@@ -82,7 +82,7 @@ impl Flicker {
     /// Adds a frame: a picture and its truth, linear RGB.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if either has not the size of the sequence.
+    /// [`Error::Invalid`] if the picture or the truth does not have the size of the sequence.
     pub fn push(&mut self, picture: &Plane<[f32; 3]>, truth: &Plane<[f32; 3]>) -> Result<()> {
         same_size(picture, truth)?;
         if (picture.width(), picture.height()) != (self.width, self.height) {
@@ -102,9 +102,9 @@ impl Flicker {
         Ok(())
     }
 
-    /// The spectrum of the frames that were added.
+    /// The spectrum of the frames that you added.
     ///
-    /// The sum of each frequency as it is written, in n^2 additions a pixel.
+    /// Each frequency is summed directly from the formula, in n^2 additions a pixel.
     ///
     /// # Errors
     /// [`Error::Invalid`] if there is no frame.
@@ -127,11 +127,11 @@ impl Flicker {
         let constant = mean(&sums[0]).sqrt();
         let power: Vec<f64> = sums[1..].iter().map(mean).collect();
         let flicker = power.iter().sum::<f64>().sqrt();
-        // -- An empty sum of floats is -0.
+        // Adding +0 because an empty sum of floats is -0.
         Ok(Spectrum { frames: n, constant, flicker: flicker + 0.0, power })
     }
 
-    /// The sums along a row of m^2 and of each P, in the order of their frequencies.
+    /// The sums along a row of m^2 and of each P, in the order of frequencies.
     fn row(&self, y: usize, circle: &[[f64; 2]]) -> Vec<f64> {
         let (width, n) = (self.width as usize, self.frames.len());
         let mut errors: Vec<Vec<f64>> = self
@@ -159,6 +159,7 @@ impl Flicker {
                     *im += s * error;
                 }
             }
+            // All waves but the fastest stand for two conjugate frequencies, k and n - k.
             let weight = if 2 * k == n { 1.0 } else { 2.0 };
             let squares: f64 = real.iter().zip(&imaginary).map(|(re, im)| re * re + im * im).sum();
             weight * squares / (n * n) as f64
@@ -172,7 +173,7 @@ mod tests {
     use super::*;
     use crate::number::random::unit;
 
-    /// The spectrum of gray pictures whose errors are given by frame and pixel.
+    /// The spectrum of gray pictures, with errors given by frame and pixel.
     fn spectrum(frames: usize, error: impl Fn(usize, usize) -> f32) -> Spectrum {
         let (width, height) = (7, 5);
         let truth = Plane::filled(width, height, [0.5; 3]);
@@ -195,8 +196,8 @@ mod tests {
         assert_eq!((one.flicker.to_bits(), one.power), (0, vec![]));
     }
 
-    /// A wave of amplitude a has the variance a^2/2, wherever its phase is, all at its frequency;
-    /// the fastest one, +a -a, has a^2.
+    /// A wave of amplitude a has the variance a^2/2 at any phase, all at its frequency. The fastest
+    /// wave, +a -a, has a^2.
     #[test]
     fn a_wave_has_its_power_at_its_frequency() {
         for n in [4, 9, 16, 33] {
@@ -233,7 +234,7 @@ mod tests {
         }
     }
 
-    /// Parseval: the flicker is the standard deviation over time, and with the constant error makes
+    /// Parseval: the flicker is the standard deviation over time. Flicker and constant error make
     /// up the whole.
     #[test]
     fn the_flicker_is_the_deviation_over_time() {
@@ -255,7 +256,7 @@ mod tests {
             let whole = found.constant * found.constant + found.flicker * found.flicker;
             assert!((found.flicker * found.flicker - variance).abs() < 1e-7, "{n}: {found:?}");
             assert!((whole - square).abs() < 1e-7, "{n}: {whole} against {square}");
-            // Played backwards, the same.
+            // The sequence played backwards gives the same.
             let back = spectrum(n, |t, i| error(n - 1 - t, i));
             let off = back.power.iter().zip(&found.power).map(|(a, b)| (a - b).abs());
             assert!(off.into_iter().all(|off| off < 1e-12));

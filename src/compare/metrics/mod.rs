@@ -1,22 +1,24 @@
-//! How far a picture is from another one, from the truth for example: a number a file.
+//! Measure how far a picture is from a reference, e.g. from the truth, in numbers that rank
+//! methods.
 //!
-//! - [`mod@rmse`]: RMSE and PSNR, of colours, as numbers.
-//! - [`mod@ssim`]: their structure \[WBSS04\].
+//! - [`mod@rmse`]: RMSE and PSNR of colours.
+//! - [`mod@ssim`]: structural similarity of colours \[WBSS04\].
 //! - [`mod@flip`]: how visible the difference is \[ANA+20\].
-//! - [`mod@coverage`]: holes and spill, by regions of what is covered.
-//! - [`mod@visible`]: pixels inside that are visibly off.
+//! - [`mod@coverage`]: holes and spill, by regions of the covered pixels.
+//! - [`mod@visible`]: pixels inside the surface that are visibly off.
 //! - [`mod@outline`]: the length of the silhouette.
-//! - [`mod@depth`], [`mod@normal`]: the surface in the pixels that both cover.
+//! - [`mod@depth`], [`mod@normal`]: errors of the surface in the pixels that both pictures cover.
 //! - [`mod@flicker`]: errors of a sequence that are not constant, and their spectrum.
-//! - [`mod@errors`]: all of one picture against its truth, and the table of their names and units.
+//! - [`mod@errors`]: all errors of one picture against its truth, and the table of their names and
+//!   units.
 //!
-//! Whether a picture is right is for [`super::compare`] to say; these serve to rank methods. Every
-//! number is f64, and a sum runs row by row from the top left, the rows one after the other.
+//! To learn whether a picture is right, use [`super::compare`]: a metric only ranks methods. Every
+//! number is f64. A sum runs row by row from the top left, the rows one after the other.
 //!
-//! `Decided:` RMSE, PSNR and SSIM are taken of the values as stored, for pictures linear and not
-//! clipped, with a peak of 1: a value that a display would clip counts in full. A NaN or an infinity
-//! in a plane makes each of these numbers NaN or infinite. What the others do with them is said on
-//! their pages.
+//! `Decided:` RMSE, PSNR and SSIM use the values as stored. For pictures these are linear and not
+//! clipped, with a peak of 1, so a value that a display would clip counts in full. A NaN or an
+//! infinity in a plane makes each of these three numbers NaN or infinite. The page of each other
+//! metric says how it treats them.
 
 pub mod coverage;
 pub mod depth;
@@ -45,7 +47,7 @@ pub use visible::visible;
 use crate::error::{Error, Result};
 use crate::frame::Plane;
 
-/// Whether two planes have one size.
+/// Fails unless two planes have the same size.
 fn same_size<A, B>(picture: &Plane<A>, reference: &Plane<B>) -> Result<()> {
     let [size, other] =
         [(picture.width(), picture.height()), (reference.width(), reference.height())];
@@ -58,8 +60,8 @@ fn same_size<A, B>(picture: &Plane<A>, reference: &Plane<B>) -> Result<()> {
     )))
 }
 
-/// The number of an ascending list that `percent` of the numbers do not exceed: the one at
-/// ceil(n percent/100), counted from 1. None of none.
+/// The number of an ascending list that `percent` of the numbers do not exceed: the one at ceil(n
+/// percent/100), counted from 1. None for an empty list.
 fn percentile(ascending: &[f64], percent: usize) -> Option<f64> {
     let rank = (ascending.len() * percent).div_ceil(100);
     ascending.get(rank.saturating_sub(1)).copied()

@@ -1,27 +1,29 @@
-//! How far the normal of a surface is off.
+//! Measure how far the normal of a surface is off.
 
 use super::percentile;
 use crate::number::elementary;
 
-/// The angles between the normals of some pixels, in degrees; see [`normal`].
+/// Angles between the normals of some pixels, in degrees; see [`normal`].
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NormalError {
     /// How many pixels were compared, at least 1.
     pub pixels: u64,
     /// The mean angle.
     pub mean: f64,
-    /// What 99 % of the angles do not exceed: the one at ceil(0.99 n) of n in ascending order.
+    /// The angle that 99 % of the angles do not exceed: the one at ceil(0.99 n) of n in ascending
+    /// order.
     pub most: f64,
 }
 
-/// The angles between the normals of those pixels that are to be compared, 0 to 180 degrees.
+/// Takes the angles between the normals in the pixels that `compared` names, 0 to 180 degrees.
 ///
-/// The angle of a and b is atan2(|a x b|, a . b), which is as exact near 0 and 180 degrees as
-/// elsewhere, and does not ask for unit vectors. Normals have a side: the opposite one is 180 degrees
-/// off.
+/// The angle of a and b is atan2(|a x b|, a . b). This formula is as exact near 0 and 180 degrees
+/// as elsewhere, and does not need unit vectors. Normals have a side: the opposite one is 180
+/// degrees off.
 ///
-/// `Decided:` a normal of the picture that is zero or not finite says nothing, and counts as 90
-/// degrees. A pixel where that of the reference is such is left out. None if no pixel is left.
+/// `Decided:` a normal of the picture that is zero or not finite has no direction, and counts as 90
+/// degrees. A pixel is left out where the reference's normal is zero or not finite. None if no
+/// pixel is left.
 ///
 /// # Panics
 /// If the planes differ in length.

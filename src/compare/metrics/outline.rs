@@ -1,27 +1,29 @@
-//! The length of the silhouette.
+//! Measure the length of the silhouette.
 
-/// The length of the outline of what a plane covers, in pixels, `width` values a row.
+/// The length of the outline of the covered pixels, in pixels. The plane has `width` values a row.
 ///
-/// A pixel is covered if its value is > 0; a NaN is not. The outline is what separates covered
-/// pixels from others, of holes too. The border of the picture is no outline.
+/// A pixel is covered if its value is > 0; a NaN is not. The outline separates covered pixels from
+/// others, around holes too. The border of the picture is no outline.
 ///
-/// Of the pairs of neighbouring pixels of which one is covered, let `h`, `v` be those side by side
-/// and those one above the other, `d` those at a corner, in both diagonals. By the formula of Cauchy
-/// and Crofton with lines in the directions 0, 45, 90 and 135 degrees,
+/// Count the pairs of neighbouring pixels with exactly one covered: `h` side by side, `v` one above
+/// the other, and `d` at a corner, in both diagonals. The formula of Cauchy and Crofton, with lines
+/// in the directions 0, 45, 90 and 135 degrees, is
 ///
 /// ```text
 /// length = pi/8 (h + v + d / sqrt 2)
 /// ```
 ///
-/// Lines along pixels are 1 px apart, diagonal ones 1/sqrt 2, and each counts for 45 degrees. The
-/// mean over all directions of a long straight edge is its length, so that of a large disc is right.
-/// An edge whose direction is theta is measured as pi/8 (|sin theta| + |cos theta| +
+/// Lines along pixels are 1 px apart, diagonal ones 1/sqrt 2, and each counts for 45 degrees. For a
+/// long straight edge the mean over all directions is its length, so the length of a large disc is
+/// right. An edge whose direction is theta is measured as pi/8 (|sin theta| + |cos theta| +
 /// |sin(theta - 45)| + |cos(theta - 45)|) of its length: from 0.948 along rows, columns and
-/// diagonals to 1.026 halfway between. A single pixel measures 2.68. A rough outline is longer: the
-/// ratio to the outline of the truth shows it, and most of what depends on direction cancels.
+/// diagonals to 1.026 halfway between. A single pixel measures 2.68.
+///
+/// A rough outline is longer. The ratio to the outline of the truth shows this, and most of the
+/// dependence on direction cancels.
 ///
 /// # Panics
-/// If the plane is no multiple of `width`.
+/// If the length of the plane is no multiple of `width`.
 #[must_use]
 pub fn outline(coverage: &[f32], width: usize) -> f64 {
     let height = coverage.len().checked_div(width).unwrap_or(0);

@@ -1,8 +1,8 @@
-//! RMSE and PSNR.
+//! RMSE and PSNR of two planes.
 
 use crate::number::elementary;
 
-/// The root of the mean squared difference of two planes of one size; NaN if they have no value.
+/// The root of the mean squared difference of two planes of one size; NaN if they are empty.
 ///
 /// # Panics
 /// If the planes differ in length.

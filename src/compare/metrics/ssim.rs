@@ -1,32 +1,33 @@
-//! SSIM \[WBSS04\].
+//! SSIM, the structural similarity of two planes \[WBSS04\].
 
 use crate::number::elementary;
 
 /// The side of the window of \[WBSS04\], in pixels.
 const WINDOW: usize = 11;
-/// Its standard deviation, in pixels.
+/// The standard deviation of the window, in pixels.
 const SIGMA: f64 = 1.5;
 /// (K1 L)^2, with L = 1 the range of values.
 const C1: f64 = 0.01 * 0.01;
 /// (K2 L)^2.
 const C2: f64 = 0.03 * 0.03;
 
-/// The mean structural similarity of two planes, `width` values a row, as \[WBSS04\] defines it.
+/// The mean structural similarity of two planes with `width` values a row, as \[WBSS04\] defines
+/// it.
 ///
-/// At each position of the 11 x 11 Gaussian window g (standard deviation 1.5, sum 1) inside the
-/// plane, with the weighted means m = sum g x, variances v = sum g x^2 - m^2 (population, not
-/// sample) and covariance c = sum g x y - `m_x` `m_y`,
+/// The formula is evaluated at each position of the 11 x 11 Gaussian window g (standard deviation
+/// 1.5, sum 1) inside the plane. It uses the weighted means m = sum g x, the variances v = sum g
+/// x^2 - m^2 (population, not sample) and the covariance c = sum g x y - `m_x` `m_y`:
 ///
 /// ```text
 /// SSIM = (2 m_x m_y + C1) (2 c + C2) / ((m_x^2 + m_y^2 + C1) (v_x + v_y + C2))
 /// ```
 ///
-/// with C1 = 0.01^2 and C2 = 0.03^2, and the result is the mean over the positions. There is no
-/// padding and, as in the paper's equations and unlike in the authors' later script, no
+/// with C1 = 0.01^2 and C2 = 0.03^2. The result is the mean over the positions. There is no
+/// padding. As in the paper's equations and unlike in the authors' later script, there is no
 /// downsampling. For a colour, take the mean over its channels. `None` if the window does not fit.
 ///
 /// # Panics
-/// If the planes differ in length, or it is no multiple of `width`.
+/// If the planes differ in length, or their length is no multiple of `width`.
 ///
 /// [WBSS04]: https://doi.org/10.1109/TIP.2003.819861
 #[must_use]
@@ -39,8 +40,10 @@ pub fn ssim(a: &[f32], b: &[f32], width: usize) -> Option<f64> {
     (count > 0).then(|| sum / count as f64)
 }
 
-/// The similarity at each position of the window, of which [`ssim`] is the mean: `width - 10` values a row and
-/// ten rows less than the planes have, the first that of the window whose centre is the pixel (5, 5).
+/// The similarity at each position of the window; [`ssim`] is the mean of this map.
+///
+/// The map has `width - 10` values a row and ten rows less than the planes have. Its first value
+/// belongs to the window whose centre is the pixel (5, 5).
 ///
 /// # Panics
 /// As [`ssim`].
@@ -51,7 +54,8 @@ pub fn ssim_map(a: &[f32], b: &[f32], width: usize) -> Option<Vec<f64>> {
     (!map.is_empty()).then_some(map)
 }
 
-/// Runs `visit` for the similarity at each position of the window, row by row; for none if it does not fit.
+/// Runs `visit` for the similarity at each position of the window, row by row. If the window does
+/// not fit, it never runs.
 fn each_similarity(a: &[f32], b: &[f32], width: usize, mut visit: impl FnMut(f64)) {
     assert_eq!(a.len(), b.len(), "planes of one size");
     let Some(height) = a.len().checked_div(width) else { return };
@@ -61,7 +65,8 @@ fn each_similarity(a: &[f32], b: &[f32], width: usize, mut visit: impl FnMut(f64
     }
     let weights = gaussian();
     let columns = width + 1 - WINDOW;
-    // The window is a product: rows are blurred along x once, and the last 11 of them along y.
+    // The window is a product of two Gaussians: rows are blurred along x once, and the last 11 of
+    // them along y.
     let mut blurred = vec![[const { Vec::<f64>::new() }; 5]; WINDOW];
     for (y, (row_a, row_b)) in a.chunks_exact(width).zip(b.chunks_exact(width)).enumerate() {
         blurred[y % WINDOW] = moments(row_a, row_b).map(|row| blur_row(&row, &weights));
@@ -112,7 +117,7 @@ fn blur_columns(rows: [&[f64]; WINDOW], weights: &[f64; WINDOW]) -> Vec<f64> {
     sums
 }
 
-/// The formula of [`ssim`], of the blurred a, b, a^2, b^2 and a b.
+/// The formula of [`ssim`] for the blurred a, b, a^2, b^2 and a b.
 fn similarity([m_a, m_b, m_aa, m_bb, m_ab]: [f64; 5]) -> f64 {
     let (v_a, v_b, c) = (m_aa - m_a * m_a, m_bb - m_b * m_b, m_ab - m_a * m_b);
     (2.0 * m_a * m_b + C1) * (2.0 * c + C2) / ((m_a * m_a + m_b * m_b + C1) * (v_a + v_b + C2))
@@ -124,8 +129,8 @@ mod tests {
     use super::super::{psnr, rmse};
     use super::*;
 
-    /// Printed by `tests/data/ssim.py`: scikit-image 0.26.0, which it first holds against the
-    /// definition; RMSE, PSNR, SSIM of shifted, noisy and other patterns.
+    /// Printed by `tests/data/ssim.py`: scikit-image 0.26.0, which the script first compares with
+    /// the definition. RMSE, PSNR, SSIM of shifted, noisy and other patterns.
     #[test]
     fn the_published_implementation_agrees() {
         let references = [
@@ -162,12 +167,13 @@ mod tests {
         assert_eq!(rmse(&a, &a), 0.0);
         assert_eq!(psnr(0.0), f64::INFINITY);
         assert!((psnr(0.1) - 20.0).abs() < 1e-12);
-        // Of two constants the second factor is C2 / C2.
+        // For two constants the second factor is C2 / C2.
         let (p, q) = (0.25_f64, 0.75_f64);
         let found = ssim(&[0.25; 169], &[0.75; 169], 13).unwrap();
         assert!((found - (2.0 * p * q + C1) / (p * p + q * q + C1)).abs() < 1e-12);
         assert_eq!(rmse(&[0.25; 169], &[0.75; 169]), 0.5);
-        // Only windows that hold the pixel that differs are less similar; it is in the first one's corner.
+        // Only windows that hold the changed pixel are less similar. The pixel is in the corner of
+        // the first window.
         let mut b = a.clone();
         b[0] += 0.5;
         let map = ssim_map(&a, &b, 20).unwrap();

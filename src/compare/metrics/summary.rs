@@ -1,4 +1,4 @@
-//! The usual three distances of two colours at once.
+//! RMSE, PSNR and SSIM of two colours at once.
 
 use super::rmse::mean_square;
 use super::{psnr, ssim};
@@ -7,17 +7,18 @@ use crate::frame::image::{Image, Values};
 /// The distances between the colours of two pictures.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Summary {
-    /// Over all pixels of the three channels; at least 0.
+    /// The RMSE over all pixels of the three channels; at least 0.
     pub rmse: f64,
-    /// Of that RMSE, in decibels; infinite if it is 0.
+    /// The PSNR of that RMSE, in decibels; infinite if the RMSE is 0.
     pub psnr: f64,
-    /// The mean of the three channels' SSIM, at most 1; none for pictures that no window fits into.
+    /// The mean SSIM of the three channels, at most 1. None if the pictures are smaller than a
+    /// window.
     pub ssim: Option<f64>,
 }
 
 /// The distances between the channels `R`, `G` and `B` of two pictures.
 ///
-/// None unless both have all three as floats, and one size.
+/// None unless both pictures have all three channels as floats, and the same size.
 #[must_use]
 pub fn summary(a: &Image, b: &Image) -> Option<Summary> {
     if (a.width, a.height) != (b.width, b.height) {
@@ -35,13 +36,13 @@ pub fn summary(a: &Image, b: &Image) -> Option<Summary> {
     Some(Summary::of_channels(&distances))
 }
 
-/// The mean squared difference and the SSIM of a channel, `width` values a row.
+/// The mean squared difference and the SSIM of a channel with `width` values a row.
 pub(super) fn channel(a: &[f32], b: &[f32], width: usize) -> (f64, Option<f64>) {
     (mean_square(a, b), ssim(a, b, width))
 }
 
 impl Summary {
-    /// Of what [`channel`] gives of the three channels.
+    /// Summarizes the results of [`channel`] for the three channels.
     pub(super) fn of_channels(distances: &[(f64, Option<f64>)]) -> Self {
         let (mut squares, mut similarity) = (0.0, Some(0.0));
         for (square, one) in distances {

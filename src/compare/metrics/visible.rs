@@ -1,18 +1,18 @@
-//! Pixels that are visibly off: the words of papers as a number.
+//! Count pixels that are visibly off: a number for the word "visible" in papers.
 
 use super::{Region, regions};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Samples};
 use crate::number::srgb::from_linear;
 
-/// A pixel is visibly off if R, G or B differs by more than this as sRGB.
+/// A pixel is visibly off if R, G or B differs by more than this in sRGB.
 pub const STEP: f64 = 8.0 / 255.0;
 
-/// The pixels [inside](Region::Interior) of what `A` of the truth covers of which R, G or B differs by more than [`STEP`]
-/// as sRGB, per cent of them; 0 if there are none.
+/// The per cent of [interior](Region::Interior) pixels that are visibly off: R, G or B differs by
+/// more than [`STEP`] in sRGB. The truth's `A` says which pixels are interior. 0 if there are none.
 ///
-/// `Decided:` a difference of 8/255 is seen on a surface that is smooth around it, and a silhouette is left
-/// out: it may be off by a pixel in both pictures. A NaN is off.
+/// `Decided:` a difference of 8/255 can be seen on a surface that is smooth around it. A silhouette
+/// is left out, because it may be off by a pixel in both pictures. A NaN is off.
 ///
 /// # Errors
 /// [`Error::Invalid`] if the frames differ in size, or the colour or `A` is missing.
@@ -44,7 +44,7 @@ mod tests {
     use super::*;
     use crate::frame::{NamedPlane, Plane};
 
-    /// A gray picture of 5 x 4 pixels, all covered but for the last column.
+    /// A gray picture of 5 x 4 pixels, all covered except the last column.
     fn gray(value: f32) -> Frame<f32> {
         let covered = (0..20).map(|i| f32::from(u8::from(i % 5 < 4))).collect();
         let planes = vec![
@@ -74,11 +74,12 @@ mod tests {
         let truth = gray(0.5);
         let share = |frame: &Frame<f32>| visible(frame, &truth).unwrap();
         assert_eq!(share(&truth), 0.0);
-        // Linear 0.5 is 187.52 of 255 as sRGB; these are 7.9 and 8.1 steps above. One of twelve pixels inside.
+        // Linear 0.5 is 187.52 of 255 in sRGB; these are 7.9 and 8.1 steps above. One of twelve
+        // pixels inside.
         assert_eq!(share(&with(1, [0.5, 0.5, 0.54833])), 0.0);
         assert_eq!(share(&with(1, [0.5, 0.5, 0.54959])), 100.0 / 12.0);
         assert_eq!(share(&with(1, [0.5, f32::NAN, 0.5])), 100.0 / 12.0, "a NaN is off");
-        // The fourth column is at the silhouette, the fifth beyond it.
+        // The fourth column is on the silhouette, the fifth beyond it.
         assert_eq!(share(&with(3, [1.0; 3])), 0.0);
         assert_eq!(share(&with(4, [1.0; 3])), 0.0);
         assert_eq!(share(&gray(0.9)), 100.0);

@@ -1,4 +1,4 @@
-//! The fragments that may lie in the pixels of a tile.
+//! Find the fragments that may lie in the pixels of a tile.
 
 use crate::composite::decide;
 use crate::frame::{Bins, NO_ID, Rect};
@@ -23,17 +23,17 @@ pub(super) struct PossibleFragment<P: Profile> {
     pub(super) id: u32,
     pub(super) depth: Ball<P>,
     pub(super) offset: Ball<P>,
-    /// The offset divided by its limit; 0 of a triangle.
+    /// The offset divided by its limit; 0 for a triangle.
     pub(super) rim: f64,
-    /// Whether it certainly lies there.
+    /// Whether the fragment certainly lies in the pixel.
     pub(super) lies: bool,
     /// Whether its surfel certainly is drawn, somewhere.
     pub(super) drawn: bool,
-    /// Whether it is inside its disc, if that and nothing else is undecided.
+    /// The cut-off decision, if it is the only undecided decision on the fragment.
     pub(super) open: Option<OpenDecision>,
-    /// Whether the back of its surfel is seen.
+    /// Whether the camera sees the back of its surfel.
     pub(super) back: Three,
-    /// What a triangle shows; that of a surfel is known.
+    /// The surface that a triangle shows; none for a surfel, because the scene has it.
     triangle: Option<Surface<P>>,
 }
 
@@ -47,7 +47,7 @@ struct Possible<P: Profile> {
     back: Three,
 }
 
-/// All that may be drawn, and where.
+/// All surfels and triangles that may be drawn, and where.
 pub(super) struct Fragments<'a, P: Profile> {
     scene: &'a Scene,
     view: View<Ball<P>>,
@@ -80,8 +80,9 @@ impl<'a, P: Profile> Fragments<'a, P> {
         }
     }
 
-    /// What may lie in each pixel of a tile, in the order of the ids; what certainly is behind another
-    /// fragment only if it is what the client has: `keeps` gives that.
+    /// The fragments that may lie in each pixel of a tile, in the order of ids. A fragment that
+    /// certainly is behind another is left out, unless the client has it: `keeps` gives the
+    /// client's id.
     pub(super) fn of_tile(
         &self,
         (tile, rect): (usize, &Rect),
@@ -146,7 +147,8 @@ impl<'a, P: Profile> Fragments<'a, P> {
         let open = one.drawn && others.certainly() && inside.decided().is_none();
         let radius = f64::from(self.scene.surfels.radius()[one.surfel as usize]);
         let limit = radius * radius;
-        // Within the radius of the centre, but for what is rounded: more than any implementation does.
+        // A fragment that stays is within the radius of the centre. The reach adds more than any
+        // implementation rounds.
         let reach = radius + (disc.p.z.middle.abs() + radius) * ROUNDINGS + disc.p.z.radius;
         let depth = narrower(fragment.t, Ball::new(-disc.p.z.middle, reach));
         let most = 0.5 * limit * (1.0 + ROUNDINGS) + f64::from(f32::MIN_POSITIVE);
@@ -169,7 +171,7 @@ impl<'a, P: Profile> Fragments<'a, P> {
         })
     }
 
-    /// What a pixel shows of a fragment, seen from the front or from the back.
+    /// The surfaces that a pixel may show of a fragment, seen from the front or from the back.
     pub(super) fn surfaces(&self, may: &PossibleFragment<P>) -> [Option<Surface<P>>; 2] {
         if may.triangle.is_some() {
             return [may.triangle, None];
@@ -188,8 +190,8 @@ impl<'a, P: Profile> Fragments<'a, P> {
         ]
     }
 
-    /// The offset of a surfel at a pixel divided by its limit, if that is more than 1, the surfel may be drawn,
-    /// and the pixel may be in its square.
+    /// The offset of a surfel at a pixel divided by its limit. None unless this is more than 1, the
+    /// surfel may be drawn, and the pixel may be in its square.
     pub(super) fn rim(&self, surfel: u32, (x, y): (u32, u32)) -> Option<f64> {
         if surfel == NO_ID || surfel as usize >= self.scene.surfels.len() {
             return None;
@@ -203,7 +205,8 @@ impl<'a, P: Profile> Fragments<'a, P> {
     }
 }
 
-/// More than any implementation rounds a depth or an offset by, as a part of the operands.
+/// A bound on the rounding of a depth or an offset, as a fraction of the operands. No
+/// implementation rounds more.
 const ROUNDINGS: f64 = 1.0 / 65_536.0;
 
 /// The pixels of a rectangle, which may be empty.
@@ -211,9 +214,9 @@ fn counted_in(rect: Rect) -> impl Iterator<Item = (usize, (u32, u32))> {
     counted(if rect.is_empty() { Rect::default() } else { rect })
 }
 
-/// The ball that is known better.
+/// The ball with the smaller radius.
 fn narrower<P: Profile>(own: Ball<P>, around: Ball<P>) -> Ball<P> {
-    // A comparison that NaN fails.
+    // Written so that a NaN radius never wins.
     if own.radius <= around.radius { own } else { around }
 }
 
@@ -227,7 +230,7 @@ fn in_square<P: Profile>(edges: &Edges<Ball<P>>, (x, y): (u32, u32)) -> Three {
 }
 
 impl<P: Profile> Possible<P> {
-    /// A surfel, if it may be drawn into a pixel of the picture.
+    /// The surfel, if it may be drawn into a pixel of the picture.
     fn new(
         projector: &SquareProjector<'_, Ball<P>>,
         i: usize,
@@ -241,14 +244,14 @@ impl<P: Profile> Possible<P> {
         let [x0, x1] = pixels(placed.edges.x, width);
         let [y0, y1] = pixels(placed.edges.y, height);
         let bounds = Rect { x0, y0, x1, y1 };
-        // With culling what is drawn is seen from the front.
+        // With culling, every drawn surfel is seen from the front.
         let back = if projector.points.cull { false.into() } else { placed.g.gt(Ball::ZERO) };
         let (surfel, drawn) = (i as u32, !dropped.possibly());
         (!bounds.is_empty()).then_some(Self { surfel, bounds, drawn, placed, back })
     }
 }
 
-/// The pixels that may be between two edges.
+/// The pixels whose centres may be between two edges.
 fn pixels<P: Profile>([first, end]: [Ball<P>; 2], size: u32) -> [u32; 2] {
     let known = |edge: Ball<P>| edge.radius.is_finite() && edge.middle.is_finite();
     let held = |at: f64| at.at_least(0.0).at_most(f64::from(size)) as u32;

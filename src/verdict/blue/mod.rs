@@ -1,32 +1,40 @@
-//! What a right implementation may leave of each stage, held against somebody's planes.
+//! Verify your planes of progressive blue surfels: which planes a correct implementation may leave
+//! of each stage.
 //!
-//! Surfels are placed in [`Ball`]s of a [`Profile`], and so are their fragments. A
-//! surfel *may lie* in a pixel if it is not certain that it is not drawn, that the pixel is not in its square,
-//! or that its fragment is discarded; it *lies* there if all of this certainly is otherwise. Triangles as in
-//! [`projection`](crate::verdict::projection). A fragment that stays is within the radius of its
-//! centre, and so is its depth: where the plane is nearly edge-on, that bounds it.
+//! Surfels and their fragments are placed in [`Ball`]s of a [`Profile`].
+//!
+//! - A surfel *may lie* in a pixel unless one of these is certain: it is not drawn, the pixel is
+//!   not in its square, or its fragment is discarded.
+//! - A surfel *lies* in a pixel if the contrary of all three is certain.
+//! - Triangles are as in [`projection`](crate::verdict::projection).
+//! - A fragment that stays is within the radius of its centre, and so is its depth. This bounds the
+//!   depth where the plane is nearly edge-on.
 //!
 //! **Discs.**
 //!
-//! 1. What the id names may lie in the pixel. An empty pixel has none.
-//! 2. Depth, offset, normal, weight and colour are those of a fragment of it, seen from either side where that
-//!    is undecided; in an empty pixel those of nothing.
-//! 3. Nothing else lies in the pixel whose depth certainly is less than Z; without Z, than that of the
-//!    fragment. Of an empty pixel Z is +inf.
-//! 4. No surfel comes before that of the id, as the client says of ties, which lies there at a depth that is
-//!    equal and exact in balls, or all of whose numbers are those of the id's surfel.
+//! 1. The surfel or triangle of the id may lie in the pixel. An empty pixel has no id.
+//! 2. Depth, offset, normal, weight and colour are those of one fragment of it, seen from either
+//!    side where the side is undecided. In an empty pixel they are the values of an empty pixel.
+//! 3. Nothing else lies in the pixel whose depth certainly is less than Z. Without Z, its depth is
+//!    compared with the fragment's. In an empty pixel Z is +inf.
+//! 4. No surfel that lies there at an equal depth comes before the id's surfel by the client's tie
+//!    rule. Depths are equal if they are the same and exact in balls, or if all numbers of the two
+//!    surfels are the same.
 //!
-//! Without ids the fragment is the one that errs least, of those that nothing certainly hides; the pixel may
-//! be empty where nothing certainly lies, and is where Z, else the weight, say so.
+//! Without ids, the verdict takes the fragment that errs least, among those that nothing certainly
+//! hides. The pixel may be empty where nothing certainly lies. It is empty where Z, else the
+//! weight, says so.
 //!
-//! **Shading** from the client's depth, normal, weight and colour; what it has not handed in is that of the
-//! fragment.
+//! **Shading** uses the client's depth, normal, weight and colour. A plane that the client does not
+//! hand in is taken from the fragment.
 //!
-//! An id tells how the client decided whether a fragment is inside that is in front of all others that may lie in the
-//! pixel: what these decisions say together is a [`crate::verdict::shift`] of the cut-off.
+//! Where a fragment is in front of all others that may lie in the pixel, the id shows whether the
+//! client took it as inside. Together these decisions give a [`crate::verdict::shift`] of the
+//! cut-off.
 //!
-//! A pixel is undecided if it is not certain what may lie there in front of, or as, what the client has. Which
-//! of two near ties is nearer does not count: the client's word is taken, and what follows from it is judged.
+//! A pixel is undecided if it is not certain which fragments may lie there in front of the
+//! client's, or as the client's. A near tie does not make a pixel undecided: the client's choice is
+//! taken, and the later stages are judged from it.
 
 mod fragments;
 mod planes;
@@ -62,7 +70,7 @@ pub(super) fn verify<P: Profile>(
     marks::verdict(job, client_planes.stages(), budget, |tile, marks| judge.judge(tile, marks))
 }
 
-/// Everything that is judged at one pixel.
+/// Every check at one pixel.
 pub(super) fn checks<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
@@ -75,7 +83,7 @@ pub(super) fn checks<P: Profile>(
     marks::checks(job, stages, pixel, |tile, marks| judge.judge(tile, marks))
 }
 
-/// What all tiles share.
+/// The parts that all tiles share.
 struct Judge<'a, P: Profile> {
     surfels: &'a Surfels,
     client_planes: &'a BluePlanes<'a>,
@@ -83,8 +91,9 @@ struct Judge<'a, P: Profile> {
     shading: Shading<'a, P>,
 }
 
-/// What an id tells of a fragment whose cut-off alone is undecided: of one that is in front of all others that may lie
-/// there, so that it is seen if it is inside, and only then. An empty pixel tells that it is not.
+/// Records an id's outcome for each fragment whose cut-off alone is undecided, and which is in
+/// front of all others that may lie there. Such a fragment is seen if and only if it is inside. An
+/// empty pixel shows that it is not.
 fn tell<P: Profile>(id: u32, all: &[PossibleFragment<P>], shifts: &mut ShiftSums) {
     let in_front = |may: &PossibleFragment<P>| {
         let mut others = all.iter().filter(|other| other.id != may.id);
@@ -107,7 +116,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         }
     }
 
-    /// Marks what is wrong at the pixels of a rectangle in a tile.
+    /// Marks the wrong pixels of a rectangle in a tile.
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
         let mut counts = Counts::default();
         let all = self.fragments.of_tile((tile, &rect), |at| self.client_planes.id(at));
@@ -122,7 +131,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         counts
     }
 
-    /// The same of one pixel; the doubts there.
+    /// Judges one pixel, and returns its doubts.
     fn judge_pixel(
         &self,
         (pixel, at): (usize, (u32, u32)),
@@ -130,7 +139,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         marks: &mut [Marks; 2],
     ) -> u8 {
         let says = self.client_planes.says(at);
-        // Of all that lies that whose greatest depth is least.
+        // Among the fragments that certainly lie there, the one whose greatest depth is least.
         let front = all.iter().filter(|may| may.lies).reduce(|front, may| {
             let most = |may: &PossibleFragment<P>| may.depth.middle + may.depth.radius;
             if most(may) < most(front) { may } else { front }
@@ -170,7 +179,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         doubts
     }
 
-    /// All that a pixel may show.
+    /// Every surface that the pixel may show.
     fn may_show(
         &self,
         says: PixelContent,
@@ -194,7 +203,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         shown
     }
 
-    /// What a pixel shows of a fragment: one, or that of either side.
+    /// The surfaces that the pixel may show of a fragment: one, or one for each side.
     fn shown(&self, may: &PossibleFragment<P>) -> impl Iterator<Item = PixelSurface<P>> {
         self.fragments.surfaces(may).into_iter().flatten().map(|surface| PixelSurface {
             id: may.id,
@@ -204,7 +213,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         })
     }
 
-    /// Every plane at a pixel against what it may show.
+    /// Compares every plane at a pixel with a surface that it may show.
     fn check(&self, at: (u32, u32), shown: &PixelSurface<P>, report: &mut Report<'_>) {
         self.client_planes.check(at, shown, report);
         let surface = self.client_planes.surface(at, &shown.surface);
@@ -213,7 +222,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         self.client_planes.check_alpha(at, alpha, report);
     }
 
-    /// What is wrong where nothing that the client says may lie.
+    /// The fault where nothing that the client names may lie.
     fn absent(&self, says: PixelContent, at: (u32, u32)) -> Fault {
         match says {
             PixelContent::Id(surfel) => match self.fragments.rim(surfel, at) {
@@ -228,7 +237,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         }
     }
 
-    /// Whether a surfel is exactly as near as that of the client, and comes before it.
+    /// Checks whether a surfel is exactly as near as the client's, and comes before it.
     fn judge_ties(&self, found: u32, all: &[PossibleFragment<P>], pixel: &mut PixelMarks<'_>) {
         let Some(own) = all.iter().find(|may| may.id == found) else { return };
         let count = self.surfels.len();
@@ -245,7 +254,7 @@ impl<'a, P: Profile> Judge<'a, P> {
     }
 }
 
-/// What is not certain of a pixel in which the client has this, at this depth.
+/// The doubts at a pixel where the client has this id at this depth.
 fn doubts<P: Profile>(id: u32, depth: Ball<P>, all: &[PossibleFragment<P>]) -> u8 {
     let mut doubts = 0;
     for may in all {

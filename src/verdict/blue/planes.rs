@@ -1,4 +1,4 @@
-//! The planes that a client has handed in.
+//! The planes that a client hands in.
 
 use crate::frame::NO_ID;
 use crate::method::blue::planes::{COLOR, ID, NORMAL, OFFSET, WEIGHT};
@@ -8,7 +8,7 @@ use crate::number::{Ball, Real};
 use crate::verdict::checks::{Report, Surface, number, triple, whole};
 use crate::verdict::client::{Client, StoredPlane, Ties};
 
-/// The planes, each if it is there.
+/// The planes of a client; each may be missing.
 pub(super) struct BluePlanes<'a> {
     pub(super) ties: Ties,
     color: Option<StoredPlane<'a, [f64; 3]>>,
@@ -21,7 +21,7 @@ pub(super) struct BluePlanes<'a> {
     alpha: Option<StoredPlane<'a, f64>>,
 }
 
-/// What a pixel shows.
+/// The surface that a pixel shows.
 pub(super) struct PixelSurface<P: Profile> {
     pub(super) id: u32,
     pub(super) offset: Ball<P>,
@@ -43,13 +43,13 @@ impl<P: Profile> PixelSurface<P> {
     };
 }
 
-/// What a client says is in a pixel.
+/// The content of a pixel, according to the client.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PixelContent {
-    /// It gives neither id, nor depth, nor weight.
+    /// The client gives neither id, nor depth, nor weight.
     Nothing,
     Empty,
-    /// This, which the scene may not have.
+    /// This id, which the scene may not have.
     Id(u32),
     Some,
 }
@@ -86,7 +86,7 @@ impl<'a> BluePlanes<'a> {
         ]
     }
 
-    /// What a pixel is said to have.
+    /// The content of a pixel, according to the client.
     pub(super) fn says(&self, at: (u32, u32)) -> PixelContent {
         let some = |there: bool| if there { PixelContent::Some } else { PixelContent::Empty };
         match (self.id, self.depth, self.weight) {
@@ -100,12 +100,12 @@ impl<'a> BluePlanes<'a> {
         }
     }
 
-    /// The id at a pixel; none without ids.
+    /// The id at a pixel; `NO_ID` if the client hands in no ids.
     pub(super) fn id(&self, at: (u32, u32)) -> u32 {
         self.id.map_or(NO_ID, |ids| *ids.plane.at(at.0, at.1))
     }
 
-    /// What the discs leave at a pixel, against what they may.
+    /// Checks the planes of the discs at a pixel.
     pub(super) fn check<P: Profile>(
         &self,
         at: (u32, u32),
@@ -133,8 +133,9 @@ impl<'a> BluePlanes<'a> {
         }
     }
 
-    /// The surface at a pixel as the client has it: as it is stored, or as it was before, since one shader may
-    /// do both; what it has not handed in is that of `shown`.
+    /// The surface at a pixel according to the client: as it is stored, or as it was before,
+    /// because one shader may do both. A plane that the client does not hand in is taken from
+    /// `shown`.
     pub(super) fn surface<P: Profile>(&self, at: (u32, u32), shown: &Surface<P>) -> Surface<P> {
         Surface {
             depth: self.depth.map_or(shown.depth, |plane| plane.ball(at)),
@@ -144,12 +145,12 @@ impl<'a> BluePlanes<'a> {
         }
     }
 
-    /// The weight of a pixel, likewise.
+    /// The weight of a pixel, in the same way.
     pub(super) fn seen<P: Profile>(&self, at: (u32, u32), shown: Ball<P>) -> Ball<P> {
         self.weight.map_or(shown, |plane| plane.ball(at))
     }
 
-    /// The colour of the picture against what it may be.
+    /// Checks the colour of the picture.
     pub(super) fn check_picture<P: Profile>(
         &self,
         at: (u32, u32),
@@ -161,7 +162,7 @@ impl<'a> BluePlanes<'a> {
         }
     }
 
-    /// The opacity of the picture against what it may be.
+    /// Checks the opacity of the picture.
     pub(super) fn check_alpha<P: Profile>(
         &self,
         at: (u32, u32),

@@ -1,4 +1,4 @@
-//! Verdicts on pictures of discs.
+//! Tests of verdicts on pictures of discs.
 
 use crate::frame::{Exec, Frame, NO_ID, Samples};
 use crate::index::Index;
@@ -22,7 +22,7 @@ fn blue(cull: bool) -> Method {
     Settings { cull }.into()
 }
 
-/// Some with sides and some without.
+/// Gives some surfels a side of their square, and others none.
 fn sided(mut scene: Scene) -> Scene {
     let runs = vec![(0, None), (40, Some(2.5)), (90, None), (130, Some(7.0)), (300, Some(1.0))];
     scene.sides = Some(Sides::new(runs).unwrap());
@@ -89,7 +89,8 @@ fn each_slip_is_found_in_its_stage() {
         ("", Slip::NotANumber, "shading"),
         ("A", Slip::Off(1e-3), "shading"),
     ];
-    // Of a surfel: the triangle is there twice, and which of two is shown is not judged.
+    // Only surfels are dropped: the triangle is there twice, and which of two is shown is not
+    // judged.
     let of_surfel = |frame: &Frame<f32>, i: usize| id(frame, "id").values()[i] < 200;
     assert_found_where(&scene, &camera, method, &slips, of_surfel);
 }
@@ -100,7 +101,7 @@ fn another_environment_is_found() {
     assert_environment_found(&scene, &camera, method, "shading");
 }
 
-/// A picture of another scene or of other settings is wrong in the discs.
+/// Asserts that a picture of another scene or of other settings is wrong in the discs.
 fn assert_other(right: &Scene, other: &Scene, camera: &Camera, methods: [Method; 2]) {
     let exec = Exec::new(1, 16).unwrap();
     let [right, other] = [(right, methods[0]), (other, methods[1])]
@@ -134,10 +135,10 @@ fn the_faults_of_a_shader_are_found() {
         });
         assert_other(&scene, &other, &camera, both);
     }
-    // Squares that do not become discs in depth: all normals towards the camera.
+    // Squares that do not become discs in depth, because all normals point towards the camera.
     let other = with(&|cloud| cloud.normal.iter_mut().flatten().for_each(|n| *n = Vec3::Z));
     assert_other(&scene, &other, &camera, both);
-    // Squares a fifth of a pixel off, too large or too small.
+    // Squares that are a fifth of a pixel off, too large or too small.
     let other = with(&|cloud| cloud.position.iter_mut().for_each(|p| p.x += 0.02));
     assert_other(&scene, &other, &camera, both);
     for side in [6.9, 7.2] {
@@ -147,14 +148,14 @@ fn the_faults_of_a_shader_are_found() {
         other.sides = Some(Sides::new(vec![(0, Some(side))]).unwrap());
         assert_other(&sides, &other, &camera, both);
     }
-    // Culling that should not be, and that is missing; no triangles.
+    // Culling where there should be none, missing culling, and no triangles.
     assert_other(&scene, &scene, &camera, [blue(false), blue(true)]);
     assert_other(&scene, &scene, &camera, [blue(true), blue(false)]);
     let other = Scene { primitives: crate::scene::Primitives::default(), ..scene.clone() };
     assert_other(&scene, &other, &camera, both);
 }
 
-/// Discs of all kinds of size and place, at the near plane and beyond every number.
+/// Discs of all sizes and places, at the near plane and beyond every number.
 #[test]
 fn extremes_are_right_or_undecided() {
     let numbers = [-3e38_f32, -4.0, 1e-30, 0.3, 3.99, 4.01, 3e38];
@@ -182,7 +183,7 @@ fn extremes_are_right_or_undecided() {
     }
 }
 
-/// Two discs at one place.
+/// Two discs in one place.
 #[test]
 fn of_equals_the_client_says_which_it_keeps() {
     let cloud = Cloud {
@@ -220,7 +221,7 @@ fn of_equals_the_client_says_which_it_keeps() {
     assert!(id(&frame, "id").values().iter().filter(|id| **id == 1).count() > 40);
 }
 
-/// What is left out, what is outside its rim, and what is nowhere near, by these names.
+/// A fault for a missing surfel, an id outside its rim, and an id nowhere near, each by its name.
 #[test]
 fn a_fault_says_which_surfel() {
     let scene = Scene::unlit("", surfels(60, 0.3, false, 3));

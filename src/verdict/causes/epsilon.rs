@@ -1,5 +1,5 @@
-//! Epsilon on the wrong side, or in the wrong unit: what authors of GPU backends make of "the fragments
-//! within epsilon of the nearest".
+//! Mistakes with epsilon: on the wrong side or in the wrong unit. Authors of GPU backends read "the
+//! fragments within epsilon of the nearest" in several ways.
 //!
 //! | mistake | what passes | simulated by |
 //! |---|---|---|
@@ -12,9 +12,11 @@
 //! | radii of the nearest surfel for median ones | t <= `t_1` + n r | a [`Band`] |
 //! | the depth handed in is that of the moved discs | Z = `t_1` + e, or - e | the depths moved back |
 //!
-//! u is 1, or the slope by which the client's depths are stored; of those that are t, 1 / near, as in
-//! a depth buffer whose far plane is at infinity. Not simulated: the radius of each fragment's own surfel,
-//! as then the band of a pixel has no one end; the strict t < `t_1` + e, which differs at ties alone.
+//! u is 1, or the slope by which the client's depths are stored. For depths stored as t, u is 1 /
+//! near, as in a depth buffer whose far plane is at infinity. Two mistakes are not simulated:
+//!
+//! - The radius of each fragment's own surfel, because then the band of a pixel has no single end.
+//! - The strict t < `t_1` + e, because it differs only at ties.
 
 use super::Change;
 use crate::frame::{Frame, Plane, Samples};
@@ -27,7 +29,7 @@ use crate::setting::{Fields, Value};
 use crate::splat::Epsilon;
 use crate::verdict::client::{Band, Client, Storage};
 
-/// Epsilon in world units, if the method is the one that has a band, and the band ends.
+/// Epsilon in world units, if the method is `ewa`, and epsilon is positive and finite.
 fn resolved(session: &Session<'_>) -> Option<f32> {
     if !matches!(session.method(), Method::Ewa(_)) {
         return None;
@@ -36,7 +38,7 @@ fn resolved(session: &Session<'_>) -> Option<f32> {
     (epsilon > 0.0 && epsilon.is_finite()).then_some(epsilon)
 }
 
-/// Epsilon as another number of the same unit.
+/// Epsilon times a factor, in the same unit.
 pub(super) fn scaled(method: &Method, factor: f32) -> Option<Value> {
     let text = match method.splats()?.epsilon {
         Epsilon::World(depth) => format!("{:?}", depth * factor),
@@ -45,7 +47,7 @@ pub(super) fn scaled(method: &Method, factor: f32) -> Option<Value> {
     Some(Value::Text(text))
 }
 
-/// The same number in the other unit, in words.
+/// The same number in the other unit, and the mistake in words.
 pub(super) fn other_unit(method: &Method) -> Option<(String, Change)> {
     let (text, what) = match method.splats()?.epsilon {
         Epsilon::World(depth) => (format!("{depth:?}r"), "epsilon is in median radii"),
@@ -57,7 +59,7 @@ pub(super) fn other_unit(method: &Method) -> Option<(String, Change)> {
     changed.check().is_ok().then_some((what, Change::Method(changed)))
 }
 
-/// Other ends of the band, in words.
+/// Other ends of the band, and the mistakes in words.
 pub(super) fn bands(
     session: &Session<'_>,
     camera: &Camera,
@@ -91,7 +93,7 @@ pub(super) fn bands(
     all
 }
 
-/// The depths of the visibility pass moved by epsilon, in words.
+/// Visibility depths that are moved by epsilon, and the mistakes in words.
 pub(super) fn moved(session: &Session<'_>, client: &Client) -> Vec<(String, Change)> {
     let Some((epsilon, _)) = resolved(session).zip(client.depth_of_visibility()) else {
         return Vec::new();
@@ -106,7 +108,8 @@ pub(super) fn moved(session: &Session<'_>, client: &Client) -> Vec<(String, Chan
     ]
 }
 
-/// The planes of the depth that the visibility pass is judged by, the first of those that are there.
+/// The planes that may hold the depth for judging the visibility pass. The first one that is there
+/// is used.
 const DEPTHS: [&str; 2] = [Foremost::<f32>::PLANES[0].row.name, surface::DEPTH.name];
 
 /// The client as if its band ended there.
@@ -115,8 +118,8 @@ pub(super) fn banded(client: &Client, band: Band) -> Client {
     Client { band, ..client }
 }
 
-/// The client without what it has made of its sums: where nothing is added up that should be, it may be
-/// anything.
+/// The client without the planes that follow from its sums. If nothing is added up, these planes
+/// may hold anything.
 fn up_to_sums(client: &Client) -> Client {
     let frame = client.frame();
     let is_first = |name: &str, stage: &str| frame.plane(&format!("{stage}.{name}")).is_none();
@@ -135,7 +138,7 @@ fn is_sum(name: &str) -> bool {
     name == "weight" || name.split('.').next() == Some("attributes")
 }
 
-/// The client whose discs would not be moved by this.
+/// The client with its discs moved back by this much.
 pub(super) fn moved_back(client: &Client, by: f64) -> Client {
     let mut back = client.mapped(|name, samples| match samples {
         // An empty pixel stays at infinity.
@@ -146,17 +149,18 @@ pub(super) fn moved_back(client: &Client, by: f64) -> Client {
     });
     for name in DEPTHS {
         if back.storage(name) == Storage::Single {
-            // The sum was rounded; beside what is lost where it is undone that is all.
+            // Moving the depth rounded it, and undoing the move rounds again.
             let lost = 4.0 / 16_777_216.0;
             back = back.stored(name, Storage::Float { relative: lost, least: lost * by.abs() });
         }
     }
-    // The client compares with the depth that it has.
+    // The client compares with its own depth.
     banded(&back, if by < 0.0 { Band::Before } else { Band::Depth })
 }
 
-/// What a client that adds up what lies behind the band is judged as: its sums and those of the band in
-/// `f64` together are those of all fragments, which is what the method adds up without epsilon.
+/// The method and the client for judging sums of fragments that lie behind the band. The client's
+/// sums plus the sums of the band in `f64` are the sums of all fragments, which the method computes
+/// without epsilon.
 pub(super) fn behind(
     session: &Session<'_>,
     camera: &Camera,
@@ -164,7 +168,7 @@ pub(super) fn behind(
 ) -> Option<(Method, Client)> {
     let mut all = *session.method();
     all.set("epsilon", &Value::Text("inf".into())).ok()?;
-    // Where there is no memory for a picture more, this is not tried.
+    // Where there is no memory for another picture, this mistake is not tried.
     let band = session.define::<f64>(camera, true).ok()?.frame;
     let client = up_to_sums(client);
     let both = client.mapped(|name, samples| match band.plane(name) {
@@ -174,7 +178,7 @@ pub(super) fn behind(
     Some((all, both))
 }
 
-/// Two planes, pixel by pixel.
+/// Adds two planes, pixel by pixel.
 fn sum(a: &Samples<f64>, b: &Samples<f64>) -> Samples<f64> {
     fn each<T: Copy>(a: &Plane<T>, b: &Plane<T>, add: impl Fn(T, T) -> T) -> Plane<T> {
         let values = a.values().iter().zip(b.values()).map(|(&a, &b)| add(a, b)).collect();
@@ -193,18 +197,18 @@ fn sum(a: &Samples<f64>, b: &Samples<f64>) -> Samples<f64> {
 }
 
 impl Client {
-    /// By how much a stored depth changes with 1/t, where the client stores something else than t.
+    /// The slope of a stored depth with respect to 1/t, where the client does not store t.
     fn slope_of_depths(&self) -> Option<f64> {
         let (name, _) = self.depth_of_visibility()?;
         match self.storage(name) {
-            // What is stored is z = (1/near - 1/t) / (1/near - 1/far), or 1 less that.
+            // The stored number is z = (1/near - 1/t) / (1/near - 1/far), or 1 minus z.
             Storage::DepthBuffer { near, far, .. } => Some(1.0 / near - 1.0 / far),
             Storage::Inverse { scale, .. } => Some(1.0 / scale),
             _ => None,
         }
     }
 
-    /// The depth that the visibility pass is judged by: its plane, and the greatest finite value.
+    /// The depth for judging the visibility pass: its plane, and the greatest finite value.
     pub(super) fn depth_of_visibility(&self) -> Option<(&'static str, f64)> {
         let name = DEPTHS.into_iter().find(|name| self.frame().scalar(name).is_ok())?;
         let values = self.frame().scalar(name).ok()?.values();

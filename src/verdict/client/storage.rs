@@ -1,28 +1,29 @@
-//! How exactly a plane is stored.
+//! How a client stores a plane, and how much of a value that loses.
 
 use crate::number::Real;
 use crate::number::srgb;
 
-/// How far a stored value may lie from the value that was computed.
+/// The storage format of a plane: it says how far a stored value may lie from the computed one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub enum Storage {
-    /// `f32`: what was computed.
+    /// `f32`: the value as computed.
     #[default]
     Single,
     /// `f16`, rounded to either neighbour: 2^-10 of the value, at least 2^-24.
     Half,
-    /// A float of fewer digits, off by `relative` of itself, at least by `least`.
+    /// A float of fewer digits. A value may be off by `relative` of itself, or by `least` if that
+    /// is more.
     Float {
-        /// The part of the value that storing may lose.
+        /// The fraction of the value that storing may lose.
         relative: f64,
-        /// What storing may lose at the least.
+        /// The loss that is always allowed.
         least: f64,
     },
-    /// Equal steps of this size, in the unit of the plane, rounded to either neighbour: UNORM of n
+    /// Equal steps of this size, in the unit of the plane, rounded to either neighbour. UNORM of n
     /// bits has steps of 1 / (2^n - 1).
     Steps(f64),
-    /// Equal steps of a depth buffer z in \[0, 1\] of a perspective camera,
-    /// `z = far (t - near) / (t (far - near))`, or of 1 - z; the plane holds t.
+    /// A depth buffer with equal steps of z in \[0, 1\], for a perspective camera:
+    /// `z = far (t - near) / (t (far - near))`, or 1 - z. The plane holds t.
     DepthBuffer {
         /// The step of z.
         step: f64,
@@ -31,51 +32,52 @@ pub enum Storage {
         /// The depth of z = 1; may be +inf.
         far: f64,
     },
-    /// `v = scale / t` stored in place of the depth t, each v off by `relative` of itself, at least by
-    /// `least`.
+    /// `v = scale / t` stored in place of the depth t. Each v may be off by `relative` of itself,
+    /// or by `least` if that is more.
     Inverse {
-        /// The depth of v = 1: 1 of `1/t`.
+        /// The depth where v = 1; for `1/t` it is 1.
         scale: f64,
-        /// The part of v that storing may lose.
+        /// The fraction of v that storing may lose.
         relative: f64,
-        /// What storing may lose at the least.
+        /// The loss of v that is always allowed.
         least: f64,
     },
-    /// `v = (t - near) / (far - near)` stored in place of the depth t, each v off by
-    /// `relative` of itself, at least by `least`.
+    /// `v = (t - near) / (far - near)` stored in place of the depth t. Each v may be off by
+    /// `relative` of itself, or by `least` if that is more.
     Linear {
         /// The depth of v = 0.
         near: f64,
         /// The depth of v = 1.
         far: f64,
-        /// The part of v that storing may lose.
+        /// The fraction of v that storing may lose.
         relative: f64,
-        /// What storing may lose at the least.
+        /// The loss of v that is always allowed.
         least: f64,
     },
-    /// A colour encoded as sRGB, see [`crate::number::srgb`], each code off by `relative` of itself, at least
-    /// by `least`; the plane holds linear light.
+    /// A colour encoded as sRGB, see [`crate::number::srgb`]. Each code may be off by `relative` of
+    /// itself, or by `least` if that is more. The plane holds linear light.
     Srgb {
-        /// The part of a code that storing may lose.
+        /// The fraction of a code that storing may lose.
         relative: f64,
-        /// What storing may lose at the least.
+        /// The loss of a code that is always allowed.
         least: f64,
     },
 }
 
-/// How far off a stored v is: `|v|` times `relative`, at least `least`.
+/// How far off a stored v may be: `|v|` times `relative`, at least `least`.
 fn v_radius(v: f64, relative: f64, least: f64) -> f64 {
     (v.abs() * relative).at_least(least)
 }
 
-/// How far off `scale / v` is if v is off by `radius`, at the end where that is most.
+/// How far off `scale / v` may be if v is off by `radius`, at the end where that is most.
 fn inverse_radius(value: f64, scale: f64, radius: f64) -> f64 {
     let part = radius * value.abs() / scale;
+    // If v may be 0, the quotient has no bound.
     if part < 1.0 { value.abs() * part / (1.0 - part) } else { f64::INFINITY }
 }
 
 impl Storage {
-    /// How far from this stored value the computed one may lie, in the unit of the plane.
+    /// How far the computed value may lie from this stored one, in the unit of the plane.
     #[must_use]
     pub fn radius(self, value: f64) -> f64 {
         match self {
@@ -84,7 +86,7 @@ impl Storage {
             Self::Half => v_radius(value, 1.0 / 1024.0, 1.0 / 16_777_216.0),
             Self::Float { relative, least } => v_radius(value, relative, least),
             Self::Steps(step) => step,
-            // z is v = scale / t but for a constant and the sign.
+            // z is v = scale / t, except for a constant and the sign.
             Self::DepthBuffer { step, near, far } => {
                 inverse_radius(value, 1.0 / (1.0 / near - 1.0 / far), step)
             }
@@ -95,7 +97,7 @@ impl Storage {
                 let range = far - near;
                 range.abs() * v_radius((value - near) / range, relative, least)
             }
-            // Convex: the way up is the longer one.
+            // Decoding is convex, so the way up is the longer one.
             Self::Srgb { relative, least } => {
                 let code = srgb::from_linear(value);
                 srgb::to_linear(code + v_radius(code, relative, least)) - value
@@ -111,7 +113,7 @@ mod tests {
     #[test]
     fn what_a_format_may_lose() {
         assert_eq!(Storage::Single.radius(0.7), 0.0);
-        // Of f16 in [1, 2) neighbours are 2^-10 apart, denormals 2^-24.
+        // Neighbours of f16 in [1, 2) are 2^-10 apart, denormals 2^-24.
         assert_eq!(Storage::Half.radius(1.0), 1.0 / 1024.0);
         assert_eq!(Storage::Half.radius(1e-9), 1.0 / 16_777_216.0);
         assert_eq!(Storage::Steps(1.0 / 255.0).radius(0.3), 1.0 / 255.0);
@@ -120,12 +122,12 @@ mod tests {
 
     #[test]
     fn what_is_stored_in_place_of_a_value() {
-        // v = 2 / t: t = 4 is v = 0.5, and 0.5 less an eighth of it is v = 0.4375, t = 4.571...
+        // v = 2 / t: t = 4 is v = 0.5, and 0.5 minus an eighth of it is v = 0.4375, t = 4.571...
         let inverse = Storage::Inverse { scale: 2.0, relative: 0.125, least: 0.0 };
         assert!((inverse.radius(4.0) - (2.0 / 0.4375 - 4.0)).abs() < 1e-15);
         let inverse = Storage::Inverse { scale: 2.0, relative: 0.0, least: 0.6 };
         assert_eq!(inverse.radius(4.0), f64::INFINITY, "v may be 0");
-        // v = (3 - 1) / 4 = 0.5, and a quarter of that are 0.5 units; at the least 0.25, 1 unit.
+        // v = (3 - 1) / 4 = 0.5, and a quarter of it is 0.5 units; at least 0.25, 1 unit.
         let linear = |least| Storage::Linear { near: 1.0, far: 5.0, relative: 0.25, least };
         assert_eq!((linear(0.0).radius(3.0), linear(0.25).radius(3.0)), (0.5, 1.0));
         // The codes 188 and 189 of 8 bits are 0.50289 and 0.50888 in the tables of sRGB.

@@ -1,73 +1,85 @@
-//! What a right implementation may leave of each stage, held against somebody's planes.
+//! Verify your planes of deferred splatting: which planes a correct implementation may leave of
+//! each stage.
 //!
-//! Each stage is judged from what the client has of the stage before, as it is stored; what the client has
-//! not is taken from [`Ball`]s of a [`Profile`]. The flags that the last frame left are given, and not
-//! judged: a client that has others draws another frame.
+//! Each stage is judged from the client's planes of the stage before, as the client stores them. A
+//! plane that the client lacks is taken from [`Ball`]s of a [`Profile`]. The flags that the
+//! previous frame left are an input and are not judged, because a client with other flags draws
+//! another frame.
 //!
-//! **Visibility**: the certificate of [`ewa`](crate::verdict::ewa) over the flagged surfels. What may be
-//! nearest where the client gives neither Z nor id is an interval.
+//! **Visibility**: the certificate of [`ewa`](crate::verdict::ewa) over the flagged surfels. Where
+//! the client gives neither Z nor id, the nearest depth is an interval.
 //!
-//! **Indices**, a certificate for each pixel, that of
-//! [`projection`](crate::verdict::projection) with a test of depth. A surfel *may lie* in a pixel if it
-//! is not certainly dropped, its centre may fall into the pixel, and `t <= Z + epsilon` possibly holds; it
-//! *lies* there if all that is certain. Z is that of the client's pass 1, else the interval.
+//! **Indices**: a certificate for each pixel, as for [`projection`](crate::verdict::projection)
+//! with a depth test. A surfel *may lie* in a pixel if it is not certainly dropped, its centre may
+//! fall into the pixel, and `t <= Z + epsilon` possibly holds. It *lies* there if all of this is
+//! certain. Z comes from the client's pass 1, else it is the interval.
 //!
 //! 1. The surfel of the id may lie in the pixel, and Z is in the ball of its t.
 //! 2. Nothing else lies there whose t certainly is less.
-//! 3. Nothing that comes before, as the client says of ties, lies there at a t that is equal and exact in
-//!    balls, or has all numbers of the id's surfel.
-//! 4. Of an empty pixel Z is +inf, and nothing lies there.
+//! 3. No surfel that lies there at an equal t comes before the id's surfel by the client's tie
+//!    rule. Two t are equal if they are the same and exact in balls, or if all numbers of the two
+//!    surfels are the same.
+//! 4. In an empty pixel Z is +inf, and nothing lies there.
 //!
-//! **B(i)** is what the client's plane of ids lists. Without that plane a surfel *may be selected* if it may
-//! lie in a pixel where nothing that lies there certainly is before it, and its t is the client's Z, if there
-//! is one; it *is selected* if nothing else may be in this pixel and it lies there, or the client's Z says
-//! that something does.
+//! **B(i)** is the list in the client's plane of ids. Without that plane:
 //!
-//! **Difference**: the certificate over the flagged surfels and those of B(i) whose flag is not set; what
-//! only may be selected is not certainly drawn. With `second` off over the flagged ones alone. Z and id are
-//! those of `difference`; if neither is there those of the picture, whose empty pixels say nothing of what is
-//! nearest.
+//! - A surfel *may be selected* if it may lie in a pixel where nothing that lies there certainly is
+//!   before it. If there is a client's Z, the surfel's t must fit Z.
+//! - A surfel *is selected* if nothing else may be in this pixel, and either it lies there, or the
+//!   client's Z says that something does.
 //!
-//! **Attributes** as in `ewa`, over B(i), against the client's depth of pass 3. What only may be selected is an
-//! undecided fragment wherever it is visible, of which both continuations are kept.
+//! **Difference**: the certificate over the flagged surfels, and those of B(i) whose flag is not
+//! set. A surfel that only may be selected is not certainly drawn. With `second` off, the
+//! certificate covers only the flagged surfels. Z and id come from `difference`. If neither is
+//! there, they come from the picture, whose empty pixels say nothing about the nearest fragment.
 //!
-//! **Normalization and shading** as in `ewa`, but that Z and id of the picture are those of pass 3 where the
-//! client's weight is > 0, and those of nothing where it is 0; either, if that is not certain. With `second`
-//! off, where pass 1 certainly left nothing, they are those of the certificate over B(i); where it may
-//! have left nothing they are not judged.
+//! **Attributes** as in `ewa`, over B(i), against the client's depth of pass 3. A surfel that only
+//! may be selected is an undecided fragment wherever it is visible, and both continuations are
+//! kept.
 //!
-//! **[Polygons](crate::method::deferred::polygons)**: what [may lie](crate::verdict::projection) in a pixel of the triangles
-//! beside splats, at the depth of its nearness. In the certificates of passes 1 and 3 a finite Z
-//! without an id is that of a polygon that may lie there; no polygon certainly lies there whose depth
-//! certainly is less than Z. A pixel of the picture may show
+//! **Normalization and shading** as in `ewa`, with a difference for Z and id of the picture. They
+//! come from pass 3 where the client's weight is > 0. Where it is 0, they have the values of an
+//! empty pixel. Either is right if that is not certain. With `second` off, where pass 1 certainly
+//! left nothing, they come from the certificate over B(i). Where pass 1 may have left nothing, they
+//! are not judged.
 //!
-//! 1. the splats, as above, if the nearest fragment of pass 3 may be a surfel's or none, and weight may be > 0
-//!    or no polygon certainly lies there;
-//! 2. a polygon that no other certainly hides, if the nearest fragment may be a polygon's or weight may be 0:
-//!    its depth or that of the client's pass 3, its normal and its colour, no id, the weight 1.
+//! **[Polygons](crate::method::deferred::polygons)**: triangles beside splats
+//! [may lie](crate::verdict::projection) in a pixel, at the depth of the pixel's nearness. In the
+//! certificates of passes 1 and 3 a finite Z without an id belongs to a polygon that may lie there.
+//! No polygon certainly lies there whose depth certainly is less than Z. A pixel of the picture may
+//! show
 //!
-//! Of these that counts which the client errs least against. Where the picture alone says what is nearest, a
-//! pixel in which polygons may lie and that has no id says nothing of it: a fragment without weight may be
-//! before the polygon.
+//! 1. the splats, as above, if the nearest fragment of pass 3 may be a surfel's or none, and weight
+//!    may be > 0 or no polygon certainly lies there;
+//! 2. a polygon that no other polygon certainly hides, if the nearest fragment may be a polygon's
+//!    or weight may be 0. It shows the polygon's depth or the depth of the client's pass 3, the
+//!    polygon's normal and colour, no id, and the weight 1.
+//!
+//! Among these the verdict takes the one against which the client errs least. If only the picture
+//! says which fragment is nearest, a pixel without an id may say nothing. This holds where polygons
+//! may lie, because a fragment without weight may be before the polygon.
 //!
 //! # Decided
 //!
-//! - A polygon of which it is not certain how it is cut, or which way its corners run, may be at any depth of
-//!   its corners, and of any normal and colour. It hides nothing.
-//! - A pixel that shows a polygon and is right is not undecided, whatever its sums are, if the client has no
-//!   plane of them.
-//! - Pass 3 is judged from the surfels of both passes, not from the depth that the client has of pass 1: both
-//!   are one depth buffer. A client that stores the two in different formats declares the coarser one.
-//! - Of a surfel that only may be selected the choice is free at every pixel, though it is one choice: more is
-//!   allowed than a right implementation leaves, never less.
-//! - Surfels are those that the high level leaves. A node of [levels of
-//!   detail](crate::scene::objects::detail) that a client chooses otherwise is a wrong surfel: which nodes a
-//!   view draws is computed in f64 and given, as the flags are.
-//! - Of ids of more than 32 bits a plane is judged together with that of the highest 8; alone it is not.
-//! - Which objects are [left out](Settings::share) is given, as the flags are: a surfel of one certainly is not
-//!   drawn. Their polygons are there.
-//! - A client that goes on from other numbers than it stores, as a picture in f64 that is rounded once in the
-//!   end, may not promise `ieee`: what its planes say of one stage is not what the next was given.
+//! - If it is not certain how a polygon is cut, or which way its corners run, it may be at any
+//!   depth of its corners, with any normal and colour. It hides nothing.
+//! - A pixel that shows a polygon and is right is not undecided, whatever its sums are, if the
+//!   client has no plane of the sums.
+//! - Pass 3 is judged from the surfels of both passes, not from the client's depth of pass 1,
+//!   because both passes use one depth buffer. A client that stores the two in different formats
+//!   declares the coarser one.
+//! - For a surfel that only may be selected, the choice is free at every pixel, though it is one
+//!   choice. So the verdict allows more than a correct implementation leaves, never less.
+//! - Surfels are those that the high level leaves. A client that chooses another node of the
+//!   [levels of detail](crate::scene::objects::detail) has a wrong surfel. The nodes that a view
+//!   draws are computed in f64 and are an input, like the flags.
+//! - If ids have more than 32 bits, a plane of ids is judged together with the plane of the highest
+//!   8; alone it is not judged.
+//! - The objects that are [left out](Settings::share) are an input, like the flags. A surfel of
+//!   such an object certainly is not drawn. Its polygons are there.
+//! - A client may not promise `ieee` if it continues from other numbers than it stores, e.g. from a
+//!   picture in f64 that is rounded once in the end. The reason is that its stored planes are not
+//!   the input of its next stage.
 
 mod client_planes;
 mod polygons;
@@ -103,10 +115,11 @@ use crate::verdict::shift::ShiftSums;
 use crate::verdict::{Check, Doubt, Verdict};
 use polygons::{Ground, PolygonTile, Polygons, front};
 
-/// Judges the planes of a client, whose ids are ranks: how many ids are less.
+/// Judges the planes of a client. Its ids are ranks: the number of ids that are less.
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] if the flags are of another scene, or if the process may not hold the surfels.
+/// [`crate::Error::Invalid`] if the flags belong to another scene, or if the process may not hold
+/// the surfels.
 pub(super) fn verify<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
@@ -118,7 +131,7 @@ pub(super) fn verify<P: Profile>(
     Ok(Verdict::new(found.stage_verdicts(job), [covered, undecided], budget, shifts.sums()))
 }
 
-/// Everything that is judged at one pixel.
+/// Every check at one pixel.
 pub(super) fn checks<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
@@ -128,7 +141,7 @@ pub(super) fn checks<P: Profile>(
     Ok(judge::<P>(job, settings, client, Watch::one(job, pixel)?)?.0.checks())
 }
 
-/// What is found of all stages.
+/// The findings about all stages.
 fn judge<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
@@ -186,10 +199,11 @@ fn judge<P: Profile>(
     Ok((MethodMarks { levels, stages, tiles }, counts))
 }
 
-/// Bytes of a surfel that pass 1 draws, in its place and projected in balls; once more in pass 3.
+/// Bytes for a surfel that pass 1 draws, placed and projected in balls, and once more for pass 3.
 const OF_A_FLAGGED: u64 = 1536;
 
-/// What passes draw from: all surfels that the high level leaves, in their places, each numbered by its rank.
+/// The surfels that passes draw from: all surfels that the high level leaves, placed, each numbered
+/// by its rank.
 struct Scenery<'a, P: Profile> {
     job: &'a Job<'a>,
     settings: &'a Settings,
@@ -203,7 +217,7 @@ impl<'a, P: Profile> Scenery<'a, P> {
         self.flat.surfels()
     }
 
-    /// Whether a surfel is of an object that the frame does not leave out.
+    /// Whether a surfel belongs to an object that the frame does not leave out.
     fn draws(&self, id: u64) -> bool {
         let found = self.whole.ids().find(id);
         found.is_some_and(|(object, _)| !self.whole.leaves_out(object))
@@ -218,14 +232,14 @@ impl<'a, P: Profile> Scenery<'a, P> {
         Ball::from_f32(epsilon)
     }
 
-    /// Some surfels, ascending, each with whether it certainly is one of those that a pass draws.
+    /// Projects some surfels, ascending, each with whether the pass certainly draws it.
     fn splats(&self, some: &[(u32, bool)]) -> SwiftSplats<P> {
         let ids = some.iter().map(|&(rank, _)| self.flat.id(rank)).collect();
         let part = self.whole.part(ids, self.job.exec);
         swift::project_part(&part.job(self.job), &self.settings.splats, some)
     }
 
-    /// The nearest fragments of pass 1, and what is wrong of them.
+    /// The nearest fragments of pass 1, and the marks on them.
     fn visible(
         &self,
         flagged: &[(u32, bool)],
@@ -257,7 +271,8 @@ impl<'a, P: Profile> Scenery<'a, P> {
         (Tiled::from_tiles(grid, tiles), marks)
     }
 
-    /// What is wrong of pass 2, given the greatest depth that passes at each pixel; and B(i).
+    /// Judges pass 2, where `limits` are the greatest depths that pass at each pixel. Returns B(i)
+    /// too.
     fn indices(
         &self,
         client: &Client,
@@ -283,28 +298,28 @@ impl<'a, P: Profile> Scenery<'a, P> {
     }
 }
 
-/// What polygons may leave in a tile.
+/// The polygons that may lie in a tile.
 fn beside<P: Profile>(ground: Option<&Polygons<'_, P>>, tile: (usize, &Rect)) -> PolygonTile<P> {
     ground.map_or(PolygonTile::NOTHING, |ground| ground.beside(tile))
 }
 
-/// What the tiles of the passes after the selection share.
+/// The parts that the tiles share in the passes after the selection.
 struct LaterPasses<'a, P: Profile> {
     /// The surfels of passes 1 and 3.
     drawn: SwiftSplats<P>,
     /// B(i).
     chosen: SwiftSplats<P>,
     client_planes: &'a ClientPlanes<'a>,
-    /// Depth and id of the picture, if these may be those of pass 4: with `second` off.
+    /// Depth and id of the picture, if they may come from pass 4: with `second` off.
     picture: Option<ClientPlanes<'a>>,
     surfels: &'a Surfels,
     pixels: PixelJudge<'a, P>,
     /// Whether the client has no plane of the sums.
     without_sums: bool,
-    /// The same of pixels that show a polygon.
+    /// The judge for pixels that show a polygon.
     polygons: PixelJudge<'a, P>,
     ground: Option<&'a Polygons<'a, P>>,
-    /// What pass 1 has left.
+    /// The nearest fragments that pass 1 has left.
     visible: &'a Tiled<Nearest<P>>,
 }
 
@@ -328,7 +343,7 @@ impl<P: Profile> LaterPasses<'_, P> {
         (tiles, all)
     }
 
-    /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
+    /// Marks the wrong pixels of a rectangle in a tile, stage by stage.
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 4]) -> Counts {
         let [first, rest @ ..] = marks;
         let beside = beside(self.ground, (tile, &rect));
@@ -368,8 +383,9 @@ impl<P: Profile> LaterPasses<'_, P> {
         certificate::judge_among(&self.drawn, &beside.others, given, (tile, rect), marks)
     }
 
-    /// What the picture shows where it has weight: where no pass before has left anything the nearest of
-    /// B(i), where one has left a polygon the nearer of that and of B(i).
+    /// The fragment that the picture shows where it has weight. Where no earlier pass has left
+    /// anything, it is the nearest of B(i). Where an earlier pass has left a polygon, it is the
+    /// nearer of that polygon and B(i).
     fn shown(
         &self,
         (tile, at): (usize, (u32, u32)),

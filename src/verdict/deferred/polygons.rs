@@ -1,4 +1,5 @@
-//! Polygons of a client: what may be nearest beside splats, and what a pixel may show in their place.
+//! Polygons in a client's planes: which of them may be nearest beside splats, and what a pixel may
+//! show of them.
 
 use super::LaterPasses;
 use crate::composite::decide;
@@ -21,7 +22,7 @@ use crate::verdict::ewa::sums::Continuations;
 use crate::verdict::marks::Marks;
 use crate::verdict::projection::{AllPolygons, PossibleFragment};
 
-/// The polygons of a scene as one of their own, and the colour of those without one.
+/// The polygons of a scene as a scene of their own, and one colour for polygons without colours.
 pub(super) struct Ground(Scene, Option<[f32; 3]>);
 
 impl Ground {
@@ -38,7 +39,7 @@ pub(super) struct Polygons<'a, P: Profile> {
     paint: Option<[Ball<P>; 3]>,
 }
 
-/// What polygons may leave in the pixels of a tile; nothing of a scene without.
+/// The polygons that may lie in the pixels of a tile. `NOTHING` is for a scene without polygons.
 pub(super) struct PolygonTile<P: Profile> {
     surfaces: Vec<Vec<Surface<P>>>,
     pub(super) others: Vec<Vec<Other<P>>>,
@@ -47,7 +48,7 @@ pub(super) struct PolygonTile<P: Profile> {
 impl<P: Profile> PolygonTile<P> {
     pub(super) const NOTHING: Self = Self { surfaces: Vec::new(), others: Vec::new() };
 
-    /// The others at a pixel.
+    /// The polygons at a pixel.
     pub(super) fn others(&self, pixel: usize) -> &[Other<P>] {
         self.others.get(pixel).map_or(&[], Vec::as_slice)
     }
@@ -61,7 +62,7 @@ impl<'a, P: Profile> Polygons<'a, P> {
         Self { all, view: View::new(job.camera), paint }
     }
 
-    /// What may lie in the pixels of a tile.
+    /// The polygons that may lie in the pixels of a tile.
     pub(super) fn beside(&self, tile: (usize, &Rect)) -> PolygonTile<P> {
         let mut found = PolygonTile { surfaces: Vec::new(), others: Vec::new() };
         for fragments in self.all.fragments(tile) {
@@ -76,7 +77,8 @@ impl<'a, P: Profile> Polygons<'a, P> {
         found
     }
 
-    /// What a pixel shows of a fragment: its depth is again that of its nearness.
+    /// The surface that a pixel shows of a fragment. Its depth goes through nearness and back, as
+    /// in the method.
     fn surface(&self, fragment: &PossibleFragment<P>) -> Surface<P> {
         let PossibleFragment { depth, normal, color, .. } = *fragment;
         let nearness = self.view.nearness(depth);
@@ -86,13 +88,13 @@ impl<'a, P: Profile> Polygons<'a, P> {
     }
 }
 
-/// What a pixel may show.
+/// The content that a pixel may show.
 enum Shown<'s, P: Profile> {
     Splats(Option<&'s Sums<Ball<P>>>),
     Polygon(Option<&'s Sums<Ball<P>>>, Surface<P>),
 }
 
-/// Whether the nearest fragment may be of a splat or of nothing, and whether it may be of a polygon.
+/// Whether the nearest fragment may be a splat or nothing, and whether it may be a polygon.
 pub(super) fn front<P: Profile>(nearest: &Nearest<P>, others: &[Other<P>]) -> [bool; 2] {
     let Ball { middle, radius, .. } = nearest.depth;
     let certain = radius.is_finite();
@@ -105,7 +107,8 @@ pub(super) fn front<P: Profile>(nearest: &Nearest<P>, others: &[Other<P>]) -> [b
 }
 
 impl<P: Profile> LaterPasses<'_, P> {
-    /// Marks what is wrong at a pixel in which polygons may lie: of all that it may show by what errs least.
+    /// Judges a pixel where polygons may lie, by the content with the least error among all that it
+    /// may show.
     pub(super) fn judge_beside(
         &self,
         (pixel, at): (usize, (u32, u32)),
@@ -128,7 +131,7 @@ impl<P: Profile> LaterPasses<'_, P> {
                 right &= !(error > 1.0);
                 marks[part].at(pixel).found(error, fault);
             });
-            // The picture is that of the polygon whatever the sums are.
+            // The picture shows the polygon, whatever the sums are.
             if right && self.without_sums && matches!(best, Shown::Polygon(..)) {
                 marks[0].at(pixel).settle();
             }
@@ -149,7 +152,7 @@ impl<P: Profile> LaterPasses<'_, P> {
             [] => vec![None],
             all => all.iter().map(Some).collect(),
         };
-        // Those that no other certainly hides.
+        // The surfaces that no polygon certainly hides.
         let seen: Vec<_> = beside.surfaces[pixel]
             .iter()
             .filter(|one| {
@@ -171,7 +174,7 @@ impl<P: Profile> LaterPasses<'_, P> {
             if polygon || !weighs.certainly() {
                 for &&surface in &seen {
                     shown.push(Shown::Polygon(sums, surface));
-                    // What the client's depth buffer has, as it is stored.
+                    // Also the depth from the client's depth buffer, as it is stored.
                     shown.extend(
                         own.map(|depth| Shown::Polygon(sums, Surface { depth, ..surface })),
                     );

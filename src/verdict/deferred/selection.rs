@@ -1,4 +1,5 @@
-//! B(i) of a client: surfels by their ranks, ascending, each with whether it certainly is selected.
+//! The client's selection B(i): surfels by rank, ascending, each with whether it certainly is
+//! selected.
 
 use crate::frame::Plane;
 use crate::method::Job;
@@ -6,7 +7,7 @@ use crate::number::ball::Profile;
 use crate::verdict::marks::Watch;
 use crate::verdict::projection::{AllPossible, SamplePlanes};
 
-/// What a plane of ids lists, of so many surfels: all of it certain.
+/// The surfels that a plane of ids lists, out of `total`. All of them are certain.
 pub(super) fn listed(ids: &Plane<u32>, total: u64) -> Vec<(u32, bool)> {
     let known = ids.values().iter().filter(|&&rank| u64::from(rank) < total);
     let mut listed: Vec<_> = known.map(|&rank| (rank, true)).collect();
@@ -15,7 +16,7 @@ pub(super) fn listed(ids: &Plane<u32>, total: u64) -> Vec<(u32, bool)> {
     listed
 }
 
-/// What may be selected if there is no such plane.
+/// The surfels that may be selected if there is no such plane.
 pub(super) fn possible<P: Profile>(
     job: &Job<'_>,
     points: &AllPossible<'_, P>,
@@ -24,7 +25,7 @@ pub(super) fn possible<P: Profile>(
 ) -> Vec<(u32, bool)> {
     let tiles = Watch::All.parts(&job.grid());
     let found = job.exec.ordered(tiles, |part| points.kept(planes, part));
-    // A surfel that may lie in several pixels may be selected in each.
+    // A surfel that may lie in several pixels may be selected in each of them.
     let mut all: Vec<Option<bool>> = vec![None; total as usize];
     for (rank, sure) in found.into_iter().flatten() {
         if let Some(known) = all.get_mut(rank as usize) {

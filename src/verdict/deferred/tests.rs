@@ -26,14 +26,15 @@ use glam::{DVec3, Vec3};
 
 const ROUNDINGS: [Rounding; 2] = [Rounding::Ieee, Rounding::Gpu];
 
-/// Objects that move before a camera that turns, and settings.
+/// Moving objects before a turning camera, and settings.
 struct Sequence {
     scene: Scene,
     settings: Settings,
     lens: Lens,
 }
 
-/// A frame of a sequence: its scene and camera, what the frame before saw, the planes of all stages.
+/// A frame of a sequence: scene and camera, what the previous frame saw, and the planes of all
+/// stages.
 struct Shown {
     scene: Scene,
     camera: Camera,
@@ -79,7 +80,7 @@ fn sequence(settings: Settings, lens: Lens) -> Sequence {
     Sequence { scene, settings, lens }
 }
 
-/// Sequences of several settings and cameras.
+/// Sequences with several settings and cameras.
 fn sequences() -> Vec<Sequence> {
     let mut raycast = Settings { flags: 8, ..Settings::default() };
     raycast.splats.kernel = Kernel { outline: Outline::RayCast, ..Kernel::DEFAULT };
@@ -104,7 +105,7 @@ fn sequences() -> Vec<Sequence> {
     .collect()
 }
 
-/// The sequence with levels of detail of all objects.
+/// The sequence with levels of detail for all objects.
 fn with_detail(of: Sequence) -> Sequence {
     let objects = of.scene.objects.as_ref().unwrap();
     let geometries = objects
@@ -179,7 +180,7 @@ impl Shown {
         frame.to_f32()
     }
 
-    /// The frame with the planes of some stage, and of those that follow as they are made of these.
+    /// The frame with some planes of a stage replaced, and the later planes recomputed from them.
     fn from(&self, method: Method, planes: &[NamedPlane<f32>], stage: &str) -> Frame<f32> {
         let exec = Exec::new(1, 16).unwrap();
         let session = self.session(method, &exec);
@@ -193,7 +194,7 @@ impl Shown {
     }
 }
 
-/// A frame with some of its planes replaced; what it has not stays away.
+/// A frame with some of its planes replaced; no plane is added.
 fn with(frame: &Frame<f32>, planes: &[NamedPlane<f32>]) -> Frame<f32> {
     let mut frame = frame.clone();
     for own in &mut frame.planes {
@@ -204,7 +205,7 @@ fn with(frame: &Frame<f32>, planes: &[NamedPlane<f32>]) -> Frame<f32> {
     frame
 }
 
-/// The planes of a picture alone.
+/// Only the planes of the picture.
 fn plain(frame: &Frame<f32>) -> Frame<f32> {
     let own = |plane: &&NamedPlane<f32>| !plane.name.contains('.') && plane.name != "resolved";
     Frame { planes: frame.planes.iter().filter(own).cloned().collect(), ..*frame }
@@ -236,9 +237,9 @@ fn what_the_crate_draws_of_a_sequence_is_right() {
                 assert_eq!(wrong(&found), None, "{what}, plain");
                 let Verdict { undecided, unbounded, covered, .. } = found;
                 let counts = format!("{undecided} and {unbounded} of {covered}");
-                // Where polygons are, what lies within epsilon behind them is selected, and not seen.
+                // Surfels within epsilon behind polygons are selected, but not seen.
                 let most = if i < 5 { 50 } else { 6 };
-                // Nor does a picture without pass 3 say what pass 1 left.
+                // A picture without pass 3 does not show what pass 1 left either.
                 let known = i < 5 || sequence.settings.second;
                 assert!(
                     !known || (undecided + unbounded) * most < covered,
@@ -296,7 +297,7 @@ fn a_scene_without_objects_is_judged() {
     }
 }
 
-/// A plane of ids and one of depths of a stage.
+/// A plane of ids and a plane of depths for a stage.
 fn planes(stage: &str, like: &Frame<f32>, pixels: &[(u32, f32)]) -> Vec<NamedPlane<f32>> {
     let (mut ids, mut depths) = (id(like, "id").clone(), scalar(like, "Z").clone());
     for (i, &(id, depth)) in pixels.iter().enumerate() {
@@ -308,14 +309,14 @@ fn planes(stage: &str, like: &Frame<f32>, pixels: &[(u32, f32)]) -> Vec<NamedPla
     ]
 }
 
-/// What a frame has of a stage.
+/// The ids and depths that a frame has of a stage.
 fn kept(frame: &Frame<f32>, stage: &str) -> Vec<(u32, f32)> {
     let depths = scalar(frame, &format!("{stage}.Z")).values();
     id(frame, &format!("{stage}.id")).values().iter().copied().zip(depths.iter().copied()).collect()
 }
 
-/// Pass 2 of a client that keeps of what passes in a pixel what it likes better; `limit` of the depth of
-/// pass 1.
+/// Pass 2 of a client that keeps another passing fragment in a pixel: `limit` is computed from the
+/// depth of pass 1, and a comparison chooses.
 fn other_indices(
     shown: &Shown,
     settings: &Settings,
@@ -338,12 +339,12 @@ fn other_indices(
     planes("indices", &shown.frame, &found)
 }
 
-/// That a client's planes are wrong, and first of a stage.
+/// Asserts that a client's planes are wrong, first in this stage.
 fn assert_first_wrong(shown: &Shown, method: Method, frame: &Frame<f32>, stage: &str, what: &str) {
     assert_first_wrong_of(shown, method, frame, &[stage], what);
 }
 
-/// The same of one of some stages.
+/// Asserts the same for one of several stages.
 fn assert_first_wrong_of(
     shown: &Shown,
     method: Method,
@@ -356,7 +357,7 @@ fn assert_first_wrong_of(
         let first = found.first_wrong().map(|wrong| wrong.stage);
         let stage = first.unwrap_or_else(|| panic!("{what} {rounding:?} is right"));
         assert!(stages.contains(&stage), "{what} {rounding:?}: {stage}");
-        // Replayed at its pixel, the fault is there.
+        // When the pixel is explained, the fault is there.
         let exec = Exec::new(1, 16).unwrap();
         let mut client = Client::from(frame);
         client.rounding = rounding;
@@ -383,7 +384,7 @@ fn what_has_no_plane_of_a_stage_is_judged_by_the_others() {
                 let frame = Frame { planes: planes.clone(), ..shown.frame };
                 let found = shown.judge(sequence.method(), &frame, rounding);
                 assert_eq!(wrong(&found), None, "without {stage}");
-                // Where a polygon is seen a splat without weight may be before it.
+                // Where a polygon is seen, a splat without weight may be in front of it.
                 let most = if i < 5 { 50 } else { 8 };
                 let counts = [found.undecided, found.covered];
                 assert!(counts[0] * most < counts[1], "{i} without {stage}: {counts:?}");

@@ -1,5 +1,5 @@
-//! The end of the band of visible fragments, where a client is supposed to take epsilon for something
-//! else than a depth: what [`crate::verdict::causes`] tries.
+//! The end of the band of visible fragments, for clients that do not measure epsilon as a depth.
+//! [`crate::verdict::causes`] tries such bands.
 
 use super::certificate::Nearest;
 use crate::frame::Rect;
@@ -12,7 +12,7 @@ use crate::verdict::client::Band;
 use crate::verdict::marks::counted;
 use std::borrow::Cow;
 
-/// What the limit of a pixel is made of, beside its nearest fragment.
+/// The inputs of a pixel's limit, beside its nearest fragment.
 pub(super) struct Bands<'a, P: Profile> {
     band: Band,
     epsilon: Ball<P>,
@@ -29,8 +29,8 @@ impl<'a, P: Profile> Bands<'a, P> {
         Self { band, epsilon, radii: job.scene.surfels.radius(), view: View::new(job.camera) }
     }
 
-    /// The nearest fragments of a rectangle, moved so that epsilon behind them is where the client's band
-    /// ends.
+    /// Moves the nearest fragments of a rectangle, so that epsilon behind them is the end of the
+    /// client's band.
     pub(super) fn moved<'n>(
         &self,
         nearest: &'n [Nearest<P>],
@@ -49,7 +49,7 @@ impl<'a, P: Profile> Bands<'a, P> {
         let before = |limit: Ball<P>| Nearest { depth: limit - self.epsilon, id };
         match self.band {
             Band::Depth => nearest,
-            // Nothing passes by itself either.
+            // The nearest fragment does not pass by itself either.
             Band::Before => Nearest { depth: before(depth - self.epsilon).depth, id: None },
             Band::OfNearness(unit) => {
                 let least = Ball::ONE / depth - self.epsilon * Ball::exact(unit);

@@ -1,4 +1,5 @@
-//! The visibility pass of a client: what may be the nearest fragment, and what certainly is not.
+//! The certificate of a client's visibility pass: which fragment may be the nearest, and which
+//! certainly is not.
 
 use super::client_planes::ClientPlanes;
 use super::swift::{Fragment, SwiftSplat, SwiftSplats, each_fragment, least_nearness};
@@ -15,47 +16,46 @@ use crate::verdict::client::Ties;
 use crate::verdict::marks::{Marks, PixelMarks};
 use crate::verdict::{Doubt, Fault};
 
-/// The nearest fragment of a pixel, as the client has it.
+/// The nearest fragment of a pixel, according to the client.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Nearest<P: Profile> {
-    /// The depth that later passes work with.
+    /// The depth that later passes use.
     pub(crate) depth: Ball<P>,
-    /// The surfel, if the client says which.
+    /// The surfel, if the client names it.
     pub(crate) id: Option<u32>,
 }
 
-/// What is no splat and may be nearest all the same: a polygon, which has no id.
+/// A polygon, which is no splat and has no id, but may be nearest.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Other<P: Profile> {
     pub(crate) depth: Ball<P>,
-    /// Whether it certainly lies in the pixel.
+    /// Whether the polygon certainly lies in the pixel.
     pub(crate) lies: bool,
 }
 
-/// The others of a pixel of a tile, if any pixel has some.
+/// The polygons at a pixel of a tile; empty if no pixel has any.
 fn others_of<P: Profile>(others: &[Vec<Other<P>>], pixel: usize) -> &[Other<P>] {
     others.get(pixel).map_or(&[], Vec::as_slice)
 }
 
-/// What is known of a pixel before other fragments are held against it.
+/// The client's claim about a pixel, before other fragments are compared with it.
 #[derive(Clone, Copy, Debug)]
 struct Claim<P: Profile> {
     nearest: Nearest<P>,
-    /// By how many bounds the claim itself fails: of the fragments that may be meant, that which
-    /// fails least.
+    /// The error of the claim itself in bounds. If several fragments may be meant, the least error.
     error: f64,
-    /// The depth of that fragment.
+    /// The depth of the fragment with the least error.
     closest: Ball<P>,
-    /// Its q divided by the limit, if it certainly is outside.
+    /// The fragment's q divided by the limit, if it certainly is outside.
     outside: Option<f64>,
-    /// Whether the client says nothing.
+    /// Whether the client says nothing about the pixel.
     open: bool,
-    /// If so: the least depth that may be the nearest, and the greatest.
+    /// For an open claim: the least and the greatest depth that may be the nearest.
     range: [f64; 2],
 }
 
-/// Judges the nearest fragments of a tile where others may be nearest, pixel by pixel, and says what later
-/// passes work with.
+/// Judges the nearest fragments of a tile, pixel by pixel, where polygons may be nearest. Returns
+/// the nearest fragments that later passes use.
 pub(crate) fn judge_among<P: Profile>(
     splats: &SwiftSplats<P>,
     others: &[Vec<Other<P>>],
@@ -74,15 +74,15 @@ pub(crate) fn judge_among<P: Profile>(
     certificate.nearest()
 }
 
-/// What is asked of the nearest fragments of a tile: of every fragment that may be nearer
-/// ([`Certificate::meet`]), and then of what the client says ([`Certificate::end`]).
+/// The certificate for the nearest fragments of a tile. Call [`Certificate::meet`] for every
+/// fragment that may be nearer, then [`Certificate::end`] to judge the claims.
 pub(super) struct Certificate<'a, P: Profile> {
     client_planes: &'a ClientPlanes<'a>,
     surfels: &'a Surfels,
     others: &'a [Vec<Other<P>>],
     claims: Vec<Claim<P>>,
-    /// The least nearness of a pixel that may be before the client's fragment; what certainly is farther is
-    /// no question. +inf where the client says nothing.
+    /// For each pixel, the least nearness that may be before the client's fragment. Fragments that
+    /// certainly are farther are skipped. +inf where the client says nothing.
     least: Vec<f64>,
 }
 
@@ -103,18 +103,18 @@ impl<'a, P: Profile> Certificate<'a, P> {
         Self { client_planes, surfels, others, claims, least }
     }
 
-    /// What later passes work with.
+    /// The nearest fragments that later passes use.
     pub(super) fn nearest(&self) -> Vec<Nearest<P>> {
         self.claims.iter().map(|claim| claim.nearest).collect()
     }
 
-    /// The least nearness that has to be met at a pixel, as of [`each_fragment`].
+    /// The least nearness of a pixel that a fragment needs to be met, for [`each_fragment`].
     #[inline(always)]
     pub(super) fn least(&self, pixel: usize) -> f64 {
         self.least[pixel]
     }
 
-    /// Holds a fragment, of depth `t`, against what the client has at its pixel.
+    /// Compares a fragment of depth `t` with the client's claim at its pixel.
     #[inline(always)]
     pub(super) fn meet(
         &self,
@@ -123,7 +123,7 @@ impl<'a, P: Profile> Certificate<'a, P> {
         marks: &mut Marks,
     ) {
         let claim = &self.claims[pixel];
-        // A comparison that NaN fails.
+        // Written so that a NaN does not count as farther.
         let farther = fragment.most_near() < self.least[pixel];
         if !(claim.open || farther || fragment.is_of(claim.nearest.id)) {
             let (against, mut marks) = (Rival { fragment, t }, marks.at(pixel));
@@ -132,7 +132,7 @@ impl<'a, P: Profile> Certificate<'a, P> {
         }
     }
 
-    /// Judges what the client says, and others against it.
+    /// Judges the client's claims, and compares the polygons with them.
     pub(super) fn end(&self, marks: &mut Marks) {
         for (pixel, claim) in self.claims.iter().enumerate().filter(|(_, claim)| !claim.open) {
             claim.judge(self.client_planes, &mut marks.at(pixel));
@@ -143,7 +143,7 @@ impl<'a, P: Profile> Certificate<'a, P> {
     }
 }
 
-/// The depths that may be the nearest where the client says nothing.
+/// Finds the depths that may be the nearest where the client says nothing.
 fn bound_open<P: Profile>(splats: &SwiftSplats<P>, claims: &mut [Claim<P>], tile: (usize, &Rect)) {
     let open: Vec<bool> = claims.iter().map(|claim| claim.open).collect();
     if !open.contains(&true) {
@@ -158,7 +158,7 @@ fn bound_open<P: Profile>(splats: &SwiftSplats<P>, claims: &mut [Claim<P>], tile
     }
 }
 
-/// What the client says of each pixel.
+/// The client's claim about each pixel.
 fn claims<P: Profile>(
     splats: &SwiftSplats<P>,
     others: &[Vec<Other<P>>],
@@ -191,7 +191,7 @@ fn claims<P: Profile>(
         claims[pixel].meet(shared, q, w, has_depth);
     };
     if let Some(ids) = client_planes.id {
-        // The pixels of each surfel, which are few of those in its bounds.
+        // Each surfel is shown in few of the pixels in its bounds, so only these are visited.
         let shown =
             pixels(*rect).enumerate().map(|(pixel, at)| (*ids.plane.at(at.0, at.1), pixel, at));
         let mut shown: Vec<_> = shown.filter(|(id, ..)| *id != NO_ID).collect();
@@ -213,7 +213,7 @@ fn claims<P: Profile>(
 }
 
 impl<P: Profile> Claim<P> {
-    /// A fragment that may be the one that the client means.
+    /// Compares a fragment that the client may mean with the claim.
     fn meet(&mut self, shared: &Shared<Ball<P>>, q: Ball<P>, w: Ball<P>, has_depth: bool) {
         let inside = decide::inside(q, shared.limit);
         let outside = if inside.possibly() { 0.0 } else { q.distance(shared.limit) };
@@ -230,19 +230,19 @@ impl<P: Profile> Claim<P> {
         }
     }
 
-    /// What is no splat and may be what the client means.
+    /// Compares the polygons that the client may mean with the claim.
     fn meet_others(&mut self, client_planes: &ClientPlanes<'_>, others: &[Other<P>]) {
         let without_id = self.nearest.id.is_none_or(|id| id == NO_ID);
         if others.is_empty() || !(self.open || without_id) {
             return;
         }
-        // What a picture shows there may be behind a fragment that no weight shows.
+        // The picture may show a fragment with no weight here, and a polygon behind it.
         if client_planes.empty_is_open || self.open {
             (self.open, self.nearest.id) = (true, None);
         }
         others.iter().for_each(|other| other.bound(&mut self.range));
         if client_planes.depth.is_none() && !self.open {
-            // Of no id it may be any of them, or nothing.
+            // Without an id the client may mean any polygon, or nothing.
             self.nearest.depth = between(self.range);
         } else if self.nearest.depth.middle < f64::INFINITY {
             for other in others {
@@ -254,7 +254,7 @@ impl<P: Profile> Claim<P> {
         }
     }
 
-    /// Whether the claim itself can be.
+    /// Judges the claim itself.
     fn judge(&self, client_planes: &ClientPlanes<'_>, pixel: &mut PixelMarks<'_>) {
         let Nearest { depth, id } = self.nearest;
         if client_planes.depth.is_none() && self.error <= 1.0 {
@@ -285,7 +285,7 @@ impl<P: Profile> Claim<P> {
 }
 
 impl<P: Profile> Other<P> {
-    /// Whether it certainly is nearer than what the client has, or may be.
+    /// Checks whether the polygon certainly is nearer than the client's fragment, or may be.
     fn judge(&self, claim: &Claim<P>, pixel: &mut PixelMarks<'_>) {
         let depth = claim.nearest.depth;
         let nearer = decide::before(self.depth, depth);
@@ -300,7 +300,7 @@ impl<P: Profile> Other<P> {
         }
     }
 
-    /// As [`Rival::bound`].
+    /// Widens the range as [`Rival::bound`] does.
     fn bound(&self, [least, most]: &mut [f64; 2]) {
         let Ball { middle, radius, .. } = self.depth;
         let radius = if radius.is_nan() { f64::INFINITY } else { radius };
@@ -318,12 +318,12 @@ struct Rival<'a, P: Profile> {
 }
 
 impl<P: Profile> Rival<'_, P> {
-    /// Whether the fragment certainly is nearer than what the client has, or may be.
+    /// Checks whether the fragment certainly is nearer than the client's, or may be.
     fn judge(&self, claim: &Claim<P>, pixel: &mut PixelMarks<'_>) {
         let (fragment, depth) = (self.fragment, claim.nearest.depth);
         let nearer = decide::before(self.t, depth);
         if fragment.drawn && (fragment.inside & nearer).certainly() {
-            // As certain as the least certain of the two.
+            // The fault is as certain as the less certain of the two decisions.
             let (gap, margin) = (self.t.distance(depth), fragment.margin());
             pixel.found(if gap < margin { gap } else { margin }, || Fault::LeftOut {
                 surfel: fragment.splat.surfel,
@@ -338,10 +338,11 @@ impl<P: Profile> Rival<'_, P> {
         }
     }
 
-    /// Whether the fragment is exactly as near as that of the client, and comes before it.
+    /// Checks whether the fragment is exactly as near as the client's, and comes before it by the
+    /// tie rule.
     ///
-    /// Depths are equal in every implementation where nothing was rounded, and where surfels have the
-    /// same numbers.
+    /// Depths are equal in every implementation where nothing was rounded, or where surfels have
+    /// the same numbers.
     fn judge_tie(
         &self,
         claim: &Claim<P>,
@@ -351,6 +352,7 @@ impl<P: Profile> Rival<'_, P> {
         let Some(id) = claim.nearest.id else { return };
         let surfel = self.fragment.splat.surfel;
         let first = ties.keeps(surfel, id);
+        // The distance of two exact numbers is infinite, so this asks whether both are exact.
         let exact = self.t.distance(claim.closest) == f64::INFINITY
             && self.fragment.inside.certainly()
             && self.t.middle == claim.closest.middle;
@@ -359,7 +361,8 @@ impl<P: Profile> Rival<'_, P> {
         }
     }
 
-    /// The nearest depth that a pixel may have, if the client says nothing of it.
+    /// Widens the range of nearest depths that a pixel may have, for a pixel where the client says
+    /// nothing.
     fn bound(&self, [least, most]: &mut [f64; 2]) {
         let Ball { middle, radius, .. } = self.t;
         *least = least.at_most(middle - radius);
@@ -369,7 +372,7 @@ impl<P: Profile> Rival<'_, P> {
     }
 }
 
-/// The ball of an interval of depths; of one without an end, any depth.
+/// The ball of an interval of depths. An interval without an end gives any depth.
 fn between<P: Profile>([least, most]: [f64; 2]) -> Ball<P> {
     if least == f64::INFINITY {
         Ball::INFINITY

@@ -1,4 +1,4 @@
-//! The planes that a client has handed in, by the stage that judges them.
+//! The planes that a client hands in, by the stage that judges them.
 
 use crate::frame::NO_ID;
 use crate::method::ewa::attributes::Sums;
@@ -9,17 +9,17 @@ use crate::method::surface;
 use crate::splat::record::SplatRecord;
 use crate::verdict::client::{Band, Client, Storage, StoredPlane, Ties};
 
-/// The planes of a client, each if it is there.
+/// The planes of a client; each may be missing.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct ClientPlanes<'a> {
     /// The splats, if the client has projected them.
     pub(crate) records: Option<&'a [SplatRecord]>,
-    /// Depth and surfel of the nearest fragment: those of the visibility pass, else the picture's.
+    /// Depth and surfel of the nearest fragment, from the visibility pass, else from the picture.
     pub(crate) depth: Option<StoredPlane<'a, f64>>,
     pub(crate) id: Option<StoredPlane<'a, u32>>,
     pub(crate) ties: Ties,
     pub(crate) band: Band,
-    /// The sums of the attribute pass; its weight may be the picture's.
+    /// The sums of the attribute pass. The weight may come from the picture.
     pub(crate) weight: Option<StoredPlane<'a, f64>>,
     pub(crate) normal_sum: Option<StoredPlane<'a, [f64; 3]>>,
     pub(crate) color_sum: Option<StoredPlane<'a, [f64; 3]>>,
@@ -29,15 +29,16 @@ pub(crate) struct ClientPlanes<'a> {
     pub(crate) color: Option<StoredPlane<'a, [f64; 3]>>,
     pub(crate) normal: Option<StoredPlane<'a, [f64; 3]>>,
     pub(crate) opacity: Option<StoredPlane<'a, f64>>,
-    /// 1 where there is something, else 0.
+    /// 1 where something is seen, else 0.
     pub(crate) mask: Option<StoredPlane<'a, u8>>,
-    /// Copies in the picture of what an earlier pass has left, if both are there.
+    /// The picture's copies of planes from an earlier pass, if both are there.
     pub(crate) depth_copy: Option<StoredPlane<'a, f64>>,
     pub(crate) id_copy: Option<StoredPlane<'a, u32>>,
-    /// Whether a pixel of the picture that has no weight is empty, whatever fragment is nearest: the copies
-    /// are judged so.
+    /// Whether a pixel of the picture without weight is empty, whatever fragment is nearest. The
+    /// copies are judged by this rule.
     pub(crate) weightless: bool,
-    /// Whether a pixel that is empty says nothing of the nearest fragment: one of such a picture.
+    /// Whether an empty pixel says nothing about the nearest fragment, because it belongs to such a
+    /// picture.
     pub(crate) empty_is_open: bool,
     pub(crate) weight_copy: Option<StoredPlane<'a, f64>>,
     /// The picture.
@@ -45,7 +46,7 @@ pub(crate) struct ClientPlanes<'a> {
     pub(crate) alpha: Option<StoredPlane<'a, f64>>,
 }
 
-/// The rows of what comes before the averages.
+/// The rows of the planes before the averages.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SumRows {
     /// Depth and surfel of the nearest fragment, if a stage of its own leaves them.
@@ -65,7 +66,7 @@ impl<'a> ClientPlanes<'a> {
         )
     }
 
-    /// The same of another method that ends in averages and their shading.
+    /// The planes for another method that ends in averages and their shading.
     pub(crate) fn of(client: &'a Client, rows: &SumRows) -> Self {
         let [color, normal, weight, count] = &rows.sums;
         let first = |own: Option<_>, other: Option<_>| (own.or(other), own.and(other));
@@ -100,25 +101,25 @@ impl<'a> ClientPlanes<'a> {
         }
     }
 
-    /// Whether nothing is said of the nearest fragments.
+    /// Whether the client says nothing about the nearest fragments.
     pub(crate) fn nothing(&self) -> bool {
         self.depth.is_none() && self.id.is_none()
     }
 
-    /// Whether nothing is said of the sums.
+    /// Whether the client says nothing about the sums.
     pub(crate) fn no_sums(&self) -> bool {
         let triples = [self.normal_sum, self.color_sum];
         self.weight.is_none() && self.count.is_none() && triples.iter().all(Option::is_none)
     }
 
-    /// Whether nothing is said of the nearest fragment of a pixel.
+    /// Whether the client says nothing about the nearest fragment of a pixel.
     pub(super) fn says_nothing(&self, (x, y): (u32, u32)) -> bool {
         let far = || self.depth.is_none_or(|plane| *plane.plane.at(x, y) == f64::INFINITY);
         let none = || self.id.is_none_or(|plane| *plane.plane.at(x, y) == NO_ID);
         self.nothing() || (self.empty_is_open && far() && none())
     }
 
-    /// Whether every plane that is there says that nothing is at a pixel, and is black.
+    /// Whether every plane that is there shows an empty, black pixel.
     pub(crate) fn is_empty(&self, (x, y): (u32, u32)) -> bool {
         let far = |plane: Option<StoredPlane<'_, f64>>| {
             plane.is_none_or(|plane| *plane.plane.at(x, y) == f64::INFINITY)
@@ -130,7 +131,7 @@ impl<'a> ClientPlanes<'a> {
             plane.is_none_or(|plane| *plane.plane.at(x, y) == 0.0)
         };
         let zeros = |plane: Option<StoredPlane<'_, [f64; 3]>>| {
-            // Not as arrays, which are compared by a call.
+            // Written out because arrays are compared by a call.
             plane.is_none_or(|plane| {
                 let [a, b, c] = *plane.plane.at(x, y);
                 (a == 0.0) & (b == 0.0) & (c == 0.0)

@@ -1,40 +1,48 @@
-//! What a right implementation may leave of each stage, held against somebody's planes.
+//! Verify your planes of EWA: which planes a correct implementation may leave of each stage.
 //!
-//! Surfels are projected in [`Ball`](crate::number::Ball)s of a [`Profile`]; a fragment is asked as for the
-//! [margin](super#the-margin). Each stage is judged from what the client has of the stage before,
-//! as it is stored; what the client has not is taken from the balls.
+//! The verdict projects surfels in [`Ball`](crate::number::Ball)s of a [`Profile`]. It tests a
+//! fragment as for the [margin](super#the-margin). Each stage is judged from the client's planes of
+//! the stage before, as the client stores them. A plane that the client lacks is taken from the
+//! balls.
 //!
-//! **Projection**, if the client hands in its records: each number of a record is in its ball, normal,
-//! opacity and colour are the surfel's, and there is a record of every surfel that certainly is drawn and
-//! of none that certainly is not. A record is marked at the pixel of its centre. What follows is
-//! judged from the records, as they are stored.
+//! **Projection**, if the client hands in its records:
 //!
-//! **Visibility**, a certificate. Z and id are those of `visibility`, else of the picture.
+//! - Each number of a record is in its ball.
+//! - Normal, opacity and colour are the surfel's.
+//! - Every surfel that certainly is drawn has a record.
+//! - No surfel that certainly is not drawn has a record.
+//!
+//! A record is marked at the pixel of its centre. The later stages are judged from the records, as
+//! they are stored.
+//!
+//! **Visibility**, a certificate. Z and id come from `visibility`, else from the picture.
 //!
 //! 1. The surfel of the id has a fragment at the pixel that possibly is inside.
 //! 2. Z is in the ball of its depth. With Z alone some fragment must satisfy 1 and 2.
-//! 3. No other surfel that certainly is drawn has a fragment that certainly is inside and whose depth
-//!    certainly is less than Z; without Z, than the depth of the id's fragment. Of an empty pixel
-//!    Z is +inf, so that no fragment certainly is inside.
+//! 3. No other surfel that certainly is drawn has a fragment that certainly is inside and whose
+//!    depth certainly is less than Z. Without Z, its depth is compared with the depth of the id's
+//!    fragment. In an empty pixel Z is +inf, so no fragment may certainly be inside.
 //!
-//! 4. No surfel comes before that of the id, as the client says of ties, whose depth is equal and
-//!    exact in balls, or all of whose numbers are those of the id's surfel.
+//! 4. No surfel with an equal depth comes before the id's surfel by the client's tie rule. Depths
+//!    are equal if they are the same and exact in balls, or if all numbers of the two surfels are
+//!    the same.
 //!
-//! The id of other near ties is one of a set, and harmless: the sums take their limit from the
-//! client's Z.
+//! In other near ties the id is one of a set. This is harmless, because the sums take their limit
+//! from the client's Z.
 //!
 //! **Attributes.** A fragment is in the sums if it is drawn, inside, and of a depth of at most Z +
-//! epsilon; that of the id always passes. Where that is undecided, both continuations are kept, 2^n
-//! for n <= 4 fragments; a pixel is right if one of them fits every plane. With more than four
-//! the sums are not judged. Without Z and id, Z is any depth from the least that may be the nearest
-//! to the least that certainly is inside.
+//! epsilon. The id's fragment always passes. Where a decision is undecided, both continuations are
+//! kept, 2^n for n <= 4 fragments. A pixel is right if one continuation fits every plane. With more
+//! than four undecided fragments the sums are not judged. Without Z and id, Z is any depth from the
+//! least that may be the nearest to the least that certainly is inside.
 //!
-//! **Normalization and shading**: the formulas of the crate in balls. An environment is seen where
-//! nothing else is, as in [`transparent`](crate::verdict::transparent).
+//! **Normalization and shading**: the formulas of the crate in balls. The environment shows where
+//! nothing else is seen, as in [`transparent`](crate::verdict::transparent).
 //!
-//! The error of a number is the distance from the midpoint of its ball, divided by the sum of the
-//! ball's radius and of what its format may lose: up to 1 is right. The error of a certificate that
-//! fails is the distance of the decision that had to be otherwise; of an id or a count it is +inf.
+//! The error of a number is its distance from the midpoint of its ball, divided by the sum of the
+//! ball's radius and the loss that its format allows. An error up to 1 is right. If a certificate
+//! fails, the error is the distance of the decision that should be otherwise. The error of a wrong
+//! id or count is +inf.
 
 mod band;
 pub(crate) mod certificate;
@@ -83,7 +91,7 @@ pub(super) fn verify<P: Profile>(
     }
 }
 
-/// Everything that is judged at one pixel.
+/// Every check at one pixel.
 pub(super) fn checks<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
@@ -96,7 +104,7 @@ pub(super) fn checks<P: Profile>(
     marks::checks(job, stages, pixel, |tile, marks| judge.judge(tile, marks))
 }
 
-/// What all tiles share.
+/// The parts that all tiles share.
 struct Judge<'a, P: Profile> {
     surfels: &'a Surfels,
     client_planes: &'a ClientPlanes<'a>,
@@ -118,7 +126,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         Self { surfels: &job.scene.surfels, client_planes, splats, bands, pixels, right }
     }
 
-    /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
+    /// Marks the wrong pixels of a rectangle in a tile, stage by stage.
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 4]) -> Counts {
         let Self { surfels, client_planes, splats, bands, pixels, .. } = self;
         let [first, rest @ ..] = marks;
@@ -151,7 +159,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         Counts { covered, undecided: rest[0].doubtful(Doubt::OF_SUMS), shifts }
     }
 
-    /// The errors of the pixels of a rectangle that are right, as far as that is seen at once.
+    /// The errors of those pixels of a rectangle that the fast path finds right.
     fn right(
         &self,
         rect: Rect,
@@ -160,6 +168,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         marks: &Marks,
     ) -> Vec<Option<Errors>> {
         let mut found = vec![None; rect.pixels()];
+        // An explanation needs every check, so it takes no shortcut.
         let Some(right) = self.right.as_ref().filter(|_| !marks.logs()) else { return found };
         let mut asked = Vec::with_capacity(found.len());
         for (pixel, at) in counted(rect).filter(|(pixel, _)| sums.undecided[*pixel] == 0) {

@@ -1,5 +1,5 @@
-//! One pixel of a client after the visibility pass: sums, averages and shading, each from what the
-//! client has of the stage before.
+//! Judge one pixel of a client after the visibility pass: sums, averages and shading, each from the
+//! client's planes of the stage before.
 
 use super::certificate::Nearest;
 use super::client_planes::ClientPlanes;
@@ -19,18 +19,18 @@ use crate::verdict::client::Storage;
 use crate::verdict::marks::Marks;
 use std::borrow::Cow;
 
-/// The stages after visibility, by their place among the marks.
+/// The stages after visibility, by their index among the marks.
 pub(super) const ATTRIBUTES: usize = 0;
 pub(super) const NORMALIZATION: usize = 1;
 pub(super) const SHADING: usize = 2;
 
-/// What all pixels share.
+/// The parts that all pixels share.
 pub(crate) struct PixelJudge<'a, P: Profile> {
     client_planes: &'a ClientPlanes<'a>,
     shading: Shading<'a, P>,
-    /// Whether surfels have colours; else the material has one.
+    /// Whether surfels have colours; if not, the material has one.
     colored: bool,
-    /// The greatest component of a colour, at least 1.
+    /// The greatest component of any colour, at least 1.
     brightest: f64,
     /// The direction where no weight has arrived, whatever the sums are.
     nowhere: [Ball<P>; 3],
@@ -47,7 +47,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         Self::of_surfels(job, &job.scene.surfels, client_planes)
     }
 
-    /// The same of the surfels of objects in their places.
+    /// The judge for the placed surfels of objects.
     pub(crate) fn of_surfels(
         job: &Job<'a>,
         surfels: &Surfels,
@@ -64,14 +64,14 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         Self { client_planes, shading, colored, brightest, nowhere }
     }
 
-    /// The same of a layer, behind which others may be seen.
+    /// The judge for a layer, behind which others may be seen.
     pub(crate) fn of_layer(job: &Job<'a>, client_planes: &'a ClientPlanes<'a>) -> Self {
         let colored = job.scene.surfels.color().is_some();
         Self { shading: Shading::of_layer(job, colored), ..Self::new(job, client_planes) }
     }
 
-    /// Marks what is wrong at a pixel: by the continuation that errs least. Gives the number of the only
-    /// one that fits, if one does and others do not.
+    /// Marks a wrong pixel, by the continuation that errs least. Returns the index of the only
+    /// continuation that fits, if one fits and others do not.
     pub(crate) fn judge(
         &self,
         (pixel, at): (usize, (u32, u32)),
@@ -80,6 +80,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         marks: &mut [Marks; 3],
     ) -> Option<usize> {
         let all = all(sums);
+        // An explanation needs every check, so it takes no shortcut.
         let nothing = matches!(all, [Sums { count: 0, .. }]) && !marks[ATTRIBUTES].logs();
         if nothing && self.is_right_of_nothing(at) {
             return None;
@@ -91,12 +92,13 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         only_fitting(all, check)
     }
 
-    /// Whether, if nothing is at a pixel, the client has nothing: every check finds an error of 0.
+    /// Whether the client's pixel is empty, as it should be: then every check finds an error of 0.
     pub(super) fn is_right_of_nothing(&self, at: (u32, u32)) -> bool {
         self.shading.is_black() && self.client_planes.is_empty(at)
     }
 
-    /// Opacity and shaded colour as the next pass reads them: the client's, else all that they may be.
+    /// Opacity and shaded colour as the next pass reads them: the client's, else all values that
+    /// they may have.
     pub(crate) fn read(
         &self,
         at: (u32, u32),
@@ -123,15 +125,15 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         )
     }
 
-    /// Whether the picture has a depth and no id, as no splat leaves.
+    /// Whether the picture has a depth and no id here. No splat leaves this.
     pub(crate) fn shows_no_splats(&self, (x, y): (u32, u32)) -> bool {
         let ClientPlanes { depth_copy, id_copy, .. } = self.client_planes;
         depth_copy.is_some_and(|plane| *plane.plane.at(x, y) < f64::INFINITY)
             && id_copy.is_some_and(|plane| *plane.plane.at(x, y) == NO_ID)
     }
 
-    /// Every plane at a pixel that shows no splats but another surface, with these sums. A weight that the
-    /// picture shows is not that of the sums: `client_planes` has no such.
+    /// Checks every plane at a pixel that shows another surface than splats, with these sums. The
+    /// picture's weight is not the weight of the sums, so `client_planes` must not hold it as such.
     pub(crate) fn check_other(
         &self,
         at: (u32, u32),
@@ -169,7 +171,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
     }
 
-    /// Every plane at a pixel, with these sums; without any, as far as the client's own are there.
+    /// Checks every plane at a pixel, with these sums. Without sums, checks whatever follows from
+    /// the client's own.
     pub(crate) fn check(
         &self,
         at: (u32, u32),
@@ -198,8 +201,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
     }
 
-    /// Sums as the client may have stored them between two additions, each of which rounds a sum that
-    /// is at most this large.
+    /// The sums as the client may have stored them between two additions. Each addition rounds a
+    /// sum that is at most this large.
     fn stored<'s>(&self, sums: &'s Sums<Ball<P>>) -> Cow<'s, Sums<Ball<P>>> {
         if self.client_planes.accumulator == Storage::Single {
             return Cow::Borrowed(sums);
@@ -217,7 +220,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         })
     }
 
-    /// The sums of the attribute pass, as stored.
+    /// Checks the sums of the attribute pass, as stored.
     fn check_sums(&self, at: (u32, u32), truth: &Sums<Ball<P>>, report: &mut Report<'_>) {
         let ClientPlanes { weight, normal_sum, color_sum, count, mask, .. } = self.client_planes;
         if let Some(plane) = weight {
@@ -242,13 +245,13 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         self.weight_of(at, sums.map(|sums| self.stored(sums)).as_deref())
     }
 
-    /// The same of sums as stored, as all sums below are.
+    /// The same for stored sums. All functions below take stored sums.
     fn weight_of(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
         let own = || sums.map_or_else(anything, |sums| sums.weight);
         self.client_planes.weight.map_or_else(own, |plane| plane.ball(at))
     }
 
-    /// The averages of the client's sums, else of these; of none, they are any.
+    /// The averages of the client's sums, else of these. Without either they are any numbers.
     fn averages(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Averages<P> {
         let weight = self.weight_of(at, sums);
         let unknown = [anything(); 3];
@@ -274,7 +277,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         opacity.at_most(Ball::ONE)
     }
 
-    /// Averages.
+    /// Checks the averages.
     fn check_averages(
         &self,
         at: (u32, u32),
@@ -293,7 +296,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
     }
 
-    /// Copies of what earlier passes left.
+    /// Checks the picture's copies of what earlier passes left.
     fn check_copies(
         &self,
         at: (u32, u32),
@@ -316,7 +319,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
     }
 
-    /// Depth and id of a picture that shows them where it has weight.
+    /// Checks depth and id of a picture that shows them only where it has weight.
     fn check_shown(
         &self,
         at: (u32, u32),
@@ -341,7 +344,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
     }
 
-    /// The depth that is shaded.
+    /// The depth that shading uses.
     fn depth(&self, at: (u32, u32), nearest: &Nearest<P>, sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
         let own = if self.client_planes.weightless {
             match self.weight_of(at, sums).gt(Ball::ZERO).decided() {
@@ -364,7 +367,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     }
 }
 
-/// What the sums of a pixel may be, as far as that is known.
+/// The possible sums of a pixel; empty if there are too many.
 pub(crate) fn all<P: Profile>(sums: &Continuations<P>) -> &[Sums<Ball<P>>] {
     match sums {
         Continuations::One(sums) => std::slice::from_ref(sums),

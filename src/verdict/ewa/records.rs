@@ -1,5 +1,5 @@
-//! The projection of a client: its records, each number in its ball, and no surfel too many or too
-//! few. The stages that follow are judged from these records, exact as they are stored.
+//! Verify a client's projection: each number of its records is in its ball, and no surfel is
+//! missing or too many. The later stages are judged from these records, exactly as they are stored.
 
 use super::swift::{SwiftSplat, SwiftSplats};
 use crate::frame::Rect;
@@ -16,10 +16,10 @@ use crate::splat::{Footprint, Projector, Reasons, Splat, Tally, View, batch};
 use crate::verdict::marks::Marks;
 use crate::verdict::{Fault, StageVerdict};
 
-/// The stage, and the name of what it judges.
+/// The name of the stage.
 const STAGE: &str = "projection";
 
-/// The splats of a client's records, each in the bounds that the surfel may have.
+/// The splats of a client's records, each with the bounds that its surfel may have.
 pub(super) fn project<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
@@ -51,7 +51,7 @@ pub(super) fn project<P: Profile>(
     )
 }
 
-/// The surfel of a record, if there is such a surfel.
+/// The surfel of a record, or none if the scene has no such surfel.
 fn disc<P: Profile>(
     surfels: &Surfels,
     record: &SplatRecord,
@@ -60,7 +60,7 @@ fn disc<P: Profile>(
     (i < surfels.len()).then(|| batch::disc(surfels, i))
 }
 
-/// What is wrong of the records, each marked at the pixel of its centre.
+/// Judges the records. Each fault is marked at the pixel of the record's centre.
 pub(super) fn judge<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
@@ -89,19 +89,19 @@ pub(super) fn judge<P: Profile>(
     marks.whole(STAGE, vec!["records"])
 }
 
-/// The pixel of a place, or that of the border next to it.
+/// The pixel that holds a position, or the pixel at the border next to it.
 fn pixel(job: &Job<'_>, place: [f32; 2]) -> usize {
     let size = job.camera.size();
     let [x, y] = [0, 1].map(|i| f64::from(place[i]).clamped(0.0, f64::from(size[i] - 1)) as usize);
     y * size[0] as usize + x
 }
 
-/// What errs most of the record of a surfel: without words, as most records are right.
+/// The worst error in the record of a surfel. It has no words, because most records are right.
 #[derive(Clone, Copy)]
 struct Worst {
-    /// By how many bounds.
+    /// The error in bounds.
     error: f64,
-    /// Where it is.
+    /// The position of the record's centre.
     at: [f32; 2],
     surfel: u32,
     what: What,
@@ -109,14 +109,14 @@ struct Worst {
 
 #[derive(Clone, Copy)]
 enum What {
-    /// A number: which, the client's, the truth, and how far from that it may be.
+    /// A number: its name, the client's value, the truth, and its radius.
     Number {
         name: &'static str,
         found: f64,
         truth: f64,
         radius: f64,
     },
-    /// The side that is seen; the client's.
+    /// The side that the camera sees, according to the client.
     Side {
         back: bool,
     },
@@ -126,7 +126,7 @@ enum What {
 }
 
 impl What {
-    /// In words.
+    /// The fault in words.
     fn fault(self, surfel: u32) -> Fault {
         match self {
             Self::Number { name, found, truth, radius } => {
@@ -144,7 +144,7 @@ impl What {
     }
 }
 
-/// What errs most of the record of a surfel; none of a surfel that is not drawn and need not be.
+/// The worst error in the record of a surfel; none if the surfel has no record and needs none.
 fn judge_surfel<P: Profile>(
     projector: &Projector<Ball<P>>,
     surfels: &Surfels,
@@ -169,7 +169,7 @@ fn judge_surfel<P: Profile>(
         (Some(record), Some((error, what))) => {
             Some(Worst { error, at: record.center, surfel, what })
         }
-        // One that is out of sight is harmless: what it draws is judged.
+        // A record out of sight is harmless, because the pixels that it draws are judged.
         (Some(record), None) => {
             let (_, reasons) = project_as(projector, &disc, surfel, false);
             let Reasons { behind, degenerate, back_facing, .. } = reasons;
@@ -180,7 +180,7 @@ fn judge_surfel<P: Profile>(
     }
 }
 
-/// What errs most of a record that has a splat.
+/// The worst error of a record that has a splat.
 fn worst<P: Profile>(
     splat: &Splat<Ball<P>>,
     record: &SplatRecord,
@@ -206,7 +206,7 @@ fn worst<P: Profile>(
     worst
 }
 
-/// Every number of a footprint, by its name in the record.
+/// Every number of a footprint, with its name in the record.
 fn numbers<R: Copy>(f: &Footprint<R>) -> [(&'static str, R); 11] {
     let Vector2 { x, y } = f.center;
     [
@@ -224,7 +224,7 @@ fn numbers<R: Copy>(f: &Footprint<R>) -> [(&'static str, R); 11] {
     ]
 }
 
-/// Whether what is copied from the surfel is the surfel's.
+/// Whether the record's copied attributes equal the surfel's.
 fn same_attributes(record: &SplatRecord, surfels: &Surfels) -> bool {
     let i = record.surfel as usize;
     let normal = surfels.normal()[i].to_array();

@@ -1,8 +1,9 @@
-//! Pixels side by side: most pixels of a client are right, and their errors are found in lanes.
+//! A fast path for right pixels: most pixels of a client are right, and lanes find their errors
+//! side by side.
 //!
-//! The checks are those of [`PixelJudge`](super::pixel::PixelJudge), in balls of [`Common`]. Where these know
-//! every number of a pixel and none errs by more than 1, the errors are those of the plain checks, bit for bit.
-//! Of any other pixel nothing is said.
+//! The checks are the checks of [`PixelJudge`](super::pixel::PixelJudge), in balls of [`Common`].
+//! If every number of a pixel is known and none errs by more than 1, the errors equal the plain
+//! checks bit for bit. Otherwise the fast path says nothing about the pixel.
 
 #![expect(
     clippy::needless_range_loop,
@@ -22,23 +23,23 @@ use crate::shade::phong::Shader;
 use crate::splat::View;
 use crate::verdict::client::{Storage, StoredPlane, known};
 
-/// A number of each lane.
+/// One number in each lane.
 type Numbers<P> = BallLanes<Common<P>>;
 
-/// What all pixels share.
+/// The parts that all pixels share.
 pub(super) struct RightPixels<'a, P: Profile> {
     client_planes: &'a ClientPlanes<'a>,
     shader: Shader<Ball<Common<P>>>,
-    /// Whether surfels have colours; else this is the material's.
+    /// Whether surfels have colours; if not, `plain` is the material's colour.
     colored: bool,
     plain: [Numbers<P>; 3],
 }
 
-/// The stages after visibility: by how many bounds each errs, at most 1.
+/// The errors of the stages after visibility, in bounds, at most 1.
 pub(super) type Errors = [f64; 3];
 
 impl<'a, P: Profile> RightPixels<'a, P> {
-    /// None where formats or a background make more of the checks than is done here.
+    /// None where formats or a background need checks that lanes do not have.
     pub(super) fn new(job: &Job<'a>, client_planes: &'a ClientPlanes<'a>) -> Option<Self> {
         let scalars = [
             client_planes.depth,
@@ -75,8 +76,8 @@ impl<'a, P: Profile> RightPixels<'a, P> {
         Some(Self { client_planes, shader, colored: scene.surfels.color().is_some(), plain })
     }
 
-    /// The errors of some pixels of a tile, at most [`LANES`] without an undecided fragment, if they are known
-    /// and right.
+    /// The errors of some pixels of a tile, where they are known and right. Give at most [`LANES`]
+    /// pixels without an undecided fragment.
     pub(super) fn errors(
         &self,
         some: &[(usize, (u32, u32))],
@@ -94,19 +95,19 @@ impl<'a, P: Profile> RightPixels<'a, P> {
     }
 }
 
-/// Whether a plane holds `f32`, of which nothing else is said.
+/// Whether a plane holds plain `f32` without radii.
 fn is_single<T>(plane: &StoredPlane<'_, T>) -> bool {
     plane.storage == Storage::Single && plane.radii.is_none()
 }
 
-/// [`LANES`] pixels, and what has been added up there.
+/// [`LANES`] pixels, and the sums added up there.
 struct Pixels<P: Profile> {
     at: [(u32, u32); LANES],
     depth: Numbers<P>,
     weighted: TotalsLanes<P, 4>,
     color: TotalsLanes<P, 3>,
     count: [u8; LANES],
-    /// All bits where there is such a pixel, else none.
+    /// All bits set where there is a pixel that may be right, else none.
     right: [u32; LANES],
 }
 
@@ -140,21 +141,21 @@ impl<P: Profile> Pixels<P> {
     }
 }
 
-/// By how many bounds each stage errs, and where that is all.
+/// The error of each stage in bounds, and the lanes where all numbers fit.
 struct StageErrors {
     worst: [[f64; LANES]; 3],
     right: [u32; LANES],
 }
 
 impl StageErrors {
-    /// A number against what it may be.
+    /// Compares a number with its ball.
     #[inline(always)]
     fn number<P: Profile>(&mut self, stage: usize, found: &Numbers<P>, truth: &Numbers<P>) {
         let Self { worst, right } = self;
         let (mut most, mut fits) = (worst[stage], *right);
         for i in 0..LANES {
             let error = truth.get(i).misfit_of_bounded(found.get(i));
-            // A comparison that NaN fails.
+            // Written so that a NaN does not fit.
             fits[i] &= u32::from(error <= 1.0).wrapping_neg();
             most[i] = if error > most[i] { error } else { most[i] };
         }
@@ -173,7 +174,7 @@ impl StageErrors {
         }
     }
 
-    /// What has to be the same.
+    /// Requires that values are the same.
     #[inline(always)]
     fn same(&mut self, same: impl Fn(usize) -> bool) {
         for i in 0..LANES {
@@ -202,7 +203,7 @@ fn triples<P: Profile>(
     [lanes(values[0]), lanes(values[1]), lanes(values[2])]
 }
 
-/// Stored numbers.
+/// Lanes of stored numbers.
 #[inline(always)]
 fn lanes<P: Profile>(values: [f64; LANES]) -> Numbers<P> {
     let mut lanes = Numbers::<P>::ZERO;
@@ -212,7 +213,7 @@ fn lanes<P: Profile>(values: [f64; LANES]) -> Numbers<P> {
     lanes
 }
 
-/// The mean of each lane: a direction, or a colour.
+/// The mean in each lane, either as a direction or as a colour.
 #[inline(always)]
 fn means<const DIRECTION: bool, P: Profile>(
     sums: &[Numbers<P>; 3],
@@ -231,7 +232,7 @@ fn means<const DIRECTION: bool, P: Profile>(
 }
 
 vectorized_avx2!(
-    /// What [`PixelJudge::check`](super::pixel::PixelJudge::check) finds.
+    /// Finds the same as [`PixelJudge::check`](super::pixel::PixelJudge::check).
     fn judge<P: Profile>(of: &RightPixels<'_, P>, pixels: &Pixels<P>) -> StageErrors {
         let (client_planes, at) = (of.client_planes, &pixels.at);
         let mut found = StageErrors { worst: [[0.0; LANES]; 3], right: pixels.right };
@@ -337,8 +338,8 @@ mod tests {
     use crate::verdict::ewa::tests::each_scene;
     use crate::verdict::marks::{self, Marks};
 
-    /// Holds what is found of a client in lanes against what is found without; how many pixels are right in
-    /// lanes, and how many are wrong.
+    /// Compares the findings with lanes and without. Returns how many pixels are right in lanes,
+    /// and how many are wrong.
     fn compare<P: Profile>(job: &Job<'_>, settings: &Settings, client: &Client) -> [u64; 2] {
         let client_planes = ClientPlanes::new(client);
         let mut judge = Judge::<P>::new(job, settings, &client_planes);
@@ -378,7 +379,7 @@ mod tests {
             for stages in [false, true] {
                 let frame = session.define::<f32>(camera, stages).unwrap().frame;
                 let client = Client::from(&frame);
-                // A colour that is wrong here and there.
+                // Wrong colours in some places.
                 let wrong = client.mapped(|name, samples| match (name, samples) {
                     ("", Samples::Color(plane)) => Samples::Color(
                         plane.map(|&[r, g, b]| [if g > 0.5 { r * 1.001 } else { r }, g, b]),

@@ -1,5 +1,5 @@
-//! The attribute pass of a client: the sums over the fragments that certainly are visible, and both
-//! continuations of every decision that may be either way.
+//! Verify a client's attribute pass: add the fragments that certainly are visible, and follow both
+//! continuations of every undecided decision.
 
 use super::certificate::{Certificate, Nearest};
 use super::swift::{Fragment, SwiftSplats, each_fragment, least_nearness};
@@ -15,35 +15,35 @@ use crate::verdict::Doubt;
 use crate::verdict::marks::{Marks, PixelMarks};
 use crate::verdict::shift::{CUT_OFF, EPSILON, OpenDecision};
 
-/// The most undecided fragments of a pixel of which all continuations are followed, 2^n of them.
+/// The most undecided fragments of a pixel for which all continuations are followed, 2^n of them.
 pub(crate) const MOST: u32 = 4;
 
-/// What the sums of a pixel may be.
+/// The sums that a pixel may have.
 #[derive(Clone, Debug)]
 pub(crate) enum Continuations<P: Profile> {
-    /// No decision is undecided.
+    /// The only possible sums, because every decision is certain.
     One(Sums<Ball<P>>),
-    /// One of these: number n takes undecided decision i if bit i of n is set. Which these are is empty
-    /// where a method does not say.
+    /// The possible sums. Number n takes undecided decision i if bit i of n is set. The list of
+    /// decisions is empty where a method does not keep it.
     Several(Vec<Sums<Ball<P>>>, Vec<OpenDecision>),
-    /// More than are followed: anything.
+    /// More than are followed: any sums.
     Many,
 }
 
-/// The fragments of a pixel whose sums are undecided.
+/// The fragments of pixels with undecided sums.
 type Fragments<P> = Vec<(usize, Part<P>)>;
 
-/// A fragment that is or may be in the sums.
+/// A fragment that is in the sums, or may be.
 #[derive(Clone, Copy, Debug)]
 struct Part<P: Profile> {
     surfel: u32,
     back: Three,
     weight: Ball<P>,
-    /// The decision on it, if it is undecided.
+    /// The decision on the fragment, if it is undecided.
     open: Option<OpenDecision>,
 }
 
-/// The sums of each pixel of a tile, given the nearest fragments.
+/// The sums of each pixel of a tile, for the given nearest fragments.
 pub(crate) fn continuations<'a, P: Profile>(
     splats: &SwiftSplats<P>,
     surfels: &'a Surfels,
@@ -54,8 +54,9 @@ pub(crate) fn continuations<'a, P: Profile>(
     add(splats, surfels, nearest, tile, None, marks).followed(|_| true)
 }
 
-/// Adds up what certainly is in the sums of each pixel of a tile, given the nearest fragments. What the
-/// certificate of these asks of a fragment is asked here too, as most such fragments are in the sums.
+/// Adds the fragments that certainly are in the sums of each pixel of a tile, for the given nearest
+/// fragments. It also shows each fragment to the certificate, because most such fragments are in
+/// the sums.
 pub(super) fn add<'s, 'a, P: Profile>(
     splats: &'s SwiftSplats<P>,
     surfels: &'a Surfels,
@@ -93,12 +94,12 @@ pub(super) fn add<'s, 'a, P: Profile>(
     Accumulation { splats, surfels, nearest, limits, tile, sums }
 }
 
-/// The lesser of two bounds of a nearness; NaN, which bounds nothing, is less than all.
+/// The lesser of two bounds on a nearness. A NaN bounds nothing, so it is less than all.
 fn lesser(a: f64, b: f64) -> f64 {
     if a < b || a.is_nan() { a } else { b }
 }
 
-/// What has been added up at the pixels of a tile.
+/// The sums added up at the pixels of a tile.
 pub(super) struct Accumulation<'s, 'a, P: Profile> {
     splats: &'s SwiftSplats<P>,
     surfels: &'a Surfels,
@@ -109,7 +110,7 @@ pub(super) struct Accumulation<'s, 'a, P: Profile> {
 }
 
 impl<'a, P: Profile> Accumulation<'_, 'a, P> {
-    /// What the sums may be at the pixels that are asked for.
+    /// Follows the possible sums of the pixels that `asked` names.
     pub(super) fn followed(self, asked: impl Fn(usize) -> bool) -> TileSums<'a, P> {
         let Self { splats, surfels, nearest, limits, tile, sums } = self;
         let followed = |pixel: usize| {
@@ -124,7 +125,7 @@ impl<'a, P: Profile> Accumulation<'_, 'a, P> {
     }
 }
 
-/// What the sums of the pixels of a tile may be.
+/// The possible sums of the pixels of a tile.
 pub(crate) struct TileSums<'a, P: Profile> {
     surfels: &'a Surfels,
     sums: AllSums<P>,
@@ -132,7 +133,7 @@ pub(crate) struct TileSums<'a, P: Profile> {
 }
 
 impl<P: Profile> TileSums<'_, P> {
-    /// Those of a pixel that was asked for.
+    /// The possible sums of a pixel that was asked for.
     pub(crate) fn of(&self, pixel: usize) -> Continuations<P> {
         match self.sums.undecided[pixel] {
             0 => {
@@ -145,7 +146,7 @@ impl<P: Profile> TileSums<'_, P> {
     }
 }
 
-/// The sums of the pixels of a tile, and how many fragments are undecided.
+/// The sums of the pixels of a tile, and the number of undecided fragments.
 pub(super) struct AllSums<P: Profile> {
     /// Weight and normal.
     pub(super) weighted: Vec<Totals<P, 4>>,
@@ -166,7 +167,7 @@ impl<P: Profile> AllSums<P> {
         }
     }
 
-    /// What [`Sums::add_opaque`] does.
+    /// Adds a fragment as [`Sums::add_opaque`] does.
     #[inline(always)]
     fn add(&mut self, surfels: &Surfels, pixel: usize, part: &Part<P>) {
         let i = part.surfel as usize;
@@ -183,7 +184,7 @@ impl<P: Profile> AllSums<P> {
         self.count[pixel] = Stencil::COUNT.update(self.count[pixel], Outcome::Pass);
     }
 
-    /// The sums of a pixel, if they are known.
+    /// The sums of a pixel, if they are bounded.
     fn of(&self, pixel: usize) -> Option<Sums<Ball<P>>> {
         let [weight, x, y, z] = self.weighted[pixel].balls()?;
         let color = match self.color.get(pixel) {
@@ -209,8 +210,9 @@ impl FragmentDecisions {
         pixel.doubt(Doubt::Fate, !self.drawn);
     }
 
-    /// The decision: of the cut-off or of epsilon, if only the one is undecided, each a number, its
-    /// limit, and what the limit is a share of.
+    /// The open decision on this fragment. It names a limit only if the cut-off or epsilon alone is
+    /// undecided. `limits` gives for each a number, its limit, and the whole that distances are
+    /// fractions of.
     fn open<P: Profile>(
         &self,
         surfel: u32,
@@ -230,7 +232,7 @@ impl FragmentDecisions {
     }
 }
 
-/// The greatest depth of a pixel that is visible, and the least nearness that may be of this depth.
+/// The greatest visible depth of a pixel, and the least nearness that may have this depth.
 #[derive(Clone, Copy, Debug)]
 struct Limit<P: Profile> {
     depth: Ball<P>,
@@ -246,8 +248,8 @@ fn limits<P: Profile>(splats: &SwiftSplats<P>, nearest: &[Nearest<P>]) -> Vec<Li
     nearest.iter().map(of_pixel).collect()
 }
 
-/// Runs `take` for every fragment that is or may be in the sums, in ascending surfel index, and `meet` for
-/// all others than the nearest that are not certainly of a nearness below `least`.
+/// Runs `take` for every fragment that is or may be in the sums, in ascending surfel index. Runs
+/// `meet` for all fragments other than the nearest whose nearness is not certainly below `least`.
 #[inline(always)]
 fn each_part<P: Profile>(
     splats: &SwiftSplats<P>,
@@ -263,7 +265,7 @@ fn each_part<P: Profile>(
         |pixel| least[pixel],
         |fragment, pixel| {
             let &Fragment { splat, drawn, q, inside, .. } = fragment;
-            // The nearest fragment always passes: it is the law of the test.
+            // The nearest fragment always passes, by the law of the test.
             let visible = if fragment.is_of(nearest[pixel].id) {
                 true.into()
             } else {
@@ -306,20 +308,20 @@ fn parts<P: Profile>(
             |_, _, _| (),
             |pixel, part, _| parts.push((pixel, part)),
         );
-        // Those of a pixel stay in their order.
+        // A stable sort keeps the fragments of a pixel in their order.
         parts.sort_by_key(|(pixel, _)| *pixel);
     }
     parts
 }
 
-/// Those of one pixel.
+/// The fragments of one pixel.
 fn of_one<P: Profile>(parts: &Fragments<P>, pixel: usize) -> &[(usize, Part<P>)] {
     let first = parts.partition_point(|(at, _)| *at < pixel);
     let count = parts[first..].partition_point(|(at, _)| *at == pixel);
     &parts[first..first + count]
 }
 
-/// The sums of a pixel with each choice of its undecided fragments.
+/// The sums of a pixel for each choice of its undecided fragments.
 fn several<P: Profile>(
     surfels: &Surfels,
     parts: &[(usize, Part<P>)],
@@ -330,7 +332,7 @@ fn several<P: Profile>(
     Continuations::Several(all.collect(), open.collect())
 }
 
-/// The sums of a pixel that take undecided fragment i if bit i is set.
+/// The sums of a pixel for one choice: undecided fragment i is taken if bit i is set.
 fn chosen<P: Profile>(surfels: &Surfels, parts: &[(usize, Part<P>)], choice: u32) -> Sums<Ball<P>> {
     let (mut sums, mut bit) = (Sums::NONE, 0);
     for (_, part) in parts {
@@ -353,8 +355,8 @@ mod tests {
     use crate::verdict::ewa::swift;
     use crate::verdict::ewa::tests::each_scene;
 
-    /// The sums of all pixels without an undecided fragment against those that are added up one by one; how
-    /// many are of several fragments, and known.
+    /// Compares the sums of all pixels without an undecided fragment with sums that are added one
+    /// by one. Returns how many have several fragments and are known.
     fn compare<P: Profile>(job: &Job<'_>, settings: &SplatSettings) -> usize {
         let (surfels, splats) = (&job.scene.surfels, swift::project::<P>(job, settings));
         let mut found = 0;

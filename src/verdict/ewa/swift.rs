@@ -1,9 +1,9 @@
-//! Most fragments are far from every limit: bounds of the radii of all fragments of a splat, by which
-//! these are told in `f64`.
+//! Skip fragments quickly: most are far from every limit, and `f64` with a bound on the radii shows
+//! this.
 //!
-//! The radius of a sum or a product grows with the magnitudes and with the radii of its operands. So
-//! the formulas of a fragment at the greatest offset in the splat's bounds, all terms positive, have
-//! radii that no fragment of the splat exceeds.
+//! The radius of a sum or a product grows with the magnitudes and with the radii of its operands.
+//! So evaluate the formulas of a fragment at the greatest offset in the splat's bounds, with all
+//! terms positive. No fragment of the splat has larger radii.
 
 use crate::composite::decide;
 use crate::frame::Rect;
@@ -16,20 +16,20 @@ use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real, Truth};
 use crate::splat::{Footprint, Shared, Splat};
 
-/// More than what the few operations round that are not in the bounds.
+/// More than the rounding of the few operations that the bounds do not include.
 const ROUNDINGS: f64 = 16.0 / 16_777_216.0;
 
-/// The splats of a picture, each with the bounds of its fragments, if it has any.
+/// The splats of a picture, each with bounds on its fragments, if there are any.
 pub(crate) type SwiftSplats<P> = Prepared<Ball<P>, SwiftSplat<P>>;
 
-/// A surfel that may be drawn, and bounds of its fragments.
+/// A surfel that may be drawn, and bounds on its fragments.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SwiftSplat<P: Profile> {
     pub(super) possible: PossibleSplat<P>,
     swift: Option<Swift>,
 }
 
-/// Midpoints of a footprint, and the greatest radii of what its fragments are made of.
+/// Midpoints of a footprint, and the greatest radii of the terms of its fragments.
 #[derive(Clone, Copy, Debug)]
 struct Swift {
     footprint: Footprint<f64>,
@@ -37,18 +37,18 @@ struct Swift {
     v: f64,
     w: f64,
     offset: f64,
-    /// The greatest that the least nearness of the disc may be, and its greatest.
+    /// Upper bounds on the least and on the greatest nearness of the disc.
     range: [f64; 2],
 }
 
 impl<P: Profile> SwiftSplat<P> {
-    /// A splat with the bounds of its fragments.
+    /// A splat with bounds on its fragments.
     pub(super) fn new(possible: PossibleSplat<P>) -> Self {
         let swift = Swift::new(&possible.splat);
         Self { possible, swift }
     }
 
-    /// The pixels that can be inside.
+    /// The pixels that may be inside.
     pub(super) fn bounds(&self) -> Rect {
         self.possible.splat.bounds
     }
@@ -59,8 +59,8 @@ pub(super) fn project<P: Profile>(job: &Job<'_>, settings: &Settings) -> SwiftSp
     possible::project_into(job, settings, SwiftSplat::new, SwiftSplat::bounds)
 }
 
-/// The same of a part of a scene: of each of its surfels the number in the whole, and whether it certainly is
-/// one of those that are drawn.
+/// Projects a part of a scene. `whole` gives each of its surfels the number in the whole scene, and
+/// whether the surfel certainly is drawn.
 pub(crate) fn project_part<P: Profile>(
     part: &Job<'_>,
     settings: &Settings,
@@ -80,7 +80,7 @@ pub(super) struct Fragment<'a, P: Profile> {
     /// Whether the surfel certainly is drawn.
     pub(super) drawn: bool,
     pub(super) q: Ball<P>,
-    /// The nearness.
+    /// The nearness of the fragment.
     w: Ball<P>,
     pub(super) inside: Three,
     shared: &'a Shared<Ball<P>>,
@@ -92,13 +92,13 @@ impl<P: Profile> Fragment<'_, P> {
         self.shared.depth(self.w)
     }
 
-    /// The greatest nearness.
+    /// The greatest possible nearness.
     #[inline(always)]
     pub(super) fn most_near(&self) -> f64 {
         self.w.middle + self.w.radius
     }
 
-    /// How certain it is whether the fragment is inside: the distance of q and its limit.
+    /// How certain the cut-off decision is: the distance of q from its limit.
     pub(super) fn margin(&self) -> f64 {
         self.q.distance(self.shared.limit)
     }
@@ -114,8 +114,9 @@ impl<P: Profile> Fragment<'_, P> {
     }
 }
 
-/// Runs `visit` for the fragments of the pixels of a rectangle in a tile that are not certainly
-/// outside, nor certainly of a nearness below `least` of their pixel; +inf is above all, and NaN below.
+/// Runs `visit` for the fragments of the pixels of a rectangle in a tile. It skips fragments that
+/// certainly are outside, and fragments whose nearness certainly is below `least` of their pixel.
+/// Every nearness is below +inf, and none is below NaN.
 #[inline(always)]
 pub(super) fn each_fragment<P: Profile>(
     splats: &SwiftSplats<P>,
@@ -131,7 +132,7 @@ pub(super) fn each_fragment<P: Profile>(
         asked.clear();
         each_pixel(splat, rect, |pixel, at| {
             let least = least(pixel);
-            // Comparisons that NaN fails.
+            // Written so that a NaN does not fail: both comparisons are false.
             let fails = |swift: &Swift| {
                 let (q, w) = swift.fragment(shared, at);
                 q > limit || w < least
@@ -143,7 +144,7 @@ pub(super) fn each_fragment<P: Profile>(
         if asked.is_empty() {
             return;
         }
-        // What fragments share is computed once.
+        // Compute once everything that fragments of a column or a row share.
         let f = &splat.footprint;
         let offset = |at: u32, center: Ball<P>| Ball::from_f32(at as f32 + 0.5) - center;
         let Rect { x0, x1, .. } = splat.bounds.intersection(rect);
@@ -162,11 +163,11 @@ pub(super) fn each_fragment<P: Profile>(
     });
 }
 
-/// The least nearness of which a depth may be at most this one.
+/// The least nearness whose depth may be at most this one.
 #[inline(always)]
 pub(super) fn least_nearness<P: Profile>(shared: &Shared<Ball<P>>, depth: Ball<P>) -> f64 {
     let farthest = depth.middle + depth.radius;
-    // Any number that is not certain leaves nothing out: comparisons with NaN are false.
+    // A number that is not certain skips nothing, because comparisons with NaN are false.
     if !shared.perspective {
         -farthest - farthest.abs() * ROUNDINGS
     } else if farthest > 0.0 {
@@ -177,12 +178,12 @@ pub(super) fn least_nearness<P: Profile>(shared: &Shared<Ball<P>>, depth: Ball<P
 }
 
 impl Swift {
-    /// The bounds of a splat; none if a radius is not bounded.
+    /// The bounds of a splat; none if a radius is unbounded.
     fn new<P: Profile>(splat: &Splat<Ball<P>>) -> Option<Self> {
         let Splat { footprint: f, bounds, .. } = splat;
         let x = widest([bounds.x0, bounds.x1 - 1], f.center.x);
         let y = widest([bounds.y0, bounds.y1 - 1], f.center.y);
-        // Not by `map`, which is not inlined.
+        // Written out because `map` is not inlined.
         let (ux, uy, vy) = (f.ux.magnitude(), f.uy.magnitude(), f.vy.magnitude());
         let (w0, wx, wy) = (f.w0.magnitude(), f.wx.magnitude(), f.wy.magnitude());
         let swift = Self {
@@ -197,7 +198,7 @@ impl Swift {
         sum.is_finite().then_some(swift)
     }
 
-    /// The least q of a fragment, and its greatest nearness.
+    /// The least possible q of a fragment, and its greatest possible nearness.
     #[inline(always)]
     fn fragment<P: Profile>(&self, shared: &Shared<Ball<P>>, (x, y): (u32, u32)) -> (f64, f64) {
         let f = &self.footprint;
@@ -212,7 +213,7 @@ impl Swift {
         (q * (1.0 - ROUNDINGS), (w + self.w).at_least(farthest).at_most(nearest))
     }
 
-    /// The least q of the disc by ray casting, or of the low-pass filter.
+    /// The least q, either of the disc by ray casting or of the low-pass filter.
     fn ray_cast<P: Profile>(
         &self,
         shared: &Shared<Ball<P>>,
@@ -231,7 +232,7 @@ impl Swift {
     }
 }
 
-/// The square of a number, of one below 0 nothing.
+/// The square of a number; 0 if the number is below 0.
 #[inline(always)]
 fn square(value: f64) -> f64 {
     let value = value.at_least(0.0);
@@ -254,8 +255,8 @@ mod tests {
     use crate::splat::fragment;
     use crate::verdict::ewa::tests::each_scene;
 
-    /// Every fragment of a scene's splats against its bounds; how many fragments, and how many the
-    /// bounds leave out.
+    /// Compares every fragment of a scene's splats with its bounds. Returns how many fragments
+    /// there are, and how many the bounds skip.
     fn compare<P: Profile>(job: &Job<'_>, settings: &Settings) -> [usize; 2] {
         let splats = project::<P>(job, settings);
         let shared = &splats.shared;

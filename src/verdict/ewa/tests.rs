@@ -14,7 +14,7 @@ use crate::verdict::{Fault, Outcome, Verdict};
 
 const SHEETS: Shape = Shape::Sheets { gap: 0.02 };
 
-/// Runs a test of a scene, its camera and its settings.
+/// Runs a test on several scenes, each with a camera and settings.
 pub(super) fn each_scene(mut test: impl FnMut(&Session<'_>, &Camera)) {
     let exec = Exec::new(1, 16).unwrap();
     let of = |outline| Kernel { outline, ..Kernel::DEFAULT };
@@ -40,7 +40,7 @@ pub(super) fn each_scene(mut test: impl FnMut(&Session<'_>, &Camera)) {
     }
 }
 
-/// What [`possible::each_possible`] gives, without its shortcut.
+/// The result of [`possible::each_possible`], without its shortcut.
 fn plain<P: Profile>(
     projector: &Projector<Ball<P>>,
     disc: &Disc<Ball<P>>,
@@ -98,7 +98,7 @@ fn compare_projections<P: Profile>(session: &Session<'_>, camera: &Camera, all: 
 fn a_surfel_that_is_turned_away_before_its_shape_would_be_after() {
     let mut all = [0; 2];
     each_scene(|session, camera| {
-        // One that is near enough to have surfels behind it, beside it and at the near plane.
+        // A near camera, with surfels behind it, beside it and at the near plane.
         let near = Camera { near: 2.0, fx: 4.0 * camera.fx, ..*camera };
         for camera in [camera, &near] {
             compare_projections::<Ieee>(session, camera, &mut all);
@@ -139,7 +139,7 @@ fn what_the_crate_renders_is_right() {
 fn what_has_no_bounds_is_not_right() {
     each_scene(|session, camera| {
         let frame = session.define::<f32>(camera, false).unwrap().frame;
-        // Averages by a weight that may be 0.
+        // Averages with a weight that may be 0.
         let client = Client::from(&frame).stored("weight", Storage::Steps(16.0));
         let verdict = session.verify(camera, &client, 0.5).unwrap();
         assert_eq!(verdict.first_wrong().map(|stage| stage.stage), None);
@@ -192,7 +192,7 @@ fn records_are_judged_and_what_follows_is_judged_from_them() {
     });
 }
 
-/// The mean of the relative radii of the weights of a row of pixels.
+/// The mean of the relative radii of the weights in a row of pixels.
 fn sharpness(session: &Session<'_>, camera: &Camera, client: &Client) -> f64 {
     let mut all = Vec::new();
     for x in 0..camera.width {

@@ -1,4 +1,4 @@
-//! The blending of a client's layers.
+//! Verify the blending of a client's layers.
 
 use super::planes::PeelingPlanes;
 use crate::composite::over::Blend;
@@ -8,7 +8,7 @@ use crate::number::{Ball, Real};
 use crate::verdict::checks::{Backdrop, input, inputs, is_bounded, number, triple};
 use crate::verdict::marks::PixelMarks;
 
-/// Marks what is wrong with the picture at a pixel; whether it is judged, or there is nothing to judge.
+/// Marks a wrong picture at a pixel. Returns whether the picture is judged, or there is none.
 pub(super) fn judge<P: Profile>(
     (client_planes, backdrop): (&PeelingPlanes<'_>, &Backdrop<'_, P>),
     at: (u32, u32),
@@ -46,7 +46,7 @@ fn more(client_planes: &PeelingPlanes<'_>, (x, y): (u32, u32)) -> bool {
     }
     match (&client_planes.number, client_planes.layers.last().and_then(|layer| layer.alpha)) {
         (Some(number), _) => usize::from(*number.plane.at(x, y)) > last,
-        // A layer that is there, if the last one is.
+        // If the last layer is there, more may follow.
         (None, Some(alpha)) => *alpha.plane.at(x, y) != 0.0,
         (None, None) => true,
     }

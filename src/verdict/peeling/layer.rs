@@ -1,4 +1,4 @@
-//! The layers of a client at a pixel, each beyond the client's layer before.
+//! Verify the layers of a client at a pixel, each beyond the client's layer before.
 
 use super::planes::{LayerPlanes, PeelingPlanes};
 use crate::composite::{decide, sum};
@@ -19,22 +19,22 @@ use crate::verdict::single_pass::compositing::limit as band_end;
 use crate::verdict::single_pass::fragments::Fragment;
 use crate::verdict::{Doubt, Fault};
 
-/// What all pixels share.
+/// The parts that all pixels share.
 pub(super) struct LayerJudge<'a, P: Profile> {
     surfels: &'a Surfels,
     client_planes: &'a PeelingPlanes<'a>,
     shading: Shading<'a, P>,
     epsilon: Ball<P>,
-    /// The most layers of a pixel.
+    /// The most layers a pixel may have.
     most: u32,
-    /// The greatest component of a colour, at least 1.
+    /// The greatest component of any colour, at least 1.
     brightest: f64,
 }
 
-/// What was found at a pixel.
+/// The findings at a pixel.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PixelFindings {
-    /// Whether something may be there.
+    /// Whether the pixel may be covered.
     pub(super) covered: bool,
     /// Whether the sums of a layer are undecided.
     pub(super) undecided: bool,
@@ -43,9 +43,9 @@ pub(super) struct PixelFindings {
 /// A fragment that may be beyond the layer before.
 struct Beyond<'f, P: Profile> {
     fragment: &'f Fragment<P>,
-    /// Whether it is, and is inside.
+    /// Whether it is beyond, and inside.
     there: Three,
-    /// How certain that is.
+    /// How certain that decision is, in bounds.
     margin: f64,
 }
 
@@ -72,7 +72,7 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
         Self { surfels, client_planes, shading, epsilon, most: settings.layers, brightest }
     }
 
-    /// Marks what is wrong with the layers of a pixel.
+    /// Marks wrong layers of a pixel.
     pub(super) fn judge(
         &self,
         at: (u32, u32),
@@ -115,7 +115,8 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
         found
     }
 
-    /// How many layers there are, given those that have planes, and what lies beyond the last.
+    /// Checks the number of layers, from the layers that have planes and the fragments beyond the
+    /// last.
     fn check_number(
         &self,
         at: (u32, u32),
@@ -139,8 +140,8 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
         pixel.found(error, || Fault::Whole { channel: channel(), found, truth });
     }
 
-    /// The sums of a layer, with each outcome of its undecided decisions; none if these are more than
-    /// are followed.
+    /// The sums of a layer, for each outcome of its undecided decisions. None if there are more
+    /// outcomes than are followed.
     fn sums(
         &self,
         beyond: &[Beyond<'_, P>],
@@ -158,7 +159,7 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
         let mut undecided = 0;
         for one in beyond {
             let fragment = one.fragment;
-            // The nearest always passes: it is the law of the test.
+            // The nearest fragment always passes, by the law of the test.
             let nearest = alone && fits(one);
             let visible = decide::visible(fragment.t, limit);
             let there = if nearest { true.into() } else { one.there & visible };
@@ -190,7 +191,7 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
         Some((0..1 << undecided).map(of).collect())
     }
 
-    /// Count, opacity and colour of a layer, by the continuation that errs least.
+    /// Checks count, opacity and colour of a layer, by the continuation that errs least.
     fn check_layer(
         &self,
         at: (u32, u32),
@@ -246,7 +247,8 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
     }
 }
 
-/// The fragments that may be inside and beyond a limit, and those of a surfel that was said to be.
+/// The fragments that may be inside and beyond a limit, and the fragments of the surfel that the
+/// client names.
 fn beyond<P: Profile>(
     fragments: &[Fragment<P>],
     limit: Ball<P>,
@@ -260,17 +262,17 @@ fn beyond<P: Profile>(
     all.filter(|one| one.there.possibly() || id == Some(one.fragment.surfel)).collect()
 }
 
-/// What the client says is the nearest fragment of a layer.
+/// The nearest fragment of a layer, according to the client.
 struct Nearest<'j, 'a, P: Profile> {
     judge: &'j LayerJudge<'a, P>,
     at: (u32, u32),
     depth: Option<StoredPlane<'a, f64>>,
-    /// Its surfel, of the first layer.
+    /// The surfel, only in the first layer.
     id: Option<u32>,
 }
 
 impl<P: Profile> Nearest<'_, '_, P> {
-    /// Marks what is wrong with it; gives its depth.
+    /// Marks a wrong nearest fragment, and returns its depth.
     fn judge(&self, beyond: &[Beyond<'_, P>], pixel: &mut PixelMarks<'_>) -> Ball<P> {
         let own = self.depth.map(|plane| plane.ball::<P>(self.at));
         let meant = self.meant(beyond, own);
@@ -296,7 +298,7 @@ impl<P: Profile> Nearest<'_, '_, P> {
         t
     }
 
-    /// The fragment that is meant: the one that errs least, and by how many bounds.
+    /// The fragment that the client may mean with the least error, and that error in bounds.
     fn meant<'b, 'f>(
         &self,
         beyond: &'b [Beyond<'f, P>],
@@ -314,7 +316,7 @@ impl<P: Profile> Nearest<'_, '_, P> {
         })
     }
 
-    /// Whether what the client says can be.
+    /// Checks whether the client's own claim is possible.
     fn check_own(
         &self,
         t: Ball<P>,
@@ -331,7 +333,7 @@ impl<P: Profile> Nearest<'_, '_, P> {
                 pixel.found(error, fault);
             }
             (None, Some(surfel)) => pixel.found(f64::INFINITY, || Fault::Absent { surfel }),
-            // That nothing is left is asked of what is left.
+            // Whether the layer may be empty follows from the fragments that are left.
             (_, None) if nothing => {}
             (None, None) => {
                 let (found, closest) = (t.middle, f64::INFINITY);
@@ -353,7 +355,7 @@ impl<P: Profile> Nearest<'_, '_, P> {
         }
     }
 
-    /// Whether another fragment is exactly as near as that of the id, and comes before it.
+    /// Checks whether another fragment is exactly as near as the id's, and comes before it.
     fn judge_tie(&self, other: &Fragment<P>, own: &Fragment<P>, pixel: &mut PixelMarks<'_>) {
         let Some(id) = self.id else { return };
         let surfel = other.surfel;

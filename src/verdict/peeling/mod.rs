@@ -1,31 +1,36 @@
-//! What a right implementation may leave of each stage, held against somebody's planes.
+//! Verify your planes of depth peeling: which planes a correct implementation may leave of each
+//! stage.
 //!
-//! Surfels are projected in [`Ball`](crate::number::Ball)s of a [`Profile`]. Each layer is judged from
-//! the client's depth of the layer before, as it is stored: `limit_j = t_j + epsilon` of that. `Z` and
-//! `id` are depth and surfel of layer 1.
+//! Surfels are projected in [`Ball`](crate::number::Ball)s of a [`Profile`]. Each layer is judged
+//! from the client's depth of the layer before, as it is stored: `limit_j = t_j + epsilon` for that
+//! depth. `Z` and `id` are depth and surfel of layer 1.
 //!
-//! **Layers.** At a pixel and in a layer j whose depth the client stores, with that of layer j - 1:
+//! **Layers.** These rules hold at a pixel and in a layer j whose depth the client stores, together
+//! with the depth of layer j - 1:
 //!
-//! 1. `t_j` is in the ball of the depth of a fragment that possibly is inside and beyond `limit_(j-1)`;
-//!    in layer 1, of a fragment of the surfel of the id.
+//! 1. `t_j` is in the ball of the depth of a fragment that possibly is inside and beyond
+//!    `limit_(j-1)`. In layer 1 the fragment belongs to the surfel of the id.
 //! 2. No fragment that certainly is drawn, inside and beyond `limit_(j-1)` certainly is nearer than
-//!    `t_j`; where there is no layer, none certainly is inside and beyond.
-//! 3. In layer 1 no surfel comes before that of the id, as the client says of ties, whose depth is equal
-//!    and exact in balls, or all of whose numbers are those of the id's surfel.
-//! 4. Count, opacity and colour are those of the fragments inside, beyond `limit_(j-1)` and within
-//!    `limit_j`, summed, averaged and shaded in balls. The fragment of the depth always passes, if there
-//!    is but one that it can be. Where a decision is undecided both continuations are kept, 2^n for
-//!    n <= 4 fragments; beyond that these planes are not judged.
-//! 5. `layers` is the number of layers with a depth; with the last that leaves planes it is at least one
-//!    more if a fragment certainly is beyond that, at most the setting, and not more if none possibly is.
+//!    `t_j`. Where there is no layer, no fragment certainly is inside and beyond.
+//! 3. In layer 1 no surfel with an equal depth comes before the id's surfel by the client's tie
+//!    rule. Depths are equal if they are the same and exact in balls, or if all numbers of the two
+//!    surfels are the same.
+//! 4. Count, opacity and colour come from the fragments inside, beyond `limit_(j-1)` and within
+//!    `limit_j`, summed, averaged and shaded in balls. The fragment of the depth always passes, if
+//!    only one fragment can be it. Where a decision is undecided, both continuations are kept, 2^n
+//!    for n <= 4 fragments. Beyond that these planes are not judged.
+//! 5. `layers` is the number of layers with a depth. If the last layer that leaves planes has a
+//!    depth, fragments beyond its limit count too. `layers` is at least one more if a fragment
+//!    certainly is beyond, at most the setting, and not more if no fragment possibly is beyond.
 //!
-//! **Blending** of the client's opacities and colours, if all layers that leave planes are there. A pixel
-//! with more layers than leave planes is not judged. An environment is seen behind them as in
-//! [`transparent`](crate::verdict::transparent).
-//! Of the picture alone nothing is judged: its layers, which are all of it, are not known.
+//! **Blending** of the client's opacities and colours, if all layers that leave planes are there. A
+//! pixel with more layers than leave planes is not judged. An environment is seen behind the layers
+//! as in [`transparent`](crate::verdict::transparent). From the picture alone nothing is judged,
+//! because the picture does not show its layers.
 //!
-//! A pixel is undecided if the sums of one of its layers have several continuations, or if its blending
-//! is not judged, for its number of layers or for its environment.
+//! A pixel is undecided if the sums of one of its layers have several continuations. It also is
+//! undecided if its blending is not judged, because of the number of layers or because of the
+//! environment.
 
 mod blending;
 mod layer;
@@ -58,7 +63,7 @@ pub(super) fn verify<P: Profile>(
     marks::verdict(job, client_planes.stages(), budget, |tile, marks| judge.judge(tile, marks))
 }
 
-/// Everything that is judged at one pixel.
+/// Every check at one pixel.
 pub(super) fn checks<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
@@ -71,7 +76,7 @@ pub(super) fn checks<P: Profile>(
     marks::checks(job, stages, pixel, |tile, marks| judge.judge(tile, marks))
 }
 
-/// What all tiles share.
+/// The parts that all tiles share.
 struct Judge<'a, P: Profile> {
     client_planes: &'a PeelingPlanes<'a>,
     fragments: GroupFragments<'a, P>,
@@ -86,7 +91,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         Self { client_planes, fragments, layers, backdrop: Backdrop::new(job) }
     }
 
-    /// Marks what is wrong at the pixels of a rectangle in a tile.
+    /// Marks the wrong pixels of a rectangle in a tile.
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
         let [layers, blending] = marks;
         let mut counts = Counts::default();

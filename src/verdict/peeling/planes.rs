@@ -1,4 +1,4 @@
-//! The planes that a client has handed in.
+//! The planes that a client hands in.
 
 use crate::method::peeling::Settings;
 use crate::method::peeling::layers::PeeledLayer;
@@ -7,7 +7,7 @@ use crate::method::record::rows;
 use crate::method::surface::{ALPHA, DEPTH, ID, SHADED};
 use crate::verdict::client::{Client, Storage, StoredPlane, Ties};
 
-/// The planes of a layer, each if it is there.
+/// The planes of a layer; each may be missing.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct LayerPlanes<'a> {
     pub(super) color: Option<StoredPlane<'a, [f64; 3]>>,
@@ -16,16 +16,16 @@ pub(super) struct LayerPlanes<'a> {
     pub(super) count: Option<StoredPlane<'a, u8>>,
 }
 
-/// The planes of a client, each if it is there.
+/// The planes of a client; each may be missing.
 #[derive(Clone, Debug)]
 pub(super) struct PeelingPlanes<'a> {
     /// The layers that leave planes, from the first.
     pub(super) layers: Vec<LayerPlanes<'a>>,
-    /// Depth and surfel of the first.
+    /// Depth and surfel of the first layer.
     pub(super) depth: Option<StoredPlane<'a, f64>>,
     pub(super) id: Option<StoredPlane<'a, u32>>,
     pub(super) number: Option<StoredPlane<'a, u8>>,
-    /// The most layers of a pixel.
+    /// The most layers a pixel may have.
     pub(super) most: u32,
     pub(super) ties: Ties,
     pub(super) accumulator: Storage,
@@ -63,7 +63,7 @@ impl<'a> PeelingPlanes<'a> {
         if layer == 0 { own.or(self.depth) } else { own }
     }
 
-    /// How many layers have a depth, one after the other from the first.
+    /// Number of layers that have a depth, without a gap from the first.
     pub(super) fn known(&self) -> usize {
         (0..self.layers.len()).take_while(|&layer| self.depth_of(layer).is_some()).count()
     }
@@ -73,7 +73,7 @@ impl<'a> PeelingPlanes<'a> {
         self.layers.iter().all(|layer| layer.color.is_some() && layer.alpha.is_some())
     }
 
-    /// The surfel of the first layer, as the client has it.
+    /// The surfel of the first layer, according to the client.
     pub(super) fn surfel(&self, (x, y): (u32, u32)) -> Option<u32> {
         self.id.map(|plane| *plane.plane.at(x, y))
     }

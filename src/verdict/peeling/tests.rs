@@ -34,7 +34,7 @@ fn what_the_crate_renders_is_right() {
 
 #[test]
 fn of_scenes_without_colours_and_of_thin_pictures_too() {
-    // Few, as a pixel with more layers than leave planes is undecided.
+    // Few surfels, because a pixel with more layers than leave planes is undecided.
     let scene = Scene::unlit("", surfels(60, 0.3, false, 3));
     for size in [[1, 1], [1, 9], [29, 13]] {
         let settings = settings(Kernel::DEFAULT, 0.6, 20);
@@ -79,7 +79,7 @@ fn layers_in_another_order_are_found() {
     let exec = Exec::new(1, 16).unwrap();
     let session = Session::new(&scene, method, &exec).unwrap();
     let mut frame = session.define::<f32>(&camera, true).unwrap().frame;
-    // The second layer for the first, and the first for the second, wherever there are two.
+    // Swap the first and the second layer wherever there are two.
     let depths = ["layer1.Z", "layer2.Z"].map(|name| scalar(&frame, name).clone());
     let there = |i: &usize| depths[1].values()[*i].is_finite();
     let i = (0..depths[0].values().len()).find(there).unwrap();

@@ -1,4 +1,4 @@
-//! What may lie in a pixel of the projection: surfels and pieces of primitives.
+//! The candidates that may lie in a pixel of the projection: surfels and pieces of primitives.
 
 use super::primitives::PossiblePiece;
 use crate::frame::{Grid, Rect};
@@ -21,9 +21,9 @@ pub(super) struct Possible<P: Profile> {
     pub(super) back: Three,
 }
 
-/// What may lie in a pixel.
+/// A surfel or a piece that may lie in a pixel.
 pub(super) enum Candidate<'a, P: Profile> {
-    /// With whether it passes the test of its depth there.
+    /// A surfel, and whether it passes the depth test there.
     Surfel(&'a Possible<P>, Three),
     Piece(&'a PossiblePiece<P>, PiecePixel<Ball<P>>),
 }
@@ -63,7 +63,7 @@ impl<P: Profile> Candidate<'_, P> {
         self.drawn() && self.is_alone() && self.passes().certainly()
     }
 
-    /// Whether there is no other pixel that it may be drawn into instead.
+    /// Whether this is the only pixel that it may be drawn into.
     pub(super) fn is_alone(&self) -> bool {
         match self {
             Self::Surfel(one, _) => one.bounds.pixels() == 1,
@@ -71,7 +71,7 @@ impl<P: Profile> Candidate<'_, P> {
         }
     }
 
-    /// Whether it passes the test of its depth.
+    /// Whether it passes the depth test.
     pub(super) fn passes(&self) -> Three {
         match self {
             Self::Surfel(_, passes) => *passes,
@@ -81,7 +81,7 @@ impl<P: Profile> Candidate<'_, P> {
 }
 
 impl<P: Profile> Possible<P> {
-    /// A surfel, if it may be drawn into a pixel of the picture.
+    /// The surfel, if it may be drawn into a pixel of the picture.
     pub(super) fn new(
         projector: &PointProjector<Ball<P>>,
         surfels: &Surfels,
@@ -104,7 +104,7 @@ impl<P: Profile> Possible<P> {
             x1: end(x.greatest(), width),
             y1: end(y.greatest(), height),
         };
-        // With culling what is drawn is seen from the front.
+        // With culling, every drawn surfel is seen from the front.
         let back = if projector.cull { false.into() } else { g.gt(Ball::ZERO) };
         let surfel = i as u32;
         let drawn = !dropped.possibly();

@@ -1,4 +1,4 @@
-//! What a client says is in a pixel, against all that may lie there.
+//! Compare the client's claim about a pixel with everything that may lie there.
 
 use super::candidate::Candidate;
 use super::planes::{PixelContent, SamplePlanes};
@@ -11,14 +11,14 @@ use crate::verdict::client::Ties;
 use crate::verdict::marks::PixelMarks;
 use crate::verdict::{Doubt, Fault};
 
-/// What is known of a pixel.
+/// The client's claim about a pixel, and the findings so far.
 pub(super) struct Claim<P: Profile> {
     pub(super) says: PixelContent,
-    /// The client's depth, if it was handed in.
+    /// The client's depth, if the client hands it in.
     depth: Option<Ball<P>>,
-    /// Of what lies in the pixel that whose greatest depth is least.
+    /// Among the candidates that certainly lie in the pixel, the one whose greatest depth is least.
     pub(super) front: Option<(u32, Ball<P>)>,
-    /// Of the samples that may be meant the one that errs least, and by how much.
+    /// Among the samples that the client may mean, the one that errs least, and its error.
     best: Option<(f64, PixelSample<Ball<P>>)>,
 }
 
@@ -28,7 +28,7 @@ impl<P: Profile> Claim<P> {
         Self { says: planes.says(at, unclear), depth, front: None, best: None }
     }
 
-    /// What lies in the pixel.
+    /// Adds a candidate that certainly lies in the pixel.
     pub(super) fn meet(&mut self, id: u32, t: Ball<P>) {
         let most = |t: Ball<P>| t.middle + t.radius;
         if self.front.is_none_or(|(_, front)| most(t) < most(front)) {
@@ -36,7 +36,7 @@ impl<P: Profile> Claim<P> {
         }
     }
 
-    /// Whether the client may mean this.
+    /// Whether the client may mean this candidate.
     pub(super) fn may_mean(&self, one: &Candidate<'_, P>) -> bool {
         let hidden = || self.front.is_some_and(|(_, t)| decide::before(t, one.depth()).certainly());
         match self.says {
@@ -50,12 +50,13 @@ impl<P: Profile> Claim<P> {
         }
     }
 
-    /// Whether this may be what the client has, by its depth too if it gives one and no id.
+    /// Whether the client may have this candidate. Its depth must fit too, if the client gives a
+    /// depth and no id.
     pub(super) fn may_have(&self, one: &Candidate<'_, P>) -> bool {
         self.may_mean(one) && self.depth.is_none_or(|depth| !(one.depth().misfit(depth) > 1.0))
     }
 
-    /// A sample that may be meant.
+    /// Adds a sample that the client may mean.
     pub(super) fn consider(
         &mut self,
         planes: &SamplePlanes<'_>,
@@ -69,7 +70,7 @@ impl<P: Profile> Claim<P> {
         }
     }
 
-    /// Whether the claim itself can be, and what certainly is in front of it.
+    /// Judges the claim itself, and the candidate that certainly is in front of it.
     pub(super) fn judge(
         &self,
         planes: &SamplePlanes<'_>,
@@ -85,7 +86,8 @@ impl<P: Profile> Claim<P> {
             (None, PixelContent::Id(surfel)) => {
                 report(0, f64::INFINITY, &|| Fault::Absent { surfel });
             }
-            // Something lies here: rule 3. But other planes may say what they do not of nothing.
+            // A candidate lies here, so rule 3 applies. But the other planes may also contradict an
+            // empty pixel.
             (None, _) if self.depth().middle == f64::INFINITY => {
                 planes.check(at, &PixelSample::<Ball<P>>::empty(), &mut report);
             }
@@ -104,7 +106,7 @@ impl<P: Profile> Claim<P> {
         }
     }
 
-    /// The depth that others are compared with.
+    /// The depth that other candidates are compared with.
     fn depth(&self) -> Ball<P> {
         let of_sample = || self.best.map_or(anywhere(), |(_, sample)| sample.depth);
         match self.says {
@@ -113,7 +115,7 @@ impl<P: Profile> Claim<P> {
         }
     }
 
-    /// Whether a surfel is exactly as near as that of the client, and comes before it.
+    /// Checks whether a surfel is exactly as near as the client's, and comes before it.
     pub(super) fn judge_tie(
         &self,
         one: &Candidate<'_, P>,
@@ -134,7 +136,7 @@ impl<P: Profile> Claim<P> {
         }
     }
 
-    /// Marks what may be in front.
+    /// Marks the doubts about a candidate that may be in front.
     pub(super) fn doubt(&self, one: &Candidate<'_, P>, pixel: &mut PixelMarks<'_>) {
         let nearer = decide::before(one.depth(), self.depth());
         let own = self.best.is_some_and(|(_, sample)| sample.id == one.id());

@@ -1,5 +1,5 @@
-//! Corners of a triangle whose places on the grid are intervals: what pixels it covers, and what it has
-//! there.
+//! A triangle whose corners are intervals on the grid: which pixels it covers, and the values it
+//! has there.
 
 use crate::frame::Rect;
 use crate::frame::raster::Snap;
@@ -7,21 +7,21 @@ use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
 use crate::verdict::checks::anything;
 
-/// More than any implementation rounds the sum of three corners by, as a part of the largest.
+/// A bound on the rounding of a sum over three corners, as a fraction of the largest. No
+/// implementation rounds more.
 pub(super) const ROUNDINGS: f64 = 64.0 / 16_777_216.0;
 
-/// The least and the greatest places of the corners of a triangle, as middles and deviations in units of
-/// fixed point.
+/// The intervals of a triangle's corners, as midpoints and deviations in units of fixed point.
 pub(super) struct Intervals {
     middle: [[f64; 2]; 3],
     deviation: [[f64; 2]; 3],
-    /// Pixels in units of fixed point.
+    /// The size of a pixel in units of fixed point.
     scale: f64,
-    /// Twice the area: middle and deviation; its sign is that of the turn.
+    /// Twice the area: midpoint and deviation. Its sign tells which way the corners run.
     cross: [f64; 2],
 }
 
-/// More than what `f64` rounds in a product of two differences.
+/// More than the rounding of `f64` in a product of two differences.
 const OF_DOUBLES: f64 = 1e-12;
 
 impl Intervals {
@@ -33,7 +33,7 @@ impl Intervals {
         all
     }
 
-    /// The edge function from corner i to corner k at a point: middle and deviation.
+    /// The edge function from corner i to corner k at a point: midpoint and deviation.
     fn edge(&self, i: usize, k: usize, (p, off): ([f64; 2], [f64; 2])) -> [f64; 2] {
         let part = |a: usize, b: usize| {
             let along = self.middle[k][a] - self.middle[i][a];
@@ -68,7 +68,7 @@ impl Intervals {
         Rect { x0: x[0], y0: y[0], x1: x[1], y1: y[1] }
     }
 
-    /// The edge functions at a pixel, of corners that run as the sense says.
+    /// The edge functions at a pixel, for corners that run in this sense.
     fn edges(&self, (x, y): (u32, u32), sense: f64) -> [[f64; 2]; 3] {
         let center = [x, y].map(|i| (f64::from(i) + 0.5) * self.scale);
         [[1, 2], [2, 0], [0, 1]].map(|[i, k]| {
@@ -77,7 +77,7 @@ impl Intervals {
         })
     }
 
-    /// Whether a pixel may be covered whichever way the corners run.
+    /// Whether a pixel may be covered, whichever way the corners run.
     pub(super) fn may_reach(&self, at: (u32, u32)) -> bool {
         let inside = |[middle, deviation]: &[f64; 2]| middle + deviation >= 0.0;
         [-1.0, 1.0].into_iter().any(|sense| self.edges(at, sense).iter().all(inside))
@@ -97,8 +97,8 @@ impl Intervals {
         Some(Cover { middle, most, lies })
     }
 
-    /// A quantity that is linear on the screen and has these values at the corners: its middle at a pixel,
-    /// and how far off it may be.
+    /// A quantity that is linear on the screen and has these values at the corners: its midpoint at
+    /// a pixel, and how far off it may be.
     fn linear(&self, values: [f64; 3], cover: &Cover) -> [f64; 2] {
         let mut slope = [0.0; 2];
         for (value, [i, k]) in values.into_iter().zip([[1, 2], [2, 0], [0, 1]]) {
@@ -118,21 +118,22 @@ impl Intervals {
 
 /// A pixel that may be covered.
 struct Cover {
-    /// The weights of the corners in their middle places, as parts of the area.
+    /// The weights of the corners at their midpoints, as fractions of the area.
     middle: [f64; 3],
-    /// The greatest that they may be.
+    /// The greatest possible weights.
     most: [f64; 3],
     /// Whether the pixel certainly is covered.
     lies: bool,
 }
 
-/// What perspective makes of the weights of a piece.
+/// The perspective weights of a piece.
 pub(super) struct Depths {
     intervals: Intervals,
-    /// m of each corner, and what it may be off as a part of itself.
+    /// m of each corner, and its possible error as a fraction of m.
     m: [f64; 3],
     m_off: f64,
-    /// What the corners have of those of the triangle, and how far off that may be.
+    /// The weights of the triangle's corners at the corners of the piece, and how far off they may
+    /// be.
     weights: [[f64; 3]; 3],
     weights_off: f64,
 }
@@ -154,11 +155,11 @@ impl Depths {
         }
     }
 
-    /// c at a pixel, and whether it certainly is covered; none if it certainly is not.
+    /// c at a pixel, and whether the pixel certainly is covered. None if it certainly is not.
     ///
-    /// With places of the corners that are e off, and weights w of these, a quantity that is linear on the
-    /// screen is `slope . (w0 e0 + w1 e1 + w2 e2)` off. The sums of c have no negative terms, so that what
-    /// they round is a part of them.
+    /// Let the places of the corners be off by e, and let w be the corners' weights. Then a
+    /// quantity that is linear on the screen is off by `slope . (w0 e0 + w1 e1 + w2 e2)`. The sums
+    /// of c have no negative terms, so their rounding is a fraction of the sums.
     pub(super) fn weights<P: Profile>(&self, at: (u32, u32)) -> Option<([Ball<P>; 3], bool)> {
         let cover = self.intervals.at(at)?;
         let [whole, whole_off] = self.intervals.linear(self.m, &cover);
@@ -170,6 +171,7 @@ impl Depths {
             let middle = part / whole;
             let off = (off + middle.abs() * whole_off) / least;
             let off = off + rounded * (middle.abs() + off) + self.weights_off + f64::MIN_POSITIVE;
+            // If the divisor may be 0, the weight has no bound.
             if least > 0.0 { Ball::new(middle, off * (1.0 + ROUNDINGS)) } else { anything() }
         });
         Some((weights, cover.lies))

@@ -1,33 +1,38 @@
-//! What a right implementation may leave of the projection: a certificate for each pixel.
+//! Verify your planes of the projection to single pixels: a certificate for each pixel.
 //!
-//! Surfels are placed in [`Ball`]s. A surfel *may lie* in a pixel if it is not certainly dropped and
-//! the pixel is one that its centre may fall into; it *lies* there if it certainly is drawn and
-//! there is no other such pixel. The corners of triangles, ribbons and tubes are snapped to each
-//! place that their balls allow, at most 16 ways a primitive; from there on coverage is exact. A
-//! primitive may lie in a pixel that one of them covers; it lies there if there is one way alone.
+//! Surfels are placed in [`Ball`]s. A surfel *may lie* in a pixel if it is not certainly dropped
+//! and its centre may fall into the pixel. It *lies* there if it certainly is drawn and there is no
+//! other such pixel.
 //!
-//! 1. The surfel or primitive of the id may lie in the pixel. An empty pixel has none.
-//! 2. Every plane is in the ball of its sample there, of one of those that it may have: seen from
-//!    either side, snapped in either way, visited twice. Of an empty pixel every plane is that of
+//! The corners of triangles, ribbons and tubes are snapped to each place that their balls allow, at
+//! most 16 ways for a primitive. From there on coverage is exact. A primitive may lie in a pixel
+//! that one of the ways covers. It lies there if there is only one way.
+//!
+//! 1. The surfel or primitive of the id may lie in the pixel. An empty pixel has no id.
+//! 2. Every plane is in the ball of one sample that it may have there: seen from either side,
+//!    snapped in either way, visited twice. In an empty pixel every plane has the value of
 //!    [`PixelSample::empty`].
-//! 3. Nothing else lies in the pixel whose depth certainly is less than Z; without Z, than the depth
-//!    of the id's sample. Of an empty pixel Z is +inf.
-//! 4. No surfel comes before that of the id, as the client says of ties, which lies there at a depth
-//!    that is equal and exact in balls, or all of whose numbers are those of the id's surfel.
+//! 3. Nothing else lies in the pixel whose depth certainly is less than Z. Without Z, its depth is
+//!    compared with the depth of the id's sample. In an empty pixel Z is +inf.
+//! 4. No surfel that lies there at an equal depth comes before the id's surfel by the client's tie
+//!    rule. Depths are equal if they are the same and exact in balls, or if all numbers of the two
+//!    surfels are the same.
 //!
-//! Without ids the sample is the one that errs least, of those that nothing certainly hides.
+//! Without ids, the verdict takes the sample that errs least, among those that nothing certainly
+//! hides.
 //!
-//! Where a pass tests depths against limits, what may lie in a pixel is what possibly passes there, and lies
-//! there only if it certainly passes.
+//! Where a pass tests depths against limits, a candidate may lie in a pixel only if it possibly
+//! passes there. It lies there only if it certainly passes.
 //!
-//! **Triangles beside splats**, of [`deferred`](crate::method::deferred), have no such limit. The corners of
-//! a triangle, of one that certainly is cut those of its pieces, are intervals on the grid of fixed point.
-//! Where each is one place, coverage is exact. Else a piece may lie in a pixel if no edge function certainly
-//! is negative, over all places of its corners; it lies there if all certainly are positive.
+//! **Triangles beside splats**, in [`deferred`](crate::method::deferred), have no limit on the ways
+//! to snap. The corners of a triangle are intervals on the grid of fixed point; a triangle that
+//! certainly is cut has the corners of its pieces. Where each interval is one place, coverage is
+//! exact. Else a piece may lie in a pixel if no edge function certainly is negative, over all
+//! places of its corners. It lies there if all edge functions certainly are positive.
 //!
-//! **Not judged**: a primitive that is cut by the near plane or the guard band, or may be, and one with
-//! more ways to snap. Pixels of its id are judged by rule 3 and by their kind alone; without ids all
-//! pixels but empty ones and surfels are.
+//! **Not judged**: a primitive that is cut by the near plane or the guard band, or may be, and a
+//! primitive with more ways to snap. Pixels with its id are judged only by rule 3 and by their
+//! kind. Without ids, every pixel that is neither empty nor a surfel counts as such a pixel.
 
 mod candidate;
 mod claim;
@@ -54,10 +59,10 @@ use claim::Claim;
 use planes::PixelContent;
 use primitives::Pieces;
 
-/// All that may be drawn, and where.
+/// All surfels and primitives that may be drawn, and where.
 pub(crate) struct AllPossible<'a, P: Profile> {
     projector: SceneProjector<'a, Ball<P>>,
-    /// The greatest depth of a surfel that is drawn into each pixel, if there is one.
+    /// The greatest depth of a surfel that is drawn into each pixel, if the pass has such a limit.
     limits: Option<&'a Tiled<Ball<P>>>,
     /// The surfels, batch by batch.
     surfels: Vec<(Vec<Possible<P>>, Bins)>,
@@ -65,7 +70,7 @@ pub(crate) struct AllPossible<'a, P: Profile> {
     bins: Bins,
 }
 
-/// Judges the planes of the projection; `snap` is for triangles and lines.
+/// Judges the planes of the projection. `snap` is for triangles and lines.
 pub(crate) fn judge<P: Profile>(
     job: &Job<'_>,
     cull: bool,
@@ -92,7 +97,7 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         Self::of(job, (cull, snap), limits, |_| true)
     }
 
-    /// The same of those surfels that `draws` says by their indices.
+    /// Only those surfels whose indices `draws` accepts.
     pub(crate) fn of(
         job: &Job<'a>,
         (cull, snap): (bool, Snap),
@@ -115,7 +120,7 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         Self { projector, limits, surfels, pieces, bins }
     }
 
-    /// Marks what is wrong of planes.
+    /// Marks the wrong pixels of the planes.
     pub(crate) fn judge_all(
         &self,
         job: &Job<'_>,
@@ -130,9 +135,10 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         marks
     }
 
-    /// What a client that gives no ids may have at the pixels of a tile: which surfel or primitive, and
-    /// whether it certainly has it, as it says that there is something that nothing else may be, or
-    /// as this lies there and certainly is in front.
+    /// The surfels or primitives that a client without ids may have at the pixels of a tile. Each
+    /// comes with whether the client certainly has it. That is certain if it is the only candidate,
+    /// and if the client says that the pixel is covered, or if the candidate certainly lies there
+    /// and is in front.
     pub(crate) fn kept(
         &self,
         planes: &SamplePlanes<'_>,
@@ -151,8 +157,8 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         found.into_iter().map(|(pixel, id, sure)| (id, sure && counts[pixel] == 1)).collect()
     }
 
-    /// Calls `visit` for all that may lie in a pixel of a tile, with the count of the pixel in the
-    /// tile.
+    /// Calls `visit` for every candidate that may lie in a pixel of a tile, with the number of the
+    /// pixel in the tile.
     fn each(&self, (tile, rect): (usize, &Rect), mut visit: impl FnMut(usize, Candidate<'_, P>)) {
         let count =
             |x: u32, y: u32| (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize;
@@ -174,12 +180,12 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         });
     }
 
-    /// Whether a surfel passes the test of its depth at a pixel.
+    /// Whether a surfel passes the depth test at a pixel.
     fn passes(&self, one: &Possible<P>, (x, y): (u32, u32)) -> Three {
         self.limits.map_or_else(|| true.into(), |all| decide::visible(one.placed.t, *all.at(x, y)))
     }
 
-    /// The sample of a surfel, seen from its back or not.
+    /// The sample of a surfel, seen from its back or from its front.
     fn surfel(&self, one: &Possible<P>, back: bool) -> PixelSample<Ball<P>> {
         let SceneProjector { scene, points, has, .. } = &self.projector;
         let (i, of) = (one.surfel as usize, &scene.surfels);
@@ -205,7 +211,7 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         }
     }
 
-    /// What the client says of each pixel, and what lies there.
+    /// The client's claim about each pixel, and the candidate that lies there.
     fn claims(&self, planes: &SamplePlanes<'_>, (tile, rect): (usize, Rect)) -> Vec<Claim<P>> {
         let claim = |(_, at)| Claim::new(planes, at, &self.pieces.unclear);
         let mut claims: Vec<Claim<P>> = counted(rect).map(claim).collect();

@@ -1,4 +1,4 @@
-//! The planes of the projection that a client has handed in.
+//! The planes of the projection that a client hands in.
 
 use crate::frame::{NO_ID, Plane};
 use crate::method::projection::{PixelSample, SampleKind};
@@ -11,7 +11,7 @@ use crate::verdict::checks::{Report, whole};
 use crate::verdict::client::{Client, StoredPlane, Ties};
 use crate::verdict::planes::RecordPlanes;
 
-/// The planes of the projection, each if it is there.
+/// The planes of the projection; each may be missing.
 #[derive(Clone, Debug)]
 pub(crate) struct SamplePlanes<'a> {
     scene: &'a Scene,
@@ -22,17 +22,17 @@ pub(crate) struct SamplePlanes<'a> {
     kind: Option<StoredPlane<'a, u8>>,
 }
 
-/// What a client says is in a pixel.
+/// The content of a pixel, according to the client.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum PixelContent {
-    /// It gives neither id, nor kind, nor depth.
+    /// The client gives neither id, nor kind, nor depth.
     Nothing,
     Empty,
-    /// This, which the scene may not have.
+    /// This id, which the scene may not have.
     Id(u32),
-    /// Something, of this kind if it says so.
+    /// Something, of this kind if the client says which.
     Some(Option<SampleKind>),
-    /// What is not judged, but for its kind, if that is known.
+    /// Something that is not judged, except for its kind, if the kind is known.
     Unjudged(Option<SampleKind>),
 }
 
@@ -43,9 +43,9 @@ impl<'a> SamplePlanes<'a> {
         Self::of(client, scene, (RecordPlanes::new(client, fields, 0), kind))
     }
 
-    /// Of a pass that leaves depths and ids alone.
+    /// The planes of a pass that leaves only depths and ids.
     pub(crate) fn of_nearest(client: &'a Client, scene: &'a Scene, rows: [PlaneRow; 2]) -> Self {
-        // Judged as the depth and the id of a sample.
+        // They are judged as the depth and the id of a sample.
         let place = |row: &PlaneRow| {
             let fields = PixelSample::<f32>::PLANES;
             fields.iter().position(|field| field.row.holds == row.holds).unwrap_or(usize::MAX)
@@ -68,7 +68,8 @@ impl<'a> SamplePlanes<'a> {
         self.planes.names().to_vec()
     }
 
-    /// What a pixel is said to have; of some primitives it is not known what they come to.
+    /// The content of a pixel, according to the client. `unclear` lists primitives whose pieces are
+    /// not known.
     pub(super) fn says(&self, at: (u32, u32), unclear: &[u32]) -> PixelContent {
         if let Some(ids) = self.id {
             return match *ids.plane.at(at.0, at.1) {
@@ -95,7 +96,7 @@ impl<'a> SamplePlanes<'a> {
         if sure || unclear.is_empty() { says } else { PixelContent::Unjudged(None) }
     }
 
-    /// Every plane at a pixel against a sample.
+    /// Checks every plane at a pixel against a sample.
     pub(super) fn check<P: Profile>(
         &self,
         at: (u32, u32),
@@ -105,7 +106,7 @@ impl<'a> SamplePlanes<'a> {
         self.planes.check((0, &PixelSample::PLANES), at, sample, report);
     }
 
-    /// The kind of a pixel, if it is known.
+    /// Checks the kind of a pixel, if it is known.
     pub(super) fn check_kind(
         &self,
         at: (u32, u32),
@@ -117,8 +118,8 @@ impl<'a> SamplePlanes<'a> {
         }
     }
 
-    /// The samples as the next stage reads them, if all planes that it reads are there; `places` says
-    /// whether it reads ids and centres, else an id stands for a kind.
+    /// The samples as the next stage reads them, if all planes that it reads are there. `places`
+    /// says whether it reads ids and centres. If not, an id stands for a kind.
     pub(crate) fn samples<P: Profile>(&self, places: bool) -> Option<Plane<PixelSample<Ball<P>>>> {
         let (depth, there) = (self.depth?, Conditions::new(self.scene, Keep::Stages));
         let all = &PixelSample::PLANES;

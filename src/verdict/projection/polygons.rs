@@ -1,14 +1,16 @@
-//! All that the triangles of a scene may leave in each pixel, whatever their size and place.
+//! Find every fragment that the triangles of a scene may leave in each pixel, whatever their size
+//! and place.
 //!
-//! The corners of a triangle, of one that is cut those of its pieces, are intervals on the grid of fixed
-//! point. Where each is one place, coverage is exact. Else the weight of a corner is an interval: that of
-//! its edge function over all places of the corners. The piece *may lie* in a pixel if no weight certainly
-//! is negative; it *lies* there if all certainly are positive. What the corners have is off by its slope on
-//! the screen times as much as they are, each as far as it weighs.
+//! The corners of a triangle are intervals on the grid of fixed point; a cut triangle has the
+//! corners of its pieces. Where each interval is one place, coverage is exact. Else the weight of a
+//! corner is an interval: its edge function over all places of the corners. The piece *may lie* in
+//! a pixel if no weight certainly is negative. It *lies* there if all weights certainly are
+//! positive. A value of the corners is off by its slope on the screen times the errors of the
+//! corners, each times its weight.
 //!
-//! **Open** are pieces of which it is not certain on which side they are seen, and triangles of which it is
-//! not certain where they are cut: they may lie, at any depth of their corners, where the screen has
-//! their corners on no one side.
+//! **Open** are pieces whose visible side is not certain, and triangles whose cut is not certain.
+//! An open piece may lie in any pixel that does not have all its corners on one side, at any depth
+//! of its corners.
 
 use super::intervals::{Depths, Intervals, ROUNDINGS};
 use super::primitives::fixed;
@@ -35,10 +37,10 @@ pub(crate) struct AllPolygons<'a, P: Profile> {
 
 /// A piece of a triangle that may be drawn.
 struct PossiblePolygon<P: Profile> {
-    /// The triangle in its list.
+    /// The index of the triangle in its list.
     index: u32,
     bounds: Rect,
-    /// What depths it has.
+    /// The range of its depths.
     depths: Ball<P>,
     form: Form<P>,
 }
@@ -46,17 +48,17 @@ struct PossiblePolygon<P: Profile> {
 enum Form<P: Profile> {
     Exact(Box<Piece<Ball<P>>>),
     Between(Box<(Piece<Ball<P>>, Depths)>),
-    /// With the places of the corners, if these are known.
+    /// The intervals of the corners, if they are known.
     OpenDecision(Option<Intervals>),
 }
 
-/// What a triangle may leave in a pixel.
+/// A fragment that a triangle may leave in a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PossibleFragment<P: Profile> {
-    /// The triangle in its list.
+    /// The index of the triangle in its list.
     pub(crate) index: u32,
     pub(crate) depth: Ball<P>,
-    /// In view space.
+    /// The normal in view space.
     pub(crate) normal: Vector3<Ball<P>>,
     pub(crate) color: [Ball<P>; 3],
     /// Whether it certainly lies in the pixel.
@@ -64,7 +66,7 @@ pub(crate) struct PossibleFragment<P: Profile> {
 }
 
 impl<'a, P: Profile> AllPolygons<'a, P> {
-    /// Of a scene of triangles alone, in the picture of a job.
+    /// The triangles of a scene that has nothing else, in the picture of a job.
     pub(crate) fn new(job: &Job<'_>, scene: &'a Scene, cull: bool) -> Self {
         let projector = SceneProjector::new(scene, job.camera, cull, Snap::default());
         let count = scene.primitives.triangles.len();
@@ -80,7 +82,7 @@ impl<'a, P: Profile> AllPolygons<'a, P> {
         Self { projector, drawn, bins }
     }
 
-    /// What may lie in each pixel of a tile.
+    /// The fragments that may lie in each pixel of a tile.
     pub(crate) fn fragments(&self, (tile, rect): (usize, &Rect)) -> Vec<Vec<PossibleFragment<P>>> {
         let mut found: Vec<_> = counted(*rect).map(|_| Vec::new()).collect();
         let place =
@@ -145,6 +147,7 @@ fn triangle<P: Profile>(
     drawn: &mut Vec<PossiblePolygon<P>>,
 ) {
     let p = corners(&projector.scene.primitives.triangles, &projector.points, index);
+    // Where the cut is undecided, the whole triangle is open.
     let Some(polygon) = projector.clip.certain(p) else {
         let depths = depths(projector, &p, &p);
         let bounds = reach(projector, &p);
@@ -158,7 +161,7 @@ fn triangle<P: Profile>(
     }
 }
 
-/// A piece of a triangle of these corners, if it may be drawn.
+/// The piece of a triangle with these corners, if it may be drawn.
 fn piece<P: Profile>(
     projector: &SceneProjector<'_, Ball<P>>,
     index: usize,
@@ -184,6 +187,7 @@ fn piece<P: Profile>(
     }
     let intervals = Intervals::new(snap, &places);
     let bounds = intervals.bounds(projector.size);
+    // Where the sense of the corners is undecided, so is the visible side.
     if !intervals.is_turned() {
         let form = Form::OpenDecision(Some(intervals));
         return Some(PossiblePolygon { index: id.0, bounds, depths, form });
@@ -195,7 +199,7 @@ fn piece<P: Profile>(
     Some(PossiblePolygon { index: id.0, bounds, depths, form })
 }
 
-/// The depths of a piece of these corners of a triangle.
+/// The range of depths of a piece with these corners of a triangle.
 fn depths<P: Profile>(
     projector: &SceneProjector<'_, Ball<P>>,
     piece: &[Vector3<Ball<P>>; 3],
@@ -218,8 +222,8 @@ fn depths<P: Profile>(
     }
 }
 
-/// The pixels that a triangle may reach, wherever it is cut: those that do not have all corners on one
-/// side, by more than what its places may be off.
+/// The pixels that a triangle may reach, wherever it is cut. A pixel is left out if all corners lie
+/// on one side of it, by more than their possible error.
 fn reach<P: Profile>(projector: &SceneProjector<'_, Ball<P>>, p: &[Vector3<Ball<P>>; 3]) -> Rect {
     let view = &projector.points.view;
     let near = if view.perspective { view.near.middle } else { 1.0 };
@@ -236,7 +240,7 @@ fn reach<P: Profile>(projector: &SceneProjector<'_, Ball<P>>, p: &[Vector3<Ball<
         };
         let pixels = projector.size[axis];
         let slack = 2.0 + off * (focal + center.abs() + f64::from(GUARD_BAND)) / near;
-        // > 0: the corner is beyond the coordinate.
+        // > 0 if the corner is beyond the coordinate.
         let beyond = |p: &Vector3<Ball<P>>, at: f64| {
             let s = if view.perspective { -p.z.middle } else { 1.0 };
             let c = if axis == 0 { p.x.middle } else { -p.y.middle };
@@ -267,7 +271,7 @@ mod tests {
     use crate::scene::{Camera, Lens, Pose, Primitives, Surfels, Triangles, Vertices};
     use glam::{DVec3, Vec3};
 
-    /// Triangles of a size between random points, as far as behind the camera.
+    /// Triangles of this size around random points, some of them behind the camera.
     fn scene(seed: u64, count: u32, size: f32) -> Scene {
         let at = |i: u64| 2.0 * unit(seed, i) - 1.0;
         let point = |i: u64| Vec3::new(at(3 * i), at(3 * i + 1), at(3 * i + 2));
@@ -286,7 +290,7 @@ mod tests {
         Scene { primitives, ..Scene::unlit("triangles", Surfels::none()) }
     }
 
-    /// By how many radii a sample errs against a fragment.
+    /// The error of a sample against a fragment, in radii.
     fn error<P: Profile, R: Exact>(sample: &PixelSample<R>, may: &PossibleFragment<P>) -> f64 {
         let misfit = |ball: Ball<P>, value: R| ball.misfit(Ball::exact(value.to_f64()));
         let normal = [
@@ -299,8 +303,9 @@ mod tests {
             .fold(0.0, |most, (ball, value)| most.at_least(misfit(ball, value)))
     }
 
-    /// What the crate draws fits what may lie, and hides what certainly lies; how many samples there are, of
-    /// how many the depth is known to a thousandth, and how many certainly lie.
+    /// Asserts that the drawn samples fit the fragments that may lie there, and hide the ones that
+    /// certainly lie. Returns how many samples there are, how many have a depth known to a
+    /// thousandth, and how many certainly lie.
     fn compare<P: Profile + std::fmt::Debug, R: Exact>(
         scene: &Scene,
         camera: &Camera,

@@ -12,11 +12,11 @@ use crate::splat::clip::{Clipped, whole};
 /// A piece that may be drawn.
 pub(super) struct PossiblePiece<P: Profile> {
     pub(super) piece: Piece<Ball<P>>,
-    /// Whether it certainly is.
+    /// Whether the piece certainly is drawn.
     pub(super) drawn: bool,
 }
 
-/// What is known of the primitives of a scene.
+/// The possible pieces of all primitives of a scene.
 pub(super) struct Pieces<P: Profile> {
     pub(super) all: Vec<PossiblePiece<P>>,
     /// The primitives that are not judged, ascending.
@@ -27,7 +27,7 @@ pub(super) struct Pieces<P: Profile> {
 const MOST: usize = 16;
 
 impl<P: Profile> Pieces<P> {
-    /// What may be drawn of all primitives.
+    /// Finds the pieces of all primitives that may be drawn.
     pub(super) fn new(projector: &SceneProjector<'_, Ball<P>>) -> Self {
         let (mut found, of) = (Self { all: Vec::new(), unclear: Vec::new() }, projector.scene);
         let first = of.surfels.len();
@@ -54,7 +54,7 @@ impl<P: Profile> Pieces<P> {
         found
     }
 
-    /// None: it is not known what the triangle comes to.
+    /// Adds the pieces of a triangle. None if they are not known.
     fn triangle(
         &mut self,
         projector: &SceneProjector<'_, Ball<P>>,
@@ -68,7 +68,7 @@ impl<P: Profile> Pieces<P> {
         Some(())
     }
 
-    /// None: it is not known what the line comes to.
+    /// Adds the pieces of a line. None if they are not known.
     fn line(
         &mut self,
         of: &Indexed<2>,
@@ -84,7 +84,7 @@ impl<P: Profile> Pieces<P> {
         Some(())
     }
 
-    /// Each piece that a primitive may come to.
+    /// Adds each piece that a primitive may become.
     fn add<const N: usize>(
         &mut self,
         ways: Ways<P, N>,
@@ -99,13 +99,13 @@ impl<P: Profile> Pieces<P> {
 /// The least and the greatest place of a corner on the grid, and its m.
 type End<P> = ([[i64; 2]; 2], Ball<P>);
 
-/// What a primitive comes to.
+/// The part of a primitive that is seen.
 enum Ends<P: Profile, const N: usize> {
     /// It is cut, or may be.
     Unclear,
-    /// None of it is seen.
+    /// Nothing of it is seen.
     Nothing,
-    /// All of it is.
+    /// All of it is seen.
     Whole([End<P>; N]),
 }
 
@@ -128,7 +128,7 @@ impl<P: Profile, const N: usize> Ends<P, N> {
         }))
     }
 
-    /// The ends, if there are any, with every way to snap them; none: it is not known.
+    /// Every way to snap the ends; empty if nothing is seen. None if the ways are not known.
     fn ways(self) -> Option<Ways<P, N>> {
         match self {
             Self::Unclear => None,
@@ -150,11 +150,11 @@ pub(super) fn fixed<P: Profile>(snap: &Snap, x: Ball<P>) -> [i64; 2] {
     let guard = Ball::from_f32(GUARD_BAND as f32);
     let scaled = x.clamped(-guard, guard) * Ball::from_f32(snap.scale() as f32);
     let (middle, reach) = (scaled.middle, scaled.radius * (1.0 + 1e-9));
-    // Exact: at most 2^29, in f64.
+    // Exact, because the numbers are at most 2^29, in f64.
     [middle - reach, middle + reach].map(|end| (end + 0.5).floor() as i64)
 }
 
-/// Every choice of a place for each corner, if there are no more than are followed.
+/// Every choice of a place for each corner; none if there are more than are followed.
 fn ways<const N: usize>(ends: [[[i64; 2]; 2]; N]) -> Option<Vec<[[i64; 2]; N]>> {
     let mut all = vec![ends.map(|[least, _]| least)];
     for (corner, [least, greatest]) in ends.into_iter().enumerate() {

@@ -1,4 +1,4 @@
-//! Pull and push of a client, level by level.
+//! Verify a client's pull and push, level by level.
 
 use crate::composite::decide;
 use crate::frame::Plane;
@@ -21,15 +21,16 @@ pub(super) type Level<P> = Plane<Cell<Ball<P>>>;
 /// Four cells.
 type Four<P> = [Cell<Ball<P>>; 4];
 
-/// The levels as a client has them.
+/// The levels of a client.
 pub(super) struct Levels<'a, P: Profile> {
     job: &'a Job<'a>,
     sizes: &'a [[u32; 2]],
-    /// The planes of the levels 1 to the last after the pull, of 0 to the last but one after the push.
+    /// The planes of the levels 1 to the last after the pull, and of the levels 0 to the last but
+    /// one after the push.
     planes: [&'a [RecordPlanes<'a>]; 2],
     /// All levels after the pull; none where a plane is missing.
     pulled: Vec<Option<Level<P>>>,
-    /// All levels after the push, the last that of the pull.
+    /// All levels after the push. The last level is the pull's.
     pushed: Vec<Option<Level<P>>>,
 }
 
@@ -52,12 +53,12 @@ impl<'a, P: Profile> Levels<'a, P> {
         Self { job, sizes, planes, pulled, pushed }
     }
 
-    /// Level 0 after the push, if its planes are all there.
+    /// Level 0 after the push, if all its planes are there.
     pub(super) fn finest(&self) -> Option<&Level<P>> {
         self.pushed.first().and_then(Option::as_ref)
     }
 
-    /// Judges each level of the pull whose finer one is there.
+    /// Judges each level of the pull whose finer level is there.
     pub(super) fn pull(&self, watch: Watch) -> StageMarks {
         let mut found = Phase::new(self.job, watch);
         for (level, planes) in (1..).zip(self.planes[0]) {
@@ -78,7 +79,8 @@ impl<'a, P: Profile> Levels<'a, P> {
         ("pull", found.names, found.marks)
     }
 
-    /// Judges each level of the push whose coarser one is there, and what the pull left of it.
+    /// Judges each level of the push whose coarser level is there, together with its own level
+    /// after the pull.
     pub(super) fn push(&self, settings: &Settings, watch: Watch) -> StageMarks {
         let mut found = Phase::new(self.job, watch);
         for (level, planes) in self.planes[1].iter().enumerate() {
@@ -93,7 +95,7 @@ impl<'a, P: Profile> Levels<'a, P> {
     }
 }
 
-/// What was found of a phase.
+/// The findings about a phase.
 struct Phase {
     watch: Watch,
     marks: Marks,
@@ -105,7 +107,7 @@ impl Phase {
         Self { watch, marks: watch.picture(job), names: Vec::new() }
     }
 
-    /// Judges the planes of a level by all that each cell may be.
+    /// Judges the planes of a level against all outcomes that each cell may have.
     fn level<P: Profile>(
         &mut self,
         job: &Job<'_>,
@@ -154,7 +156,7 @@ fn of_four<P: Profile>(cells: &Four<P>, offsets: &[Vector2<Ball<P>>; 4]) -> (Vec
     })
 }
 
-/// All that a cell may be after the push.
+/// Every outcome that a cell may have after the push.
 fn pushed<P: Profile>(
     (fine, coarse): (&Level<P>, &Level<P>),
     (x, y): (u32, u32),

@@ -1,26 +1,27 @@
-//! What a right implementation may leave of each stage, held against somebody's planes.
+//! Verify your planes of the pull-push pyramid: which planes a correct implementation may leave of
+//! each stage.
 //!
-//! Each stage is judged from what the client has of the stage before: floats are inputs as they are
-//! stored, and so exact. The formulas are those of the crate in balls of a [`Profile`].
+//! Each stage is judged from the client's planes of the stage before. Floats are inputs as they are
+//! stored, so they are exact. The formulas are the crate's, in balls of a [`Profile`].
 //!
-//! **Projection**: see [`mod@crate::verdict::projection`],
-//! which says what is not judged of triangles, ribbons and
-//! tubes. The later stages are judged whatever their inputs are.
+//! **Projection**: see [`mod@crate::verdict::projection`], which says which triangles, ribbons and
+//! tubes are not judged. The later stages are judged whatever their inputs are.
 //!
-//! **Pull and push**, level by level from the client's own: the pull from its finer level, the push from
-//! its coarser one and from what its pull left. Level 0 before the push is the projection's, the
-//! end of its intervals a computed number. Of each cell every outcome that the decisions allow: which
-//! ellipses hold its centre, which is foremost, whose intervals overlap, whether it is occluded; a
-//! cell is right if one outcome fits every plane. A level is judged if every plane of what it comes
-//! from is there. What is copied must be equal.
+//! **Pull and push**, level by level from the client's own levels. The pull reads the client's
+//! finer level. The push reads the client's coarser level and the same level after the pull. Level
+//! 0 before the push is the projection's, and the end of its intervals is a computed number. For
+//! each cell, every outcome is followed that the decisions allow: which ellipses hold its centre,
+//! which is foremost, whose intervals overlap, whether it is occluded. A cell is right if one
+//! outcome fits every plane. A level is judged if every plane that it is computed from is there.
+//! Copied values must be equal.
 //!
-//! **Shading**: depth, kind and vectors from the client's finest level after the push (of a picture of
-//! one pixel: the projection); the colour from these planes of the picture as far as they are there,
-//! as they are stored or as they were before. Without the finest level they are not judged, and the
-//! colour is in a scene without colours.
+//! **Shading**: depth, kind and vectors come from the client's finest level after the push. (In a
+//! picture of one pixel they come from the projection.) The colour comes from these planes of the
+//! picture where they are there, as they are stored or as they were before. Without the finest
+//! level these planes are not judged. The colour is judged then only in a scene without colours.
 //!
-//! A cell with more than 16 outcomes is not judged, and counts as undecided like one with several. A
-//! cell is marked where its planes have it, whatever its level.
+//! A cell with more than 16 outcomes is not judged, and counts as undecided, like a cell with
+//! several outcomes. A cell is marked at its place in its own plane, whatever its level.
 
 mod levels;
 mod pixel;
@@ -47,7 +48,7 @@ use levels::Levels;
 use pixel::PixelJudge;
 use planes::PicturePlanes;
 
-/// All doubts: in the levels each may move the averages.
+/// All doubts, because in the levels each of them may move the averages.
 const ANY: u8 = u8::MAX;
 
 /// Judges the planes of a client.
@@ -67,7 +68,7 @@ pub(super) fn verify<P: Profile>(
     Verdict::new(stages, [covered, undecided], budget, Shifts::default())
 }
 
-/// Everything that is judged at one pixel: the cells of all levels that have its place, and the pixel.
+/// Every check at one pixel: the cells at its place in all levels, and the pixel itself.
 pub(super) fn checks<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
@@ -77,14 +78,14 @@ pub(super) fn checks<P: Profile>(
     Ok(judge::<P>(job, settings, client, Watch::one(job, pixel)?).0.checks())
 }
 
-/// What is found of all stages, and how many pixels may be covered.
+/// The findings about all stages, and the number of pixels that may be covered.
 fn judge<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
     client: &Client,
     watch: Watch,
 ) -> (MethodMarks<1>, u64) {
-    // The settings have been checked: there is a grid of so many digits.
+    // The settings were checked before, so there is a grid with this many digits.
     let snap = Snap::new(settings.subpixel_bits).unwrap_or_default();
     let sizes = pyramid::sizes(job.camera.width, job.camera.height);
     let last = sizes.len() - 1;

@@ -1,4 +1,4 @@
-//! The picture of a client, from its finest level.
+//! Verify a client's picture, from its finest level.
 
 use super::levels::Level;
 use super::planes::PicturePlanes;
@@ -11,7 +11,7 @@ use crate::splat::View;
 use crate::verdict::checks::{Report, Shading, Surface, anything, number, triple, whole};
 use crate::verdict::marks::PixelMarks;
 
-/// What all pixels share.
+/// The parts that all pixels share.
 pub(super) struct PixelJudge<'a, P: Profile> {
     /// Level 0 after the push, if it is there.
     cells: Option<&'a Level<P>>,
@@ -32,8 +32,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         Self { cells, client_planes, view: View::new(job.camera), shading, has }
     }
 
-    /// The names of the planes that are judged: without the finest level those of the picture that
-    /// follow from others.
+    /// The names of the judged planes. Without the finest level, only the planes of the picture
+    /// that follow from others.
     pub(super) fn names(&self) -> Vec<&'static str> {
         let PicturePlanes { shaded, alpha, depth, normal, tangent, kind } = self.client_planes;
         let copies = [
@@ -47,7 +47,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         own.into_iter().flatten().chain(copies).collect()
     }
 
-    /// Marks what is wrong at a pixel; whether something may be there.
+    /// Marks a wrong pixel. Returns whether the pixel may be covered.
     pub(super) fn judge(&self, at: (u32, u32), pixel: &mut PixelMarks<'_>) -> bool {
         let cell = self.cells.map(|cells| cells.at(at.0, at.1));
         let report: &mut Report<'_> = &mut |_, error, fault| pixel.found(error, fault);
@@ -59,7 +59,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         cell.map_or(depth.unwrap_or(false), Cell::is_valid)
     }
 
-    /// What the picture shows of a cell.
+    /// Checks the values of a cell that the picture copies.
     fn check_copies(&self, at: (u32, u32), cell: &Cell<Ball<P>>, report: &mut Report<'_>) {
         let client_planes = self.client_planes;
         if let Some(plane) = &client_planes.depth {
@@ -77,8 +77,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
     }
 
-    /// Colour and opacity, from the client's own depth and vectors: as they were before they were
-    /// stored or after, since the same pass leaves them.
+    /// Checks colour and opacity, from the client's own depth and vectors: as they were before they
+    /// were stored, or after, because the same pass leaves them.
     fn check_picture(&self, at: (u32, u32), cell: Option<&Cell<Ball<P>>>, report: &mut Report<'_>) {
         let client_planes = self.client_planes;
         let own = cell.map_or_else(anything, |cell| cell.front);
@@ -98,8 +98,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
     }
 
-    /// The tangent of a tube, in world space; none of what is shaded as a surface, which has the null
-    /// vector.
+    /// The tangent of a tube in world space. None for a pixel that is shaded as a surface, which
+    /// has the null vector.
     fn tangent(&self, at: (u32, u32), cell: Option<&Cell<Ball<P>>>) -> Option<[Ball<P>; 3]> {
         if !self.has.tangent {
             return None;
@@ -114,12 +114,12 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             }
         };
         let tangent = self.client_planes.tangent.map_or_else(own, |plane| plane.balls(at));
-        // Others have length 1, however coarsely they are stored.
+        // Other tangents have length 1, however coarsely they are stored.
         let null = |part: &Ball<P>| part.middle == 0.0 && part.radius < 0.5;
         (!tangent.iter().all(null)).then_some(tangent)
     }
 
-    /// More than 0 where something is seen: by the kind, else by the depth.
+    /// More than 0 where something is seen, by the kind, else by the depth.
     fn seen(&self, at: (u32, u32), depth: Ball<P>, cell: Option<&Cell<Ball<P>>>) -> Ball<P> {
         let kind = self.client_planes.kind.map(|plane| *plane.plane.at(at.0, at.1) > 0);
         let known = kind.or(cell.map(Cell::is_valid));

@@ -1,9 +1,9 @@
-//! The planes of the picture that a client has handed in.
+//! The planes of the picture that a client hands in.
 
 use crate::method::pyramid::planes::{ALPHA, DEPTH, KIND, NORMAL, SHADED, TANGENT};
 use crate::verdict::client::{Client, StoredPlane};
 
-/// The planes of the picture, each if it is there.
+/// The planes of the picture; each may be missing.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PicturePlanes<'a> {
     pub(super) shaded: Option<StoredPlane<'a, [f64; 3]>>,

@@ -27,7 +27,7 @@ fn rare() -> Settings {
     }
 }
 
-/// Primitives between random points, so wide that coarse levels have some.
+/// Primitives between random points, wide enough that coarse levels have some.
 fn wide<const N: usize>(count: u32, seed: u64) -> Indexed<N> {
     let narrow: Indexed<N> = indexed(count, seed);
     let (of, corners) = (narrow.vertices().clone(), narrow.corners().to_vec());
@@ -35,7 +35,7 @@ fn wide<const N: usize>(count: u32, seed: u64) -> Indexed<N> {
     Indexed::new(Vertices { radius, ..of }, corners).unwrap().0
 }
 
-/// Surfels with triangles, ribbons and tubes among them.
+/// Surfels mixed with triangles, ribbons and tubes.
 fn hybrid(color: bool) -> Scene {
     let primitives =
         Primitives { triangles: wide(5, 100), ribbons: wide(20, 200), tubes: wide(20, 300) };
@@ -78,7 +78,7 @@ fn of_scenes_of_ribbons_tubes_and_triangles_too() {
 
 #[test]
 fn each_slip_is_found_in_its_stage() {
-    // Large, so that coarse levels are not empty.
+    // Large surfels, so that coarse levels are not empty.
     let scene = Scene::lit("", surfels(400, 0.4, true, 3));
     let camera = camera(Shape::Sphere, [45, 37], None);
     let slips = [
@@ -175,13 +175,13 @@ fn levels_that_are_not_handed_in_are_said() {
         vec![("projection", none()), ("pull", pull), ("push", push), ("shading", none())]
     };
     assert_eq!(missing(&|_| false), all(none(), none()));
-    // Of six levels the last two of the pull, and one plane.
+    // Drop the last two of six pull levels, and one plane.
     let last = |name: &str| name.starts_with("pull05") || name.starts_with("pull06");
     let found = missing(&|name| last(name) || name == "pull02.normal");
     let expected = ["pull02.normal", "level 5", "level 6"].map(str::to_owned).to_vec();
     assert_eq!(found, all(expected, none()));
     let found = missing(&|name| name.starts_with("push00"));
     assert_eq!(found, all(none(), vec!["level 0".into()]));
-    // A phase of which nothing is there is not judged.
+    // A phase without any plane is not judged.
     assert_eq!(missing(&|name| name.starts_with("pull")), all(none(), none()));
 }

@@ -1,4 +1,4 @@
-//! The planes of depth-images that a client has handed in.
+//! The planes of depth-images that a client hands in.
 
 use crate::composite::groups::WeightedFragment;
 use crate::method::PlaneRow;
@@ -16,7 +16,7 @@ pub(crate) fn sum_rows() -> SumRows {
     SumRows { nearest: None, sums: [color, normal, weight, COUNT] }
 }
 
-/// The planes of the depth-image of a group, each if it is there.
+/// The planes of a group's depth-image; each may be missing.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ImagePlanes<'a> {
     pub(super) depth: Option<StoredPlane<'a, f64>>,
@@ -52,23 +52,23 @@ impl<'a> ImagePlanes<'a> {
         ]
     }
 
-    /// Whether nothing is there.
+    /// Whether the client hands in no plane of the image.
     pub(super) fn nothing(&self) -> bool {
         self.names().iter().all(Option::is_none)
     }
 
-    /// Whether the compositing pass finds all that it sums.
+    /// Whether the compositing pass finds all planes that it sums.
     pub(super) fn complete(&self, colored: bool) -> bool {
         let color = self.color.is_some() || !colored;
         self.depth.is_some() && self.weight.is_some() && self.normal.is_some() && color
     }
 
-    /// The surfel that the image says it keeps at a pixel.
+    /// The surfel that the image keeps at a pixel, according to the client.
     pub(super) fn surfel(&self, (x, y): (u32, u32)) -> Option<u32> {
         self.id.map(|plane| *plane.plane.at(x, y))
     }
 
-    /// Depth and weighted attributes at a pixel against what may be there.
+    /// Checks depth and weighted attributes at a pixel.
     pub(super) fn check<P: Profile>(
         &self,
         at: (u32, u32),
@@ -89,13 +89,14 @@ impl<'a> ImagePlanes<'a> {
         }
     }
 
-    /// What the compositing pass reads: the client's numbers, where there are some.
+    /// The sample that the compositing pass reads: the client's numbers, where there are any.
     pub(super) fn read<P: Profile>(
         &self,
         at: (u32, u32),
         own: &WeightedFragment<Ball<P>>,
     ) -> WeightedFragment<Ball<P>> {
-        // The weight that was multiplied by an opacity of at most 1 is the stored one, or its own.
+        // The weight was multiplied by an opacity of at most 1. It may be the stored weight, or the
+        // weight before it was stored.
         let lost = self.weight.map_or(0.0, |plane| plane.ball::<P>(at).radius);
         WeightedFragment {
             depth: self.depth.map_or(own.depth, |plane| input(&plane, at)),

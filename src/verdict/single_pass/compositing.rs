@@ -1,4 +1,5 @@
-//! The compositing pass of a client: the nearest of all groups, and what the sums may be.
+//! Verify a client's compositing pass: the nearest sample of all groups, and the sums that are
+//! possible.
 
 use super::images::{Sample, Samples};
 use crate::composite::decide;
@@ -19,7 +20,7 @@ use crate::verdict::{Doubt, Fault};
 /// The most choices of samples that are followed.
 const MOST_CHOICES: usize = 16;
 
-/// What all pixels share.
+/// The parts that all pixels share.
 pub(crate) struct Compositing<'a, P: Profile> {
     client_planes: &'a ClientPlanes<'a>,
     surfels: &'a Surfels,
@@ -40,8 +41,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
         Self { client_planes, surfels: &job.scene.surfels, view, epsilon }
     }
 
-    /// Marks what is wrong with the nearest fragment of a pixel; gives its depth, and what the sums
-    /// may be.
+    /// Marks a wrong nearest fragment of a pixel. Returns its depth and the possible sums.
     pub(super) fn judge(
         &self,
         at: (u32, u32),
@@ -66,6 +66,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
             }
         }
         let sums = match (choices.len(), all.as_slice()) {
+            // There were more choices than are followed.
             (0, _) => Continuations::Many,
             (1, [one]) => Continuations::One(*one),
             _ => Continuations::Several(all, Vec::new()),
@@ -73,8 +74,8 @@ impl<'a, P: Profile> Compositing<'a, P> {
         (depth, sums)
     }
 
-    /// Marks what is wrong with the nearest fragment of a pixel; gives depth and surfel that the client
-    /// has, if it does.
+    /// Marks a wrong nearest fragment of a pixel. Returns the client's depth and surfel, if the
+    /// client has them.
     pub(crate) fn check_nearest(
         &self,
         at: (u32, u32),
@@ -92,7 +93,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
         (own, said)
     }
 
-    /// Whether the depth of the picture is that of the nearest sample.
+    /// Checks whether the depth of the picture is the nearest sample's.
     fn check_depth(
         &self,
         depth: Ball<P>,
@@ -102,14 +103,15 @@ impl<'a, P: Profile> Compositing<'a, P> {
     ) {
         let empty = Ball::INFINITY;
         let samples = || groups.iter().flat_map(|group| &group.all);
-        // The greatest nearness may be another sample's than the least depth, as 1/t rounds.
+        // 1/t rounds, so the greatest nearness and the least depth may belong to different samples.
         let of = |sample: &Sample<P>, id: u32| {
             let mut own = samples().filter(|own| own.surfel == id);
             id == sample.surfel || own.any(|own| may_tie(own.nearness, sample.nearness))
         };
         let all = samples().filter(|sample| said.is_none_or(|id| of(sample, id)));
         let meant = all.map(|sample| sample.read.depth);
-        // Where nothing is, no group says so alone.
+        // No single group shows that a pixel is empty, so this case is added, unless the id names a
+        // surfel.
         let meant = meant.chain(said.is_none_or(|id| id == NO_ID).then_some(empty));
         let misfit = |truth: Ball<P>| truth.misfit(depth);
         let closest = meant.fold(None, |best: Option<Ball<P>>, truth| match best {
@@ -123,7 +125,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
             truth: truth.middle,
             radius: truth.radius + depth.radius,
         };
-        // An id that no group has is told of the id.
+        // If no group has the id, the check of the id reports it.
         if let Some(closest) = closest {
             pixel.found(misfit(closest), || fault(closest));
         }
@@ -140,7 +142,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
         }
     }
 
-    /// Whether the surfel of the picture may be the nearest.
+    /// Checks whether the surfel of the picture may be the nearest.
     fn check_id(&self, id: u32, groups: &[Samples<P>], pixel: &mut PixelMarks<'_>) {
         let mut least: Option<(f64, Fault)> = None;
         let samples = groups.iter().flat_map(|group| &group.all);
@@ -162,7 +164,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
         }
     }
 
-    /// No group has the surfel of the picture; what should be there.
+    /// The fault if no group has the surfel of the picture, with the surfel that should be there.
     fn unknown(&self, found: u32, groups: &[Samples<P>]) -> Fault {
         let samples = groups.iter().filter_map(|group| group.all.first());
         let nearest = samples.fold(None, |best: Option<&Sample<P>>, sample| match best {
@@ -174,7 +176,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
         Fault::Whole { channel, found, truth }
     }
 
-    /// Whether all that a group may keep is in front of a sample: by how many bounds.
+    /// Whether every sample that a group may keep is in front of this one, as an error in bounds.
     fn in_front(&self, own: &Sample<P>, group: &Samples<P>) -> (f64, Fault) {
         let mut least = (f64::INFINITY, Fault::Absent { surfel: own.surfel });
         for other in &group.all {
@@ -201,28 +203,31 @@ impl<'a, P: Profile> Compositing<'a, P> {
         least
     }
 
-    /// Whether of two samples whose nearness is equal in every implementation one comes before.
+    /// Whether one of two samples comes before the other, if their nearness is equal in every
+    /// implementation.
     fn comes_before(&self, one: &Sample<P>, other: &Sample<P>) -> bool {
         if one.surfel == other.surfel || one.surfel == NO_ID || other.surfel == NO_ID {
             return false;
         }
         let first = self.client_planes.ties.keeps(one.surfel, other.surfel);
+        // The distance of two exact numbers is infinite, so this asks whether both are exact.
         let exact = one.nearness.distance(other.nearness) == f64::INFINITY
             && one.nearness.middle == other.nearness.middle;
         first && (exact || self.surfels.are_equal(one.surfel, other.surfel))
     }
 
-    /// Whether the fragment of the greatest nearness certainly is in the band that begins at the least
-    /// depth, which may be another's: by as much as two reciprocals round.
+    /// Whether the fragment with the greatest nearness certainly is in the band that begins at the
+    /// least depth. Two roundings of reciprocals may make them different fragments.
     fn has_the_nearest(&self, least: Ball<P>) -> bool {
-        // The greater the depth, the more it rounds.
+        // A greater depth rounds more, so take the greatest.
         let least = Ball::new(least.middle + least.radius, 0.0);
         let greatest = self.view.nearness(self.view.nearness(least));
         decide::visible(greatest, limit(least, self.epsilon)).certainly()
     }
 
-    /// The sums of a choice of samples, with each outcome of its undecided tests; none if these are
-    /// more than are followed. The surfel of the picture passes, if `id` says it, unless that may round.
+    /// The sums of a choice of samples, for each outcome of its undecided tests. None if there are
+    /// more outcomes than are followed. The surfel of the picture passes if `id` names it, unless
+    /// rounding may exclude it.
     fn sums(
         &self,
         choice: &Choice<'_, P>,
@@ -269,7 +274,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
         let depth = sample.read.depth;
         let exact = depth.radius == 0.0 && nearest.radius == 0.0;
         let some = decide::before(depth, Ball::INFINITY);
-        // The nearest always passes: it is the law of the test, but of the least depth.
+        // The sample with the least depth always passes, by the law of the test.
         if (id == Some(sample.surfel) && sample.surfel != NO_ID)
             || (exact && depth.middle == nearest.middle)
         {
@@ -284,7 +289,7 @@ fn may_tie<P: Profile>(a: Ball<P>, b: Ball<P>) -> bool {
     !decide::nearer(a, b).certainly() && !decide::nearer(b, a).certainly()
 }
 
-/// `nearest + epsilon`, which for 0 no implementation rounds.
+/// `nearest + epsilon`. If epsilon is 0, no implementation rounds it.
 pub(crate) fn limit<P: Profile>(nearest: Ball<P>, epsilon: Ball<P>) -> Ball<P> {
     if epsilon.middle == 0.0 && epsilon.radius == 0.0 {
         return nearest;
@@ -297,11 +302,11 @@ fn nearest<P: Profile>(choice: &Choice<'_, P>) -> Ball<P> {
     choice.iter().fold(Ball::INFINITY, |least, sample| least.at_most(sample.read.depth))
 }
 
-/// Every choice of one sample of each group; none if there are more than are followed.
+/// Every choice of one sample from each group; none if there are more than are followed.
 fn choices<P: Profile>(groups: &[Samples<P>]) -> Vec<Choice<'_, P>> {
     let mut all: Vec<Choice<'_, P>> = vec![Vec::new()];
     for group in groups {
-        // What is summed of a stored sample is the same, whatever its surfel.
+        // A stored sample gives the same sums whatever its surfel, so one sample is enough.
         let samples = if group.stored { &group.all[..1] } else { &group.all[..] };
         if all.len() * samples.len() > MOST_CHOICES {
             return Vec::new();

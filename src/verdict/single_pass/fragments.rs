@@ -1,4 +1,4 @@
-//! The fragments of the groups in balls: every one that a right implementation may draw.
+//! The fragments of the groups in balls: every fragment that a correct implementation may draw.
 
 use crate::composite::bins::DepthBins;
 use crate::composite::decide;
@@ -16,22 +16,22 @@ use crate::splat::{Shared, SplatSettings, View, fragment};
 
 /// The splats of a picture, by their groups.
 pub(crate) struct GroupFragments<'a, P: Profile> {
-    /// None: all surfels are in one group.
+    /// None if all surfels are in one group.
     groups: Option<&'a Groups>,
     splats: PossibleSplats<P>,
     pub(crate) view: View<Ball<P>>,
-    /// The bins of the Voronoi depth test; none for the plain one.
+    /// The bins of the Voronoi depth test; none for the plain test.
     bins: Option<DepthBins<Ball<P>>>,
 }
 
-/// A fragment that may be inside, or that the client says to be.
+/// A fragment that may be inside, or whose surfel the client names.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Fragment<P: Profile> {
     pub(crate) surfel: u32,
-    /// Whether it certainly is drawn.
+    /// Whether its surfel certainly is drawn.
     pub(crate) drawn: bool,
     pub(crate) inside: Three,
-    /// How certain that is.
+    /// How certain the cut-off decision is, in bounds.
     pub(crate) margin: f64,
     /// q divided by the limit of q.
     pub(crate) rim: f64,
@@ -39,20 +39,20 @@ pub(crate) struct Fragment<P: Profile> {
     pub(crate) w: Ball<P>,
     pub(crate) t: Ball<P>,
     pub(crate) weight: Ball<P>,
-    /// What the depth test compares.
+    /// The keys that the depth test compares.
     pub(crate) keys: Keys<P>,
 }
 
-/// What the depth test may compare of a fragment.
+/// The keys of a fragment that the depth test may compare.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Keys<P: Profile> {
     /// The least and the greatest bin; none under the plain depth test.
     bins: Option<[f64; 2]>,
-    /// The distance from the centre of the splat; under the plain depth test the depth.
+    /// The distance from the centre of the splat. Under the plain depth test, the depth.
     part: Ball<P>,
 }
 
-/// The most bins of which each is a key of its own.
+/// The most bins for which each is tried as a key.
 const MOST_BINS: f64 = 8.0;
 
 impl<P: Profile> Keys<P> {
@@ -66,7 +66,7 @@ impl<P: Profile> Keys<P> {
         self.bins.map_or(self.part, |[first, _]| self.of(first))
     }
 
-    /// The greatest.
+    /// The greatest key.
     pub(crate) fn greatest(&self) -> Ball<P> {
         self.bins.map_or(self.part, |[_, last]| self.of(last))
     }
@@ -75,7 +75,7 @@ impl<P: Profile> Keys<P> {
     pub(crate) fn closest(&self, found: Ball<P>) -> Ball<P> {
         let Some([first, last]) = self.bins else { return self.part };
         if !(last - first <= MOST_BINS) {
-            // The bin is as good as unknown: any of them, and any part of one.
+            // There are too many bins to try: take any of them, and any part of one.
             return Ball::new(0.5 * (first + last), 0.5 * (last - first) + 1.0);
         }
         let others = (1..=(last - first) as u32).map(|i| self.of(first + f64::from(i)));
@@ -103,7 +103,7 @@ impl<P: Profile> Keys<P> {
 /// The fragments of a row of pixels, by pixel and group.
 pub(crate) struct RowFragments<P: Profile> {
     groups: usize,
-    /// In the order of their places, those of a place in ascending surfel index.
+    /// The fragments in the order of their places, and within a place in ascending surfel index.
     all: Vec<(usize, Fragment<P>)>,
 }
 
@@ -114,7 +114,7 @@ pub(crate) struct PixelFragments<'a, P: Profile> {
 }
 
 impl<P: Profile> RowFragments<P> {
-    /// Those of a pixel, counted from the left.
+    /// The fragments of a pixel, counted from the left.
     pub(crate) fn at(&self, column: usize) -> PixelFragments<'_, P> {
         let first = column * self.groups;
         PixelFragments { first, all: between(&self.all, [first, first + self.groups]) }
@@ -122,21 +122,21 @@ impl<P: Profile> RowFragments<P> {
 }
 
 impl<P: Profile> PixelFragments<'_, P> {
-    /// Those of a group.
+    /// The fragments of a group.
     pub(crate) fn of(&self, group: usize) -> impl Iterator<Item = &Fragment<P>> + Clone {
         let place = self.first + group;
         between(self.all, [place, place + 1]).iter().map(|(_, fragment)| fragment)
     }
 }
 
-/// What lies at the places from one up to, but not with, another.
+/// The entries at the places from the first up to, but not with, the second.
 fn between<T>(all: &[(usize, T)], places: [usize; 2]) -> &[(usize, T)] {
     let [first, end] = places.map(|place| all.partition_point(|(at, _)| *at < place));
     &all[first..end]
 }
 
 impl<'a, P: Profile> GroupFragments<'a, P> {
-    /// Projection.
+    /// Projects the surfels of all groups.
     pub(crate) fn project(job: &Job<'a>, settings: &Settings) -> Result<Self> {
         let groups = Some(job.index.groups()?);
         let bins = settings.bins(&job.scene.surfels, job.camera)?;
@@ -144,13 +144,13 @@ impl<'a, P: Profile> GroupFragments<'a, P> {
         Ok(Self { groups, splats, view, bins })
     }
 
-    /// The same without groups: all surfels are in one, under the plain depth test.
+    /// Projects all surfels as one group, under the plain depth test.
     pub(crate) fn whole(job: &Job<'a>, settings: &SplatSettings) -> Self {
         let (splats, view) = (project(job, settings), View::new(job.camera));
         Self { groups: None, splats, view, bins: None }
     }
 
-    /// How many groups there are.
+    /// Number of groups.
     pub(crate) fn groups(&self) -> usize {
         self.groups.map_or(1, Groups::len)
     }
@@ -165,13 +165,13 @@ impl<'a, P: Profile> GroupFragments<'a, P> {
         self.bins.is_some()
     }
 
-    /// What the fragments of all splats share.
+    /// The constants that the fragments of all splats share.
     pub(crate) fn shared(&self) -> &Shared<Ball<P>> {
         &self.splats.shared
     }
 
-    /// The fragments of a row of pixels in a tile; `said` gives the surfel that the client says a group
-    /// keeps at a column and row.
+    /// The fragments of a row of pixels in a tile. `said` gives the surfel that a group keeps at a
+    /// column and row, according to the client.
     pub(crate) fn of_row(
         &self,
         tile: usize,
@@ -189,12 +189,12 @@ impl<'a, P: Profile> GroupFragments<'a, P> {
                 }
             });
         });
-        // Those of a place stay in their order.
+        // A stable sort keeps the fragments of a place in their order.
         all.sort_by_key(|(place, _)| *place);
         RowFragments { groups, all }
     }
 
-    /// The fragment of a splat, if it may be inside or the client said that it is.
+    /// The fragment of a splat, if it may be inside or the client names its surfel.
     fn fragment(
         &self,
         possible: &PossibleSplat<P>,
@@ -232,7 +232,7 @@ impl<'a, P: Profile> GroupFragments<'a, P> {
 /// The least and the greatest bin of a depth.
 pub(crate) fn bin_ends<P: Profile>(bins: &DepthBins<Ball<P>>, t: Ball<P>) -> [f64; 2] {
     let position = bins.position(t);
-    // A little more than the radius, as the comparisons of balls have it.
+    // A little more than the radius, because comparisons of balls use that too.
     let reach = position.radius * (1.0 + f64::from(f32::EPSILON));
     let reach = if reach.is_nan() { f64::INFINITY } else { reach };
     let ends = [position.middle - reach, position.middle + reach];

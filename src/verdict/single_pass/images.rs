@@ -1,4 +1,5 @@
-//! The depth-images of a client at a pixel: what each group may keep, and what it certainly does not.
+//! Verify a client's depth-images at a pixel: which fragment each group may keep, and which it
+//! certainly does not.
 
 use super::client_planes::ImagePlanes;
 use super::fragments::{Fragment, GroupFragments, PixelFragments};
@@ -15,31 +16,31 @@ use crate::verdict::client::{StoredPlane, Ties};
 use crate::verdict::marks::PixelMarks;
 use crate::verdict::{Doubt, Fault};
 
-/// What a group may keep at a pixel.
+/// A sample that a group may keep at a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Sample<P: Profile> {
-    /// Its surfel; [`NO_ID`] if nothing is kept.
+    /// The surfel of the sample; [`NO_ID`] if nothing is kept.
     pub(crate) surfel: u32,
-    /// Its nearness; that of an empty pixel if nothing is kept.
+    /// The nearness of the sample. If nothing is kept, the nearness of an empty pixel.
     pub(crate) nearness: Ball<P>,
-    /// As the compositing pass reads it.
+    /// The sample as the compositing pass reads it.
     pub(crate) read: WeightedFragment<Ball<P>>,
 }
 
-/// The samples of a group at a pixel, at least one.
+/// The samples that a group may keep at a pixel, at least one.
 #[derive(Clone, Debug)]
 pub(crate) struct Samples<P: Profile> {
     pub(crate) all: Vec<Sample<P>>,
-    /// Whether all of them are summed alike: the client stores what is summed.
+    /// Whether all samples add the same to the sums, because the client stores the summands.
     pub(crate) stored: bool,
-    /// Whether their depths are the one that the client stores.
+    /// Whether all samples have the one depth that the client stores.
     pub(crate) depth_stored: bool,
 }
 
-/// What may be kept: a fragment, or none.
+/// A fragment that may be kept, or none.
 type Candidate<'f, P> = Option<&'f Fragment<P>>;
 
-/// What the groups share.
+/// The parts that the groups share.
 pub(super) struct Images<'a, P: Profile> {
     fragments: &'a GroupFragments<'a, P>,
     surfels: &'a Surfels,
@@ -56,7 +57,7 @@ impl<'a, P: Profile> Images<'a, P> {
         Self { fragments, surfels, planes, ties }
     }
 
-    /// Marks what is wrong with the images at a pixel, and gives what each group may keep.
+    /// Marks wrong images at a pixel, and returns the samples that each group may keep.
     pub(super) fn judge(
         &self,
         at: (u32, u32),
@@ -67,7 +68,7 @@ impl<'a, P: Profile> Images<'a, P> {
         groups.map(|(k, planes)| self.group(at, planes, fragments.of(k), pixel)).collect()
     }
 
-    /// The same of one group.
+    /// Judges one group.
     fn group<'f>(
         &self,
         at: (u32, u32),
@@ -94,7 +95,7 @@ impl<'a, P: Profile> Images<'a, P> {
                 (worst, candidate)
             })
             .collect();
-        // Of what errs equally a fragment says more than none.
+        // Among equal errors a fragment is preferred to none, because it explains more.
         let least = tried.iter().fold(f64::INFINITY, |least, (worst, _)| least.at_most(*worst));
         let best = tried.iter().rev().find(|(worst, _)| *worst == least).map(|(_, best)| *best);
         if !planes.nothing() {
@@ -108,7 +109,7 @@ impl<'a, P: Profile> Images<'a, P> {
                 pixel.found(f64::INFINITY, || Fault::Absent { surfel });
             }
         }
-        // Opacities are of the surfel, and leave no plane.
+        // Opacities come from the surfel and leave no plane, so they need the id.
         let stored = planes.complete(self.surfels.color().is_some())
             && (planes.id.is_some() || self.surfels.opacity().is_none());
         let right = tried.iter().filter(|(worst, _)| *worst <= least);
@@ -128,7 +129,7 @@ struct Group<'a, P: Profile> {
 }
 
 impl<P: Profile> Group<'_, P> {
-    /// Everything that is asked of a group that keeps a candidate.
+    /// Every check of a group that keeps this candidate.
     fn check<'f>(
         &self,
         candidate: Candidate<'_, P>,
@@ -153,7 +154,7 @@ impl<P: Profile> Group<'_, P> {
         }
     }
 
-    /// Whether another fragment should be there.
+    /// Checks whether another fragment should be kept.
     fn check_other(
         &self,
         candidate: Candidate<'_, P>,
@@ -167,7 +168,7 @@ impl<P: Profile> Group<'_, P> {
         let surfel = other.surfel;
         let greatest = other.keys.greatest();
         if self.before(greatest, key).certainly() {
-            // As certain as the least certain of the two.
+            // The fault is as certain as the less certain of the two decisions.
             let error = greatest.distance(key).at_most(other.margin);
             let stored = self.planes.depth.map(|plane| plane.ball::<P>(self.at).middle);
             let own = candidate.map_or(f64::INFINITY, |fragment| fragment.t.middle);
@@ -182,7 +183,7 @@ impl<P: Profile> Group<'_, P> {
         }
     }
 
-    /// Marks the decisions that may be either way, if a candidate is kept.
+    /// Marks the decisions that may be either way, if this candidate is kept.
     fn doubts<'f>(
         &self,
         candidate: Candidate<'_, P>,
@@ -214,7 +215,7 @@ impl<P: Profile> Group<'_, P> {
         }
     }
 
-    /// The key that others are held against: the client's, else the least of the candidate's.
+    /// The key that others are compared with: the client's, else the least of the candidate's.
     fn key(&self, candidate: Candidate<'_, P>) -> Ball<P> {
         let own = || candidate.map_or(Ball::INFINITY, |fragment| fragment.keys.least());
         let stored = if self.images.fragments.voronoi() {
@@ -225,12 +226,12 @@ impl<P: Profile> Group<'_, P> {
         stored.map_or_else(own, |plane| plane.ball(self.at))
     }
 
-    /// The plane of Voronoi-enhanced depths, under that depth test.
+    /// The plane of Voronoi-enhanced depths, if the depth test uses it.
     fn voronoi(&self) -> Option<&StoredPlane<'_, f64>> {
         self.planes.voronoi.as_ref().filter(|_| self.images.fragments.voronoi())
     }
 
-    /// What the image leaves of a candidate.
+    /// The values that the image leaves of a candidate.
     fn truth(&self, candidate: Candidate<'_, P>) -> WeightedFragment<Ball<P>> {
         let Some(fragment) = candidate else { return WeightedFragment::EMPTY };
         let (surfels, i) = (self.images.surfels, fragment.surfel as usize);
@@ -241,7 +242,7 @@ impl<P: Profile> Group<'_, P> {
         WeightedFragment::new(fragment.t, fragment.weight, normal, color, opacity)
     }
 
-    /// What the compositing pass reads of a candidate.
+    /// The sample of a candidate as the compositing pass reads it.
     fn sample(&self, candidate: Candidate<'_, P>) -> Sample<P> {
         let read = self.planes.read(self.at, &self.truth(candidate));
         let shared = self.images.fragments.shared();

@@ -1,43 +1,49 @@
-//! What a right implementation may leave of each stage, held against somebody's planes.
+//! Verify your planes of the single pass: which planes a correct implementation may leave of each
+//! stage.
 //!
-//! Surfels are projected in [`Ball`]s of a [`Profile`], each as it is drawn in its
-//! own group. Each stage is judged from what the client has of the stage before, as it is stored;
-//! what the client has not is taken from the balls.
+//! Surfels are projected in [`Ball`]s of a [`Profile`], each as its own group draws it. Each stage
+//! is judged from the client's planes of the stage before, as the client stores them. A plane that
+//! the client lacks is taken from the balls.
 //!
-//! **Geometry**, a certificate for each group and pixel, over the planes of the group that are there.
-//! The *key* of a fragment is what the depth test compares: its depth, or its Voronoi-enhanced depth. A
-//! depth within a radius of a bin's border has two bins, hence two keys.
+//! **Geometry**, a certificate for each group and pixel, over those planes of the group that are
+//! there. The *key* of a fragment is the number that the depth test compares: its depth, or its
+//! Voronoi-enhanced depth. A depth within a radius of a bin's border has two bins, hence two keys.
 //!
-//! 1. A fragment of the group that possibly is inside fits every plane: its surfel is the id; depth,
-//!    weight, weight times normal and colour are in its balls; the Voronoi-enhanced depth in the ball
-//!    of one of its keys. Or every plane says that there is none.
-//! 2. No fragment of another surfel of the group that certainly is drawn and inside has keys that are
-//!    all certainly less than the key that the client stores; without one, than the least key of the
-//!    fragment. Where there is none, no fragment certainly is inside.
-//! 3. No surfel comes before, as the client says of ties, whose key is equal and exact in balls, or all
-//!    of whose numbers are those of the id's surfel.
+//! 1. A fragment of the group that possibly is inside fits every plane. Its surfel is the id.
+//!    Depth, weight, weight times normal and colour are in its balls. The Voronoi-enhanced depth is
+//!    in the ball of one of its keys. Or every plane says that there is no fragment.
+//! 2. No fragment of another surfel of the group that certainly is drawn and inside has keys that
+//!    are all certainly less than the client's stored key. Without a stored key, they are compared
+//!    with the least key of the fragment. Where there is no fragment, none certainly is inside.
+//! 3. No surfel with an equal key comes before the id's surfel by the client's tie rule. Keys are
+//!    equal if they are the same and exact in balls, or if all numbers of the two surfels are the
+//!    same.
 //!
-//! The *samples* of a group are all fragments (or that there is none) that satisfy 1 to 3, each number
-//! in the place of its ball that the client stores. A group that stores depth, weight, normal, and the
-//! colours of a scene that has some, has one sample. Without any plane of the group they are all that
-//! satisfy 2 and 3.
+//! The *samples* of a group are all fragments (or that there is none) that satisfy 1 to 3. Each
+//! number that the client stores replaces its ball. A group has one sample if it stores depth,
+//! weight, normal, and the colours of a scene that has some. Without any plane of the group, the
+//! samples are all that satisfy 2 and 3.
 //!
-//! **Compositing.** Z is one of the samples' depths, and no group all of whose samples have less depth.
-//! The id is that of a sample, and there is no group all of whose samples certainly are nearer; of equal
-//! nearness the surfel that the client's rule of ties says. (Two depths that are equal or neighbours
-//! may come of either order of nearness, as 1/t rounds: Z and the id may be of two samples, neither of
-//! which certainly is nearer than the other.) The sums are those of the samples of depth at most
-//! nearest + epsilon, nearest of the stored depths of all groups, else Z, else of the samples' balls; the
-//! nearest always passes, and so does the id's, unless nearest + epsilon lies within what two reciprocals
-//! round. Where a group has several samples or a test is undecided, all
-//! continuations are followed, up to 16 choices of samples, and for each up to 2^4 of the tests; a pixel
-//! is right if one fits every plane. Beyond that its sums are not judged. Averages follow from the
-//! client's sums.
+//! **Compositing.**
+//!
+//! - Z is the depth of one of the samples, and no group has only samples with less depth.
+//! - The id belongs to a sample, and no group has only samples that certainly are nearer. Among
+//!   equal nearness, the surfel follows the client's tie rule. (Two depths that are equal or
+//!   neighbours may have either order of nearness, because 1/t rounds. So Z and the id may belong
+//!   to two samples, neither of which certainly is nearer than the other.)
+//! - The sums are over the samples with a depth of at most nearest + epsilon. nearest is the least
+//!   of the stored depths of all groups, else Z, else the least of the samples' balls. The nearest
+//!   sample always passes. The id's sample passes too, unless nearest + epsilon lies within the
+//!   rounding of two reciprocals.
+//! - Where a group has several samples or a test is undecided, all continuations are followed: up
+//!   to 16 choices of samples, and for each up to 2^4 outcomes of the tests. A pixel is right if
+//!   one continuation fits every plane. Beyond that its sums are not judged.
+//! - Averages follow from the client's sums.
 //!
 //! **Shading** as in `ewa`.
 //!
-//! A pixel is undecided if its sums have more than one continuation. The error of a number, and of a
-//! certificate that fails, is that of `ewa`.
+//! A pixel is undecided if its sums have more than one continuation. The error of a number, and of
+//! a certificate that fails, is defined as in `ewa`.
 
 mod client_planes;
 pub(crate) mod compositing;
@@ -69,17 +75,18 @@ use compositing::Compositing;
 use fragments::GroupFragments;
 use images::Images;
 
-/// How a method that works by groups calls their images and its stages, and what a client has of it.
+/// The rows of a method that works by groups: its images and its stages, and the client's planes of
+/// them.
 #[derive(Debug)]
 pub(crate) struct GroupsOf<'a> {
     pub(crate) client: &'a Client,
     pub(crate) client_planes: ClientPlanes<'a>,
     pub(crate) images: [PlaneRow; 6],
-    /// Whether the colour is that of a layer, behind which others may be seen.
+    /// Whether the colour is a layer's, behind which others may be seen.
     pub(crate) layer: bool,
 }
 
-/// The passes of geometry and of compositing, and shading.
+/// The names of the stages: geometry, compositing, and shading.
 const STAGES: [&str; 3] = ["geometry", "compositing", "shading"];
 
 impl<'a> GroupsOf<'a> {
@@ -107,7 +114,7 @@ pub(super) fn verify<P: Profile>(
     Ok(marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks)))
 }
 
-/// Everything that is judged at one pixel.
+/// Every check at one pixel.
 pub(super) fn checks<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
@@ -119,27 +126,27 @@ pub(super) fn checks<P: Profile>(
     marks::checks(job, STAGES, pixel, |tile, marks| judge.judge(tile, marks))
 }
 
-/// What is found at a pixel.
+/// The findings at a pixel.
 #[derive(Clone, Debug)]
 pub(crate) struct PixelFindings<P: Profile> {
     pub(crate) nearest: Nearest<P>,
-    /// What its sums may be.
+    /// The possible sums.
     sums: Continuations<P>,
 }
 
 impl<P: Profile> PixelFindings<P> {
-    /// Whether there is but one continuation.
+    /// Whether there is only one continuation.
     pub(crate) fn certain(&self) -> bool {
         matches!(self.sums, Continuations::One(_))
     }
 
-    /// Whether something may be there.
+    /// Whether the pixel may be covered.
     pub(crate) fn covered(&self) -> bool {
         self.nearest.depth.middle.is_finite() || !self.certain()
     }
 }
 
-/// What all tiles share.
+/// The parts that all tiles share.
 pub(crate) struct Judge<'a, P: Profile> {
     surfels: &'a Surfels,
     of: &'a GroupsOf<'a>,
@@ -150,7 +157,7 @@ pub(crate) struct Judge<'a, P: Profile> {
 }
 
 impl<'a, P: Profile> Judge<'a, P> {
-    /// Projection.
+    /// Projects the surfels of all groups.
     pub(crate) fn new(job: &Job<'a>, settings: &Settings, of: &'a GroupsOf<'a>) -> Result<Self> {
         let GroupsOf { client, client_planes, images: rows, layer } = of;
         let fragments = GroupFragments::project(job, settings)?;
@@ -163,7 +170,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         Ok(Self { surfels, of, images, fragments, compositing, pixels })
     }
 
-    /// The planes that geometry, compositing and shading judge.
+    /// The planes that each stage judges: geometry, compositing and shading.
     pub(crate) fn names(&self) -> [Vec<&'static str>; 3] {
         let [(_, nearest), (_, sums), (_, averages), (_, shading)] = self.of.client_planes.stages();
         let compositing = [sums, averages, nearest].concat();
@@ -175,7 +182,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         self.pixels.read(at, &found.nearest, &found.sums)
     }
 
-    /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
+    /// Marks the wrong pixels of a rectangle in a tile, stage by stage.
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 3]) -> Counts {
         let mut counts = Counts::default();
         let [geometry, compositing, shading] = marks;
@@ -195,8 +202,8 @@ impl<'a, P: Profile> Judge<'a, P> {
         counts
     }
 
-    /// One row of pixels, so that the fragments of all groups need not be kept of more; so many lie
-    /// above it in the tile.
+    /// Judges one row of pixels, because the fragments of all groups take too much memory for more.
+    /// `above` rows lie above it in the tile.
     pub(crate) fn judge_row(
         &self,
         (tile, above, row): (usize, usize, Rect),

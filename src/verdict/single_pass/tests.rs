@@ -13,13 +13,13 @@ use crate::verdict::tests::{
 
 const VORONOI: DepthTest = DepthTest::Voronoi(BinCount::Epsilon);
 
-/// Surfels with groups of this overlap.
+/// Surfels in groups with this overlap.
 fn grouped(surfels: Surfels, overlap: f32) -> Surfels {
     let rules = Rules { overlap, opposite: true, coplanar: None };
     let grouping = Grouping { rules, count: None, extension: Extension::None };
     let exec = Exec::sequential();
     let (groups, _, _) = grouping.groups(&surfels, &exec, &|_, _, _| ()).unwrap();
-    // Regular surfels may need but one.
+    // Regular surfels may need only one group.
     assert!(groups.len() > 1 || overlap < 1.0);
     Surfels::new(Cloud { groups: Some(groups), ..surfels.into_cloud() }).unwrap().0
 }
@@ -111,7 +111,8 @@ fn each_slip_is_found_in_its_stage() {
     assert_found(&scene, &camera, Method::SinglePass(settings), &slips);
 }
 
-/// A picture of several groups, its frame, and what is said of what becomes of it.
+/// Changes the frame of a picture of several groups, and asserts that the first wrong stage is
+/// `stage`.
 fn changed(depth: DepthTest, change: impl Fn(&mut Frame<f32>) -> bool, stage: &str) {
     let scene = Scene::lit("", grouped(surfels(300, 0.3, true, 1), 0.4));
     let exec = Exec::new(1, 16).unwrap();
@@ -127,7 +128,7 @@ fn changed(depth: DepthTest, change: impl Fn(&mut Frame<f32>) -> bool, stage: &s
     }
 }
 
-/// The values of a plane of one number a pixel.
+/// The values of a scalar plane.
 fn values<'a>(frame: &'a mut Frame<f32>, name: &str) -> &'a mut [f32] {
     let plane = frame.planes.iter_mut().find(|plane| plane.name == name).unwrap();
     match &mut plane.samples {
@@ -153,7 +154,7 @@ fn a_group_that_is_summed_from_beyond_epsilon_is_found() {
         true
     };
     changed(VORONOI, beyond, "compositing");
-    // From the picture alone as well.
+    // The same from the picture alone.
     let alone = |frame: &mut Frame<f32>| {
         let found = beyond(frame);
         frame.planes.retain(|plane| !plane.name.starts_with("group"));
@@ -179,7 +180,7 @@ fn a_group_that_is_left_out_of_the_sums_is_found() {
 
 #[test]
 fn the_other_depth_test_is_found() {
-    // What the plain test keeps, handed in for the Voronoi one, and the other way round.
+    // Hand in the image of the plain test for the Voronoi test, and the other way round.
     let scene = Scene::lit("", grouped(surfels(300, 0.4, true, 1), 0.3));
     let exec = Exec::new(1, 16).unwrap();
     let camera = camera(Shape::Sphere, [37, 33], None);

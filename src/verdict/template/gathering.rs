@@ -1,4 +1,4 @@
-//! The gathering of a client, replayed: every outcome that its decisions allow.
+//! Replay a client's gathering: every outcome that its decisions allow.
 
 use super::levels::Level;
 use crate::method::template::reconstruction::{CenterQuery, Gathered, each_query, weight};
@@ -8,15 +8,15 @@ use crate::number::{Ball, Real, Truth};
 use crate::verdict::Doubt;
 use crate::verdict::outcomes::MOST;
 
-/// What a pixel may have gathered.
+/// The outcomes that a pixel may have gathered.
 pub(super) struct Outcomes<P: Profile> {
-    /// All of it; none if it is more than is followed.
+    /// All outcomes; empty if there are more than are followed.
     pub(super) all: Vec<Gathered<Ball<P>>>,
     /// The decisions that may be either way.
     pub(super) doubts: u8,
 }
 
-/// What a pixel may have gathered from a client's levels.
+/// The outcomes that a pixel may have gathered from a client's levels.
 pub(super) fn outcomes<P: Profile>(
     levels: &[Level<P>],
     settings: &Settings,
@@ -33,7 +33,7 @@ pub(super) fn outcomes<P: Profile>(
 }
 
 impl<P: Profile> Outcomes<P> {
-    /// A centre that may be taken.
+    /// Follows a centre that may be taken.
     fn ask(&mut self, falloff: Falloff, asked: &CenterQuery<'_, Ball<P>>) {
         let taken = (asked.holds | asked.own.into()) & asked.stays;
         let weight = bounded_weight(falloff, asked);
@@ -46,7 +46,7 @@ impl<P: Profile> Outcomes<P> {
         };
         for before in &self.all {
             let test = before.ternary(asked.center);
-            // Behind the front it is all one whether a centre is held.
+            // Behind the front it does not matter whether the ellipse holds the pixel.
             let matters = !test.behind.certainly();
             if matters && !taken.certainly() {
                 doubts |= Doubt::CutOff as u8;
@@ -71,7 +71,7 @@ impl<P: Profile> Outcomes<P> {
     }
 }
 
-/// The sums with a centre added, and each front that they may have.
+/// Adds a centre to the sums, once for each front that they may have.
 fn each_front<P: Profile>(
     before: &Gathered<Ball<P>>,
     center: &Center<Ball<P>>,
@@ -91,8 +91,8 @@ fn each_front<P: Profile>(
     }
 }
 
-/// The weight of a centre. At the centre itself the form may be 0 but for its radius: the root of a
-/// number below 0 bounds nothing, but that of the greatest does.
+/// The weight of a centre. At the centre itself the form may be 0 up to its radius. The root of a
+/// ball that reaches below 0 is unbounded, but the root of its greatest value is bounded.
 fn bounded_weight<P: Profile>(falloff: Falloff, asked: &CenterQuery<'_, Ball<P>>) -> Ball<P> {
     let CenterQuery { form, square, .. } = *asked;
     let most = form.middle + form.radius;
@@ -100,7 +100,7 @@ fn bounded_weight<P: Profile>(falloff: Falloff, asked: &CenterQuery<'_, Ball<P>>
     if falloff == Falloff::Linear && reaches_zero && square.gt(Ball::ZERO).certainly() {
         let farthest = (Ball::<P>::exact(most) / square).sqrt();
         let distance = farthest.middle + farthest.radius;
-        // A little more than half, for the rounding of 1 - d.
+        // A little more than half, because 1 - d rounds.
         Ball::new(1.0 - 0.5 * distance, 0.5 * distance + ROUNDING)
     } else {
         weight(falloff, form, square)
@@ -110,7 +110,7 @@ fn bounded_weight<P: Profile>(falloff: Falloff, asked: &CenterQuery<'_, Ball<P>>
 /// Twice the rounding of a number in [1/2, 1], in any profile.
 const ROUNDING: f64 = 1.0 / 4_194_304.0;
 
-/// Whether two outcomes are one.
+/// Whether two outcomes are the same.
 fn same<P: Profile>(a: &Gathered<Ball<P>>, b: &Gathered<Ball<P>>) -> bool {
     let numbers = |of: &Gathered<Ball<P>>| {
         let [x, y, z] = of.normals;

@@ -1,4 +1,4 @@
-//! The propagation of a client, level by level.
+//! Verify a client's propagation, level by level.
 
 use crate::frame::Plane;
 use crate::method::Job;
@@ -15,12 +15,12 @@ use crate::verdict::projection::SamplePlanes;
 /// The centres of a level.
 pub(super) type Level<P> = Plane<Center<Ball<P>>>;
 
-/// The levels as a client has them.
+/// The levels of a client.
 pub(super) struct Levels<'a, P: Profile> {
     job: &'a Job<'a>,
     settings: &'a Settings,
     sizes: &'a [[u32; 2]],
-    /// The planes of level 1 and on.
+    /// The planes of level 1 and coarser levels.
     planes: &'a [RecordPlanes<'a>],
     /// All levels; none where a plane is missing.
     levels: Vec<Option<Level<P>>>,
@@ -42,12 +42,12 @@ impl<'a, P: Profile> Levels<'a, P> {
         Self { job, settings, sizes, planes, levels }
     }
 
-    /// The levels, if all are there.
+    /// The levels, if all of them are there.
     pub(super) fn all(self) -> Option<Vec<Level<P>>> {
         self.levels.into_iter().collect()
     }
 
-    /// Judges each level whose finer one is there.
+    /// Judges each level whose finer level is there.
     pub(super) fn judge(&self, watch: Watch) -> StageMarks {
         let (mut marks, mut names) = (watch.picture(self.job), Vec::new());
         for (level, planes) in (1..).zip(self.planes) {
@@ -74,7 +74,7 @@ impl<'a, P: Profile> Levels<'a, P> {
     }
 }
 
-/// One cell from the four finer ones, of which those beyond the reach move.
+/// Judges one cell from its four finer ones. Those beyond the reach move.
 fn cell<P: Profile>(
     planes: &RecordPlanes<'_>,
     at: (u32, u32),

@@ -1,24 +1,26 @@
-//! What a right implementation may leave of each stage, held against somebody's planes.
+//! Verify your planes of the reconstruction with templates: which planes a correct implementation
+//! may leave of each stage.
 //!
-//! Each stage is judged from what the client has of the stage before: floats are inputs as they are
-//! stored, and so exact. The formulas are those of the crate in balls of a [`Profile`].
+//! Each stage is judged from the client's planes of the stage before. Floats are inputs as they are
+//! stored, so they are exact. The formulas are the crate's, in balls of a [`Profile`].
 //!
 //! **Projection**: see [`mod@crate::verdict::projection`].
 //!
-//! **Propagation**, level by level from the client's finer level. Of each cell every outcome that the
-//! decisions allow: who moves, which is foremost, who is near enough; a cell is right if one outcome
-//! fits every plane. A level is judged if every plane of the finer one is there, those of the
-//! projection for level 0.
+//! **Propagation**, level by level from the client's finer level. For each cell, every outcome is
+//! followed that the decisions allow: which centres move, which is foremost, which are near enough.
+//! A cell is right if one outcome fits every plane. A level is judged if every plane of the finer
+//! level is there; for level 0 these are the planes of the projection.
 //!
-//! **Reconstruction**, if every plane of every level is there: the gathering is replayed in its order.
-//! Where a decision is undecided (who stays, whether the ellipse holds the pixel, the ternary test,
-//! which is the front) all continuations are followed.
+//! **Reconstruction**, if every plane of every level is there: the gathering is replayed in its
+//! order. Where a decision is undecided (which centre stays, whether the ellipse holds the pixel,
+//! the ternary test, which is the front), all continuations are followed.
 //!
 //! **Normalization and shading** as in `ewa`, from the client's sums and averages.
 //!
-//! A cell or a pixel with more than 16 outcomes is not judged, and counts as undecided like one with
-//! several. A cell is marked where its planes have it, whatever its level. What is copied from stage
-//! to stage (ids, depth and radius of the front, a centre that moves alone) must be equal.
+//! A cell or a pixel with more than 16 outcomes is not judged, and counts as undecided, like one
+//! with several outcomes. A cell is marked at its place in its own plane, whatever its level.
+//! Values that are copied from stage to stage (ids, depth and radius of the front, a centre that
+//! moves alone) must be equal.
 
 mod gathering;
 mod levels;
@@ -46,7 +48,7 @@ use levels::Levels;
 use pixel::PixelJudge;
 use planes::PicturePlanes;
 
-/// All doubts: in the gathering each may move the sums.
+/// All doubts, because in the gathering each of them may move the sums.
 const ANY: u8 = u8::MAX;
 
 /// Judges the planes of a client.
@@ -64,7 +66,7 @@ pub(super) fn verify<P: Profile>(
     Verdict::new(stages, [covered, undecided], budget, Shifts::default())
 }
 
-/// Everything that is judged at one pixel: the cells of all levels that have its place, and the pixel.
+/// Every check at one pixel: the cells at its place in all levels, and the pixel itself.
 pub(super) fn checks<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
@@ -74,14 +76,14 @@ pub(super) fn checks<P: Profile>(
     Ok(judge::<P>(job, settings, client, Watch::one(job, pixel)?).0.checks())
 }
 
-/// The sizes of the levels that there are.
+/// The sizes of the levels.
 fn levels(job: &Job<'_>, settings: &Settings) -> Vec<[u32; 2]> {
     let mut sizes = pyramid::sizes(job.camera.width, job.camera.height);
     sizes.truncate(propagation::top(settings, &sizes) + 1);
     sizes
 }
 
-/// What is found of all stages, and how many pixels may be covered.
+/// The findings about all stages, and the number of pixels that may be covered.
 fn judge<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,

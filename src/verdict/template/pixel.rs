@@ -1,4 +1,4 @@
-//! One pixel of a client: what was gathered, averages and shading.
+//! Verify one pixel of a client: its gathering, averages and shading.
 
 use super::gathering::outcomes;
 use super::levels::Level;
@@ -19,12 +19,12 @@ use crate::verdict::checks::{
 };
 use crate::verdict::marks::Marks;
 
-/// The stages, by their place among the marks.
+/// The stages, by their index among the marks.
 const RECONSTRUCTION: usize = 0;
 const NORMALIZATION: usize = 1;
 const SHADING: usize = 2;
 
-/// What all pixels share.
+/// The parts that all pixels share.
 pub(super) struct PixelJudge<'a, P: Profile> {
     settings: &'a Settings,
     levels: Option<Vec<Level<P>>>,
@@ -33,7 +33,7 @@ pub(super) struct PixelJudge<'a, P: Profile> {
     shading: Shading<'a, P>,
     has: Has,
     there: Conditions,
-    /// The greatest component of a colour, at least 1.
+    /// The greatest component of any colour, at least 1.
     brightest: f64,
 }
 
@@ -61,7 +61,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         self.levels.is_some()
     }
 
-    /// Marks what is wrong at a pixel, by the outcome that errs least; whether anything may be there.
+    /// Marks a wrong pixel, by the outcome that errs least. Returns whether the pixel may be
+    /// covered.
     pub(super) fn judge(&self, (pixel, at): (usize, (u32, u32)), marks: &mut [Marks; 3]) -> bool {
         let (mut all, mut replayed) = (Vec::new(), false);
         if let Some(levels) = &self.levels {
@@ -77,7 +78,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
     }
 
-    /// Every plane at a pixel, with these sums; without any, as far as the client's own are there.
+    /// Checks every plane at a pixel, with these sums. Without sums, checks whatever follows from
+    /// the client's own.
     fn check(&self, at: (u32, u32), sums: Option<&Gathered<Ball<P>>>, report: &mut Report<'_>) {
         if let Some(sums) = sums {
             self.check_sums(at, sums, report);
@@ -89,14 +91,14 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             colors: [anything(); 3],
             ..Gathered::empty()
         };
-        // What comes next works with the client's own.
+        // The next stage continues from the client's own numbers.
         let mut own = sums.copied().unwrap_or(nothing);
         self.client_planes.gathered.read((&Gathered::PLANES, &self.there), at, &mut own);
         self.check_averages(at, &own, report);
         self.check_shading(at, &own, report);
     }
 
-    /// What was gathered.
+    /// Checks the gathered sums.
     fn check_sums(&self, at: (u32, u32), sums: &Gathered<Ball<P>>, report: &mut Report<'_>) {
         let client_planes = self.client_planes;
         // Each addition rounds a sum that is at most this large.
@@ -113,7 +115,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         client_planes.gathered.check((RECONSTRUCTION, &Gathered::PLANES), at, &truth, report);
     }
 
-    /// The averages, and the weight again.
+    /// Checks the averages, and the weight again.
     fn check_averages(&self, at: (u32, u32), own: &Gathered<Ball<P>>, report: &mut Report<'_>) {
         let client_planes = self.client_planes;
         if let Some(plane) = &client_planes.depth {
@@ -128,7 +130,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
     }
 
-    /// The picture.
+    /// Checks the picture.
     fn check_shading(&self, at: (u32, u32), own: &Gathered<Ball<P>>, report: &mut Report<'_>) {
         let client_planes = self.client_planes;
         let weight = client_planes.weight_copy.map_or(own.weight, |plane| input(&plane, at));

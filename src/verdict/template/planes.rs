@@ -1,4 +1,4 @@
-//! The planes of the picture that a client has handed in.
+//! The planes of the picture that a client hands in.
 
 use crate::frame::NO_ID;
 use crate::method::PlaneRow;
@@ -7,10 +7,10 @@ use crate::method::template::reconstruction::Gathered;
 use crate::verdict::client::{Client, Storage, StoredPlane};
 use crate::verdict::planes::RecordPlanes;
 
-/// The planes of the picture and of what was gathered for it, each if it is there.
+/// The planes of the picture and of its gathering; each may be missing.
 #[derive(Clone, Debug)]
 pub(super) struct PicturePlanes<'a> {
-    /// What was gathered.
+    /// The planes of the gathering.
     pub(super) gathered: RecordPlanes<'a>,
     weight: Option<StoredPlane<'a, f64>>,
     pub(super) accumulator: Storage,
@@ -40,13 +40,13 @@ impl<'a> PicturePlanes<'a> {
         }
     }
 
-    /// The stages, each with the planes that it judges; `gathers` says whether the gathering can be
+    /// The stages, each with the planes that it judges. `gathers` says whether the gathering can be
     /// replayed.
     pub(super) fn stages(&self, gathers: bool) -> [StagePlanes; 3] {
         let scalar = |plane: &Option<StoredPlane<'_, f64>>| plane.map(|plane| plane.name);
         let triple = |plane: &Option<StoredPlane<'_, [f64; 3]>>| plane.map(|plane| plane.name);
         let sums = if gathers { self.gathered.names().to_vec() } else { Vec::new() };
-        // Averages are judged from sums: the client's, or those of the gathering.
+        // Averages are judged from sums: the client's, or the sums of the gathering.
         let own = |row: PlaneRow| self.gathered.names().contains(&row.name);
         let known = |own: bool| gathers || (own && self.weight.is_some());
         let averages = [
@@ -62,7 +62,7 @@ impl<'a> PicturePlanes<'a> {
         ]
     }
 
-    /// Whether a pixel says that it is empty, or says nothing.
+    /// Whether a pixel is empty according to the client; none if the client does not say.
     pub(super) fn empty(&self, (x, y): (u32, u32)) -> Option<bool> {
         let id = self.gathered.ids().map(|plane| *plane.plane.at(x, y) == NO_ID);
         let weight = self.weight.or(self.weight_copy);

@@ -44,7 +44,7 @@ fn of_scenes_without_colours_and_of_thin_pictures_too() {
 #[test]
 fn each_slip_is_found_in_its_stage() {
     let shape = Shape::Sphere;
-    // Large, so that coarse levels are not empty.
+    // Large surfels, so that coarse levels are not empty.
     let scene = Scene::lit("", surfels(400, 0.4, true, 1));
     let settings = Settings { size: 3, levels: LevelRule::Covering, ..Settings::default() };
     let slips = [
@@ -84,7 +84,7 @@ fn a_client_that_keeps_its_planes_in_halves_is_right() {
     );
 }
 
-/// Of surfels that are there twice the first is kept.
+/// Every surfel is there twice, and the first one is kept.
 #[test]
 fn the_second_of_two_equal_surfels_is_found() {
     let once = surfels(200, 0.4, true, 1);

@@ -1,4 +1,4 @@
-//! The average of a client's groups at a pixel.
+//! Verify the average of a client's groups at a pixel.
 
 use super::planes::GroupFound;
 use crate::composite::over::Blend;
@@ -26,12 +26,12 @@ impl<'a> AveragePlanes<'a> {
         Self { planes, there: job.there(Keep::Alone) }
     }
 
-    /// The names of those that are there.
+    /// The names of the planes that are there.
     pub(crate) fn names(&self) -> Vec<&'static str> {
         self.planes.names().to_vec()
     }
 
-    /// Marks what is wrong with the average at a pixel; gives it as the next pass reads it, without
+    /// Marks a wrong average at a pixel. Returns the average as the next pass reads it, without
     /// depth and surfel.
     pub(crate) fn judge<P: Profile>(
         &self,
@@ -47,7 +47,7 @@ impl<'a> AveragePlanes<'a> {
     }
 }
 
-/// Sums in the order of the groups, divided once.
+/// Sums the groups in their order, and divides once.
 fn average<P: Profile>(groups: &[GroupFound<P>], holes: Holes) -> GroupAverage<Ball<P>> {
     let mut sum = GroupAverage::EMPTY;
     let mut taken = Some(0_u8);

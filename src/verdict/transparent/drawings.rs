@@ -1,4 +1,4 @@
-//! The surfels in their groups in balls, and their fragments from back to front.
+//! The surfels of each group in balls, and their fragments from back to front.
 
 use crate::composite::bins::DepthBins;
 use crate::composite::decide;
@@ -21,17 +21,17 @@ use crate::verdict::single_pass::fragments::bin_ends;
 #[derive(Clone, Copy)]
 struct Drawing<P: Profile> {
     splat: Splat<Ball<P>>,
-    /// Whether it certainly is, and with this outline.
+    /// Whether it certainly is drawn, and with this outline.
     certain: bool,
     group: u8,
     color: [Ball<P>; 3],
     alpha: Ball<P>,
 }
 
-/// What may be drawn in a picture.
+/// All surfels that may be drawn in a picture.
 pub(super) struct GroupDrawings<P: Profile> {
     prepared: Prepared<Ball<P>, Drawing<P>>,
-    /// Of each group.
+    /// The depth bins of each group.
     bins: Vec<DepthBins<Ball<P>>>,
 }
 
@@ -39,7 +39,7 @@ pub(super) struct GroupDrawings<P: Profile> {
 #[derive(Clone, Copy, Debug)]
 pub(super) struct DrawnFragment<P: Profile> {
     pub(super) surfel: u32,
-    /// Whether it certainly is drawn.
+    /// Whether its surfel certainly is drawn.
     pub(super) certain: bool,
     pub(super) inside: Three,
     pub(super) t: Ball<P>,
@@ -52,12 +52,12 @@ pub(super) struct DrawnFragment<P: Profile> {
 /// The fragments of a row of pixels, by pixel and group.
 pub(crate) struct RowDrawings<P: Profile> {
     groups: usize,
-    /// In the order of their places, those of a place from back to front.
+    /// The fragments in the order of their places, and within a place from back to front.
     all: Vec<(usize, DrawnFragment<P>)>,
 }
 
 impl<P: Profile> RowDrawings<P> {
-    /// Those of a group at a pixel, counted from the left.
+    /// The fragments of a group at a pixel. Pixels are counted from the left.
     pub(super) fn at(
         &self,
         column: usize,
@@ -70,7 +70,7 @@ impl<P: Profile> RowDrawings<P> {
 }
 
 impl<P: Profile> GroupDrawings<P> {
-    /// Order, projection and shading.
+    /// Orders, projects and shades the surfels.
     pub(super) fn project(job: &Job<'_>, settings: &Settings) -> Result<Self> {
         let (scene, groups) = (job.scene, job.index.groups()?);
         let surfels = &scene.surfels;
@@ -101,7 +101,7 @@ impl<P: Profile> GroupDrawings<P> {
         Ok(Self { prepared, bins })
     }
 
-    /// How many groups there are.
+    /// Number of groups.
     pub(super) fn groups(&self) -> usize {
         self.bins.len()
     }
@@ -129,7 +129,7 @@ impl<P: Profile> GroupDrawings<P> {
                 }
             });
         });
-        // Those of a place stay in their order.
+        // A stable sort keeps the fragments of a place in their order.
         all.sort_by_key(|(place, _)| *place);
         RowDrawings { groups: self.groups(), all }
     }

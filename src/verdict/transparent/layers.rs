@@ -1,4 +1,4 @@
-//! The groups of a client, blended one by one.
+//! Verify the groups of a client, blended one by one.
 
 use super::drawings::{GroupDrawings, RowDrawings};
 use super::planes::{GroupFound, GroupPlanes};
@@ -14,21 +14,21 @@ use crate::verdict::client::Client;
 use crate::verdict::marks::PixelMarks;
 use crate::verdict::planes;
 
-/// The geometry pass of a client.
+/// The judge of a client's geometry pass.
 pub(crate) struct LayersJudge<'a, P: Profile> {
     planes: Vec<GroupPlanes<'a>>,
     drawings: GroupDrawings<P>,
 }
 
-/// The groups at a pixel.
+/// The findings about the groups at a pixel.
 pub(crate) struct LayersFound<P: Profile> {
     pub(crate) groups: Vec<GroupFound<P>>,
-    /// Whether one has several continuations, or is not judged.
+    /// Whether a group has several continuations, or is not judged.
     pub(crate) open: bool,
 }
 
 impl<'a, P: Profile> LayersJudge<'a, P> {
-    /// Order, projection and shading.
+    /// Orders, projects and shades the surfels.
     pub(crate) fn project(job: &Job<'_>, settings: &Settings, client: &'a Client) -> Result<Self> {
         let drawings = GroupDrawings::project(job, settings)?;
         let planes = (0..drawings.groups()).map(|k| GroupPlanes::new(job, client, k)).collect();
@@ -46,7 +46,7 @@ impl<'a, P: Profile> LayersJudge<'a, P> {
         self.drawings.of_row(tile, row)
     }
 
-    /// Marks what is wrong at a pixel, of fragments of depths that stay.
+    /// Marks a wrong pixel. Only fragments whose depth `stays` count.
     pub(crate) fn judge(
         &self,
         (column, at): (usize, (u32, u32)),

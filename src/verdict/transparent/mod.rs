@@ -1,28 +1,31 @@
-//! What a right implementation may leave of each stage, held against somebody's planes.
+//! Verify your planes of transparent layers: which planes a correct implementation may leave of
+//! each stage.
 //!
-//! The order of the surfels is exact, and so is the bin of a fragment but beside the border of one.
-//! Surfels are projected and shaded in [`Ball`](crate::number::Ball)s of a [`Profile`], each in all of
-//! its groups.
+//! The order of the surfels is exact. The bin of a fragment is exact too, except close to the
+//! border of a bin. Surfels are projected and shaded in [`Ball`](crate::number::Ball)s of a
+//! [`Profile`], each in all of its groups.
 //!
 //! **Blending**, group by group: the fragments are replayed in their order. Where it is undecided
 //! whether a surfel is drawn, whether its fragment is inside, or in which of two bins it lies, both
-//! continuations are followed; those that come to the same are one. A pixel of a group is right if one
-//! fits every plane of the group that is there. One with more than 16, or with a fragment that may be in
-//! more than two bins, is not judged.
+//! continuations are followed. Continuations with the same result count as one. A pixel of a group
+//! is right if one continuation fits every plane of the group that is there. A pixel with more than
+//! 16 continuations, or with a fragment that may be in more than two bins, is not judged.
 //!
-//! **Averaging** of what the client stores of each group; what it does not store is that of the
-//! continuations that fit, where they agree. What is not known of one group is not judged of the
-//! average. `Z` is the depth of one of the groups, and no group certainly is nearer; `id` is the surfel
-//! of a group that may be the nearest (of equal depths any of them). The picture follows from the
-//! client's average, before the environment if there is one.
+//! **Averaging** of the values that the client stores for each group. A value that it does not
+//! store is taken from the continuations that fit, where they agree. If a value is not known for
+//! one group, the average of this value is not judged. `Z` is the depth of one of the groups, and
+//! no group certainly is nearer. `id` is the surfel of a group that may be the nearest (among equal
+//! depths any of them). The picture follows from the client's average, before the environment if
+//! there is one.
 //!
-//! **Environment.** Where the opacity is less than 1, the light of the ray is taken in balls: the sky by
-//! its formula; a map from all squares of four pixel centres that the ray may lie between, which meet
-//! without a jump, at the seam too. Where these are more than 8 in a row or a column, as beside a pole,
-//! the colour is not judged. Weights are those of `f32`: a texture unit that rounds them to 8 bits is not
-//! within a map's balls.
+//! **Environment.** Where the opacity is less than 1, the light of the ray is taken in balls. The
+//! sky follows its formula. A map uses all squares of four pixel centres that the ray may lie
+//! between; they meet without a jump, at the seam too. Where these are more than 8 in a row or a
+//! column, as beside a pole, the colour is not judged. Weights are `f32` weights: a texture unit
+//! that rounds them to 8 bits is not within a map's balls.
 //!
-//! A pixel is undecided if a group has several continuations, or is not judged, or if its colour is not.
+//! A pixel is undecided if a group has several continuations or is not judged, or if the pixel's
+//! colour is not judged.
 
 pub(crate) mod averages;
 pub(crate) mod drawings;
@@ -48,7 +51,7 @@ use layers::LayersJudge;
 use picture::PictureJudge;
 use planes::GroupFound;
 
-/// The stages by their names.
+/// The names of the stages.
 const STAGES: [&str; 2] = ["blending", "averaging"];
 
 /// Judges the planes of a client.
@@ -69,7 +72,7 @@ pub(super) fn verify<P: Profile>(
     Ok(marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks)))
 }
 
-/// Everything that is judged at one pixel.
+/// Every check at one pixel.
 pub(super) fn checks<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
@@ -81,13 +84,13 @@ pub(super) fn checks<P: Profile>(
     marks::checks(job, STAGES, pixel, |tile, marks| judge.judge(tile, marks))
 }
 
-/// Depth and surfel of the picture. Depths of one surfel in two groups, or of two equal ones, may tie or
-/// not, as each group scales it.
+/// Depth and surfel of the picture. Each group scales a surfel, so the depths of one surfel in two
+/// groups, or of two equal surfels, may tie or not.
 fn client_planes(client: &Client) -> ClientPlanes<'_> {
     ClientPlanes { ties: Ties::Any, ..ClientPlanes::of(client, &sum_rows()) }
 }
 
-/// What all tiles share.
+/// The parts that all tiles share.
 struct Judge<'a, P: Profile> {
     layers: LayersJudge<'a, P>,
     averages: AveragePlanes<'a>,
@@ -110,7 +113,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         })
     }
 
-    /// Marks what is wrong at the pixels of a rectangle in a tile.
+    /// Marks the wrong pixels of a rectangle in a tile.
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
         let mut counts = Counts::default();
         let [blending, averaging] = marks;

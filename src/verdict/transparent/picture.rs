@@ -1,4 +1,4 @@
-//! The picture of a client at a pixel: what is nearest, and what the average shows.
+//! Verify a client's picture at a pixel: the nearest group, and the colour of the average.
 
 use super::planes::GroupFound;
 use super::replay::Layers;
@@ -15,7 +15,7 @@ use crate::verdict::marks::PixelMarks;
 use crate::verdict::single_pass::compositing::Compositing;
 use crate::verdict::single_pass::images::{Sample, Samples};
 
-/// What all pixels share.
+/// The parts that all pixels share.
 pub(super) struct PictureJudge<'a, P: Profile> {
     client_planes: &'a ClientPlanes<'a>,
     layers: Option<StoredPlane<'a, f64>>,
@@ -52,7 +52,7 @@ impl<'a, P: Profile> PictureJudge<'a, P> {
         all.into_iter().flatten().collect()
     }
 
-    /// Marks what is wrong with the picture at a pixel; whether its colour is judged, or is not there.
+    /// Marks a wrong picture at a pixel. Returns whether its colour is judged, or is not there.
     pub(super) fn judge(
         &self,
         at: (u32, u32),
@@ -78,11 +78,11 @@ impl<'a, P: Profile> PictureJudge<'a, P> {
     }
 }
 
-/// What may be the nearest of a group; none if that is not known.
+/// The samples of a group that may be the nearest; none if they are not known.
 fn samples<P: Profile>(group: &GroupFound<P>) -> Option<Samples<P>> {
     let sample = |layers: &Layers<P>| {
         let depth = group.depth.unwrap_or(layers.depth);
-        // Depths decide.
+        // This method compares depths, so the nearness is -depth.
         let nearness = -depth;
         let read = WeightedFragment { depth, ..WeightedFragment::EMPTY };
         Sample { surfel: layers.surfel, nearness, read }

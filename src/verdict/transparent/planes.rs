@@ -1,4 +1,4 @@
-//! The planes that a client has handed in, and the groups that they are of.
+//! The planes that a client hands in, and the groups that they belong to.
 
 use super::replay::Layers;
 use crate::composite::over::Blend;
@@ -22,22 +22,22 @@ pub(super) struct GroupPlanes<'a> {
     there: Conditions,
 }
 
-/// A group at a pixel, as the average reads it; NaN radii stand for what is not known.
+/// A group at a pixel, as the average reads it. A NaN radius marks an unknown number.
 #[derive(Clone, Debug)]
 pub(crate) struct GroupFound<P: Profile> {
-    /// What may have been blended, of what fits the planes; none if that is not known.
+    /// The possible results of blending that fit the planes; none if they are not known.
     pub(super) all: Option<Vec<Layers<P>>>,
     pub(super) color: [Ball<P>; 3],
     pub(super) alpha: Ball<P>,
     pub(super) opacity: Ball<P>,
     pub(super) hidden: Ball<P>,
     pub(super) count: Option<u8>,
-    /// The depth that is stored.
+    /// The stored depth.
     pub(super) depth: Option<Ball<P>>,
 }
 
 impl<P: Profile> GroupFound<P> {
-    /// Whether something may be there.
+    /// Whether the pixel may be covered.
     pub(crate) fn covered(&self) -> bool {
         self.count != Some(0)
     }
@@ -46,7 +46,7 @@ impl<P: Profile> GroupFound<P> {
 impl<'a> GroupPlanes<'a> {
     pub(super) fn new(job: &Job<'_>, client: &'a Client, group: usize) -> Self {
         let rows = rows(&GroupLayers::<f32>::PLANES).into_iter().enumerate();
-        // Of the numbers the bin is judged first.
+        // Among the numbers, the bin is judged first.
         let (bin, others): (Vec<_>, Vec<_>) =
             rows.partition(|(_, row)| *row == GroupLayers::<f32>::BIN.row);
         Self {
@@ -56,8 +56,8 @@ impl<'a> GroupPlanes<'a> {
         }
     }
 
-    /// Marks what is wrong with the group at a pixel, by the continuation that errs least, and gives
-    /// what the average reads.
+    /// Marks a wrong group at a pixel, by the continuation that errs least. Returns the group as
+    /// the average reads it.
     pub(super) fn judge<P: Profile>(
         &self,
         at: (u32, u32),
@@ -93,9 +93,9 @@ impl<'a> GroupPlanes<'a> {
         fits.map(|(layers, _)| layers).collect()
     }
 
-    /// Every plane at a pixel, against what was blended.
+    /// Checks every plane at a pixel against a result of blending.
     fn check<P: Profile>(&self, at: (u32, u32), truth: &Layers<P>, report: &mut Report<'_>) {
-        // Each layer rounds what is stored between two.
+        // Each layer rounds the stored values again.
         let lost = |largest: f64| f64::from(truth.count) * self.accumulator.radius(largest);
         let blend = Blend {
             color: truth.blend.color.map(|part| widened(part, lost(truth.brightest))),
@@ -106,7 +106,8 @@ impl<'a> GroupPlanes<'a> {
         self.planes.check((0, &GroupLayers::PLANES), at, &truth, report);
     }
 
-    /// What the average reads: the client's, else all that the continuations may be.
+    /// The group as the average reads it: the client's values, else all values of the
+    /// continuations.
     fn read<P: Profile>(&self, at: (u32, u32), all: Option<Vec<Layers<P>>>) -> GroupFound<P> {
         let any = |of: &dyn Fn(&GroupLayers<Ball<P>>) -> Ball<P>| {
             let layers = all.iter().flatten().map(|layers| of(&layers.stored()));

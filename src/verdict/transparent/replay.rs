@@ -1,4 +1,4 @@
-//! The layers of a group at a pixel: what blending from back to front may come to.
+//! Replay the layers of a group at a pixel: every result that blending from back to front may have.
 
 use super::drawings::DrawnFragment;
 use crate::composite::decide;
@@ -13,7 +13,7 @@ use crate::verdict::Doubt;
 /// The most continuations that are followed.
 const MOST: usize = 16;
 
-/// What has been blended.
+/// The layers blended so far.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Layers<P: Profile> {
     pub(super) bin: f64,
@@ -23,25 +23,25 @@ pub(super) struct Layers<P: Profile> {
     pub(super) count: u8,
     pub(super) depth: Ball<P>,
     pub(super) surfel: u32,
-    /// The greatest component that the colour has had.
+    /// The greatest component that the colour has had so far.
     pub(super) brightest: f64,
 }
 
-/// What may have been blended; none if it is more than is followed.
+/// The possible results of blending; none if there are more than are followed.
 pub(super) struct Replay<P: Profile> {
     pub(super) all: Option<Vec<Layers<P>>>,
     pub(super) doubts: u8,
 }
 
 impl<P: Profile> Layers<P> {
-    /// What the planes of a group say of them.
+    /// The values that the planes of a group hold for these layers.
     pub(super) fn stored(&self) -> GroupLayers<Ball<P>> {
         let Self { bin, blend, opacity, hidden, count, depth, surfel, .. } = *self;
         let hidden = Ball::from_f32(f32::from(u8::from(hidden)));
         GroupLayers { bin: Ball::exact(bin), blend, opacity, hidden, count, depth, surfel }
     }
 
-    /// No fragment.
+    /// Layers without a fragment.
     pub(super) const EMPTY: Self = Self {
         bin: f64::INFINITY,
         blend: Blend::CLEAR,
@@ -53,7 +53,7 @@ impl<P: Profile> Layers<P> {
         brightest: 0.0,
     };
 
-    /// With a fragment that passed the depth test in this bin.
+    /// Adds a fragment that passed the depth test in this bin.
     fn with(&self, drawn: &DrawnFragment<P>, bin: f64) -> Self {
         let DrawnFragment { alpha, color, t, surfel, .. } = *drawn;
         // Opacities are exact.
@@ -74,7 +74,7 @@ impl<P: Profile> Layers<P> {
         }
     }
 
-    /// Whether both are of the same layers, as far as anything shows it.
+    /// Whether both results are the same, as far as any plane shows it.
     fn same(&self, other: &Self) -> bool {
         let numbers = |layers: &Self| {
             let [r, g, b] = layers.blend.color.map(|part| part.middle.to_bits());
@@ -85,8 +85,8 @@ impl<P: Profile> Layers<P> {
     }
 }
 
-/// Blends the fragments of a group at a pixel, from back to front, without those of a depth that does
-/// not stay.
+/// Blends the fragments of a group at a pixel, from back to front. Fragments whose depth does not
+/// stay are skipped.
 pub(super) fn replay<'d, P: Profile>(
     fragments: impl Iterator<Item = &'d DrawnFragment<P>>,
     stays: &impl Fn(Ball<P>) -> Three,
@@ -98,6 +98,7 @@ pub(super) fn replay<'d, P: Profile>(
             continue;
         }
         let [first, last] = drawn.bins;
+        // More than two possible bins are not followed; a NaN counts as more.
         if !(last - first <= 1.0) {
             return Replay { all: None, doubts };
         }
@@ -107,7 +108,7 @@ pub(super) fn replay<'d, P: Profile>(
         for layers in &all {
             let passes = |bin: f64| bin < layers.bin;
             let bins = [first, last].into_iter().filter(|bin| passes(*bin));
-            // Of one bin twice the second is the same.
+            // If both bins are the same, the second outcome equals the first.
             let outcomes = bins.map(|bin| layers.with(drawn, bin));
             let same = !certain || !passes(first) || !passes(last);
             open |= passes(first) && !certain;
@@ -128,7 +129,7 @@ pub(super) fn replay<'d, P: Profile>(
         all = next;
     }
     if all.len() > 1 {
-        // Whatever was undecided: a bin, too, is a matter of nearness that moves sums.
+        // Any undecided decision counts, because a bin too is a matter of nearness that moves sums.
         doubts |= Doubt::Epsilon as u8;
     }
     Replay { all: Some(all), doubts }

@@ -13,7 +13,7 @@ use crate::verdict::tests::{
 fn settings(kernel: Kernel, bins: u32, holes: Holes) -> Settings {
     let splats =
         SplatSettings { kernel, epsilon: Epsilon::World(0.1), ..SplatSettings::BOTH_SIDES };
-    // To the letter of the paper in both, or in none.
+    // Follow the paper to the letter in both settings, or in none.
     let bin_edges = if holes == Holes::Background { BinEdges::Common } else { BinEdges::Staggered };
     Settings { splats, bins: BinCount::Count(bins), bin_edges, holes }
 }

@@ -1,27 +1,38 @@
-//! What a right implementation may leave of each stage, held against somebody's planes.
+//! Verify your planes of transparent layers in high quality: which planes a correct implementation
+//! may leave of each stage.
 //!
-//! Each stage is judged from what the client has of the stage before, as it is stored; what the client
-//! has not is taken from the balls of the stage before: of several continuations from all of them.
+//! Each stage is judged from the client's planes of the stage before, as the client stores them. A
+//! plane that the client lacks is taken from the balls of the stage before. If there are several
+//! continuations, it is taken from all of them.
 //!
-//! **Geometry** and **nearest**: the depth-image of each group, and what is composited of them, by the
-//! rules of [`single-pass`](crate::verdict::single_pass). Beside `Z`, `id`, `normal` and `weight`
-//! a continuation of the sums gives the opacity, their sum divided by that of the weights, at most 1;
-//! the mask, 1 where a fragment is in the sums; and the colour, shaded at the client's `Z` with its
-//! normal. An average colour leaves no plane, so that the one that is shaded is that of the continuation.
+//! **Geometry** and **nearest**: the depth-image of each group, and the composite of these images,
+//! by the rules of [`single-pass`](crate::verdict::single_pass). Beside `Z`, `id`, `normal` and
+//! `weight`, a continuation of the sums gives three more values:
+//!
+//! - the opacity: the sum of opacities divided by the sum of weights, at most 1
+//! - the mask: 1 where a fragment is in the sums
+//! - the colour, shaded at the client's `Z` with its normal
+//!
+//! An average colour leaves no plane, so the colour that is shaded comes from the continuation.
 //!
 //! **Blending** and **averaging** by the rules of [`transparent`](crate::verdict::transparent). A
-//! fragment stays where the client's mask is 1 and its depth is greater than Z + epsilon, Z the client's;
-//! without a mask, where Z is finite. Where that is undecided both continuations are followed.
+//! fragment stays where the client's mask is 1 and its depth is greater than Z + epsilon, with the
+//! client's Z. Without a mask, Z must be finite instead. Where that is undecided, both
+//! continuations are followed.
 //!
-//! **Compositing** of the client's nearest layer and averages: `l`, `layers`, and the picture. It is
-//! before the environment as in `transparent`. With refraction it is [`mod@crate::shade::optics`] in balls,
-//! of the client's normal. A decision that is undecided there gives what holds both of its outcomes: on
-//! which side a surface is seen, whether light is reflected totally, which form of a cosine is taken. A
-//! direction that either side of a surface may give holds too much of a map to be judged.
-//! Without the client's normals a picture with refraction is not judged.
+//! **Compositing** of the client's nearest layer and averages: `l`, `layers`, and the picture. It
+//! is before the environment as in `transparent`. With refraction it is
+//! [`mod@crate::shade::optics`] in balls, with the client's normal. A decision that is undecided
+//! there gives a ball that holds both outcomes: which side of a surface is seen, whether light is
+//! reflected totally, which form of a cosine is taken. If the direction may come from either side
+//! of a surface, its ball holds too much of a map to be judged. Without the client's normals a
+//! picture with refraction is not judged.
 //!
-//! A pixel is undecided if the sums of its nearest layer have more than one continuation; if a group of
-//! the others has, or is not judged; or if its colour is not.
+//! A pixel is undecided in three cases:
+//!
+//! - The sums of its nearest layer have more than one continuation.
+//! - A group of the other layers has several continuations, or is not judged.
+//! - Its colour is not judged.
 
 mod picture;
 #[cfg(test)]
@@ -48,7 +59,7 @@ use crate::verdict::transparent::layers::LayersJudge;
 use crate::verdict::{Check, Verdict};
 use picture::PictureJudge;
 
-/// The stages by their names.
+/// The names of the stages.
 const STAGES: [&str; 5] = ["geometry", "nearest", "blending", "averaging", "compositing"];
 
 /// Judges the planes of a client.
@@ -76,7 +87,7 @@ pub(super) fn verify<P: Profile>(
     Ok(marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks)))
 }
 
-/// Everything that is judged at one pixel.
+/// Every check at one pixel.
 pub(super) fn checks<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
@@ -88,7 +99,8 @@ pub(super) fn checks<P: Profile>(
     marks::checks(job, STAGES, pixel, |tile, marks| judge.judge(tile, marks))
 }
 
-/// The planes of the nearest layer. Its sums leave none, and the picture is not its alone.
+/// The planes of the nearest layer. Its sums leave no planes, and it shares the picture with other
+/// layers.
 fn nearest(client: &Client) -> GroupsOf<'_> {
     let [color, alpha, mask] = rows(&FrontLayer::<f32>::STAGES);
     let client_planes = ClientPlanes {
@@ -105,7 +117,7 @@ fn nearest(client: &Client) -> GroupsOf<'_> {
     GroupsOf { client, client_planes, images: rows(&ImagePixel::<f32>::NEAREST), layer: true }
 }
 
-/// What all tiles share.
+/// The parts that all tiles share.
 struct Judge<'a, P: Profile> {
     settings: &'a Settings,
     client_planes: &'a ClientPlanes<'a>,
@@ -127,7 +139,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         })
     }
 
-    /// Marks what is wrong at the pixels of a rectangle in a tile, stage by stage.
+    /// Marks the wrong pixels of a rectangle in a tile, stage by stage.
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 5]) -> Counts {
         let mut counts = Counts::default();
         for y in rect.y0..rect.y1 {
@@ -175,7 +187,8 @@ impl<'a, P: Profile> Judge<'a, P> {
         }
     }
 
-    /// Whether a fragment of a depth belongs to the other layers, behind one at depth `z`.
+    /// Whether a fragment with a depth belongs to the other layers, behind a nearest layer at depth
+    /// `z`.
     fn behind(&self, (x, y): (u32, u32), z: Ball<P>) -> impl Fn(Ball<P>) -> Three {
         let masked = |plane: StoredPlane<'_, u8>| BEHIND.test(*plane.plane.at(x, y)).into();
         let there = self.client_planes.mask.map_or_else(|| z.is_finite(), masked);

@@ -1,4 +1,4 @@
-//! The picture of a client at a pixel: its nearest layer before the average of the others.
+//! Verify a client's picture at a pixel: its nearest layer before the average of the others.
 
 use crate::composite::over::Blend;
 use crate::method::Job;
@@ -19,7 +19,7 @@ use crate::verdict::marks::PixelMarks;
 pub(super) struct PictureJudge<'a, P: Profile> {
     color: Option<StoredPlane<'a, [f64; 3]>>,
     alpha: Option<StoredPlane<'a, f64>>,
-    /// Counts of layers: by opacity, and as they are.
+    /// Counts of layers: weighted by opacity, and plain.
     counts: [Option<StoredPlane<'a, f64>>; 2],
     through: Through<'a, Ball<P>>,
     backdrop: Backdrop<'a, P>,
@@ -43,7 +43,7 @@ impl<'a, P: Profile> PictureJudge<'a, P> {
         color.chain(scalars.map(|plane| plane.name)).collect()
     }
 
-    /// Marks what is wrong with the picture at a pixel; whether its colour is judged, or is not there.
+    /// Marks a wrong picture at a pixel. Returns whether its colour is judged, or is not there.
     pub(super) fn judge(
         &self,
         at: (u32, u32),

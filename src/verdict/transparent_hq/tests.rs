@@ -39,7 +39,7 @@ fn what_the_crate_renders_is_right() {
         let (camera, method) = (camera(shape, size, lens), Method::TransparentHq(settings));
         assert_right(&scene, &camera, method);
         assert_right_in_doubles(&scene, &camera, method);
-        // What is behind an end of the band of 11 digits is often undecided.
+        // With 11 digits, fragments just behind the end of the band are often undecided.
         assert_none_wrong_in_halves(&scene, &camera, method);
     }
 }
@@ -90,7 +90,7 @@ fn each_slip_is_found_in_its_stage() {
     assert_found(&scene, &camera, Method::TransparentHq(settings), &slips);
 }
 
-/// The stages that are wrong, in the eyes of `settings`.
+/// Asserts that these stages are wrong under `settings`.
 fn assert_wrong(
     scene: &Scene,
     camera: &Camera,
@@ -117,7 +117,7 @@ fn rendered(scene: &Scene, camera: &Camera, method: Method) -> Frame<f32> {
 #[test]
 fn layers_that_begin_elsewhere_are_found() {
     let (scene, camera, settings) = layered();
-    // All fragments are blended, those of the nearest layer too.
+    // All fragments are blended, including the nearest layer's.
     let right = rendered(&scene, &camera, Method::TransparentHq(settings));
     let all = rendered(&scene, &camera, Method::Transparent(settings.layers));
     let mut frame = right.clone();
@@ -125,7 +125,7 @@ fn layers_that_begin_elsewhere_are_found() {
     frame.planes.retain(|plane| !blended(&plane.name));
     frame.planes.extend(all.planes.into_iter().filter(|plane| blended(&plane.name)));
     assert_wrong(&scene, &camera, settings, &frame, "blending");
-    // They begin behind a band of another depth.
+    // The blended layers begin behind a band of another depth.
     let mut other = settings;
     other.layers.splats.epsilon = Epsilon::World(0.2);
     let behind = rendered(&scene, &camera, Method::TransparentHq(other));
@@ -180,7 +180,7 @@ const GLASS: [f32; 3] = [0.6875, 0.671_875, 0.656_25];
 #[test]
 fn what_is_seen_through_layers_that_bend_light_is_right() {
     let plain = settings(Kernel::DEFAULT, 0.1, VORONOI);
-    // Out of glass, light is reflected totally.
+    // Light that leaves glass is reflected totally.
     let out = GLASS.map(|ratio| 1.0 / ratio);
     for (shape, environment, settings) in [
         (Shape::Sphere, Environment::Sky, plain),

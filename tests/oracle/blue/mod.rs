@@ -1,4 +1,4 @@
-//! Discs in squares of \[BJFM19, 4.2\].
+//! Oracle for discs in screen squares \[BJFM19, 4.2\].
 
 mod cases;
 mod exact;

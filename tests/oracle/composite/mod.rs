@@ -1,4 +1,4 @@
-//! Laws of the operators.
+//! The laws of the compositing operators.
 
 mod bins;
 pub(crate) mod groups;

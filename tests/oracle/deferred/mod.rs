@@ -1,4 +1,4 @@
-//! Deferred splatting.
+//! Oracle for deferred splatting.
 
 mod cases;
 mod ids;

@@ -1,5 +1,9 @@
-//! Levels of detail of \[BJFM19\], from their pages alone, to the last bit: how densely an order covers,
-//! what a view draws of prefixes and finer objects, and the folder of a hierarchy, byte by byte.
+//! Oracle for the levels of detail of \[BJFM19\], written from their pages alone and exact to the
+//! last bit:
+//!
+//! - how densely an order covers a surface
+//! - which prefixes and finer objects a view draws
+//! - the folder of a hierarchy, byte by byte
 
 mod estimates;
 mod folder;

@@ -1,4 +1,4 @@
-//! The 2+1-pass method.
+//! Oracle for the 2+1-pass method.
 
 pub(crate) mod cases;
 mod known;

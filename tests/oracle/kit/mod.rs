@@ -1,4 +1,4 @@
-//! What every oracle shares.
+//! Helpers that all oracles share.
 
 pub(crate) mod case;
 pub(crate) mod check;

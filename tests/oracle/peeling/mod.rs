@@ -1,4 +1,4 @@
-//! Depth peeling.
+//! Oracle for depth peeling.
 
 mod model;
 mod stages;

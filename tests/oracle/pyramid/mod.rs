@@ -1,4 +1,4 @@
-//! The pull-push pyramid of \[MKC08\].
+//! Oracle for the pull-push pyramid of \[MKC08\].
 
 mod cases;
 mod known;

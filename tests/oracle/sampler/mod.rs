@@ -1,4 +1,5 @@
-//! Candidates and samplers of \[BJFM19\], from their pages alone, to the last bit.
+//! Oracle for the candidates and samplers of \[BJFM19\], written from their pages alone and exact
+//! to the last bit.
 
 mod candidates;
 pub(crate) mod cases;

@@ -1,4 +1,4 @@
-//! Algorithm 1 of \[ZP06\].
+//! Oracle for Algorithm 1 of \[ZP06\].
 
 pub(crate) mod identity;
 mod laws;

@@ -1,4 +1,4 @@
-//! Reconstruction with templates of \[MOC08\].
+//! Oracle for the reconstruction with templates of \[MOC08\].
 
 pub(crate) mod cases;
 mod cover;

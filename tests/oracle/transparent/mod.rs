@@ -1,4 +1,4 @@
-//! Algorithms 2 and 3 of \[ZP06\].
+//! Oracle for Algorithms 2 and 3 of \[ZP06\].
 
 pub(crate) mod cases;
 mod glass;

@@ -1,16 +1,17 @@
-//! A client: a second implementation of the method `ewa`, built as a renderer on a GPU is.
+//! A client: a second implementation of the method `ewa`, built as a renderer on a GPU is built.
 //!
-//! It was written from the pages of the crate, without its code, and shares with it the types of
-//! what is given and what is handed in, and no formula. All arithmetic is f32. The passes:
+//! It was written from the pages of the crate, without the crate's code. It shares the types of its
+//! input and output with the crate, but no formula. All arithmetic is f32. The passes:
 //!
-//! 1. [`project`]: surfels to records of splats, once a picture.
+//! 1. [`project`]: surfels to records of splats, once for each picture.
 //! 2. [`passes`]: quads on the screen, first into a depth buffer, then added up.
-//! 3. [`targets`]: the textures; normalization and the planes.
+//! 3. [`targets`]: the textures, normalization, and the planes.
 //! 4. [`shade`]: deferred shading.
 //!
-//! [`habit`] lists what a right client may do otherwise, [`bug`] what a client does wrong. Formulas
-//! are written once, over a [`number`] that rounds by the habit. Elliptical surfels, environments
-//! and the plane `margin` are not supported; opacities play no part in the method.
+//! [`habit`] lists what a correct client may do differently, and [`bug`] lists the mistakes that a
+//! client can make. Formulas are written once, over a [`number`] that rounds by the habit. The
+//! client does not support elliptical surfels, environments or the plane `margin`. Opacities play
+//! no part in the method.
 
 pub(crate) mod bug;
 pub(crate) mod habit;

@@ -1,13 +1,15 @@
 //! A client of the method `single-pass`: a second implementation of Algorithm 1 of \[ZP06\].
 //!
-//! As [`crate::verify::client`] it was written from the pages of the crate, without its code, and shares no
-//! formula with it. Splats, their fragments, numbers, habits and light are those of that client.
+//! As [`crate::verify::client`], it was written from the pages of the crate, without the crate's
+//! code, and shares no formula with it. It takes splats, their fragments, numbers, habits and light
+//! from that client.
 //!
 //! - [`bins`]: bins of depth, and the Voronoi-enhanced depth.
 //! - [`images`]: the geometry pass, into a depth-image for each group.
 //! - [`compositing`]: the sums over the images, and averages.
-//! - [`planes`]: what is handed in.
-//! - [`manner`]: what a right client may do otherwise beside habits. [`bug`]: what a client does wrong.
+//! - [`planes`]: the planes that the client hands in.
+//! - [`manner`]: what a correct client may do differently, beside habits. [`bug`]: the mistakes
+//!   that a client can make.
 //! - [`cases`]: the scenes. [`verdicts`]: what the verifier says.
 
 mod bins;

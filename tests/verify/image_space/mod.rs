@@ -1,14 +1,15 @@
 //! A client of the methods `template` and `pyramid`: a second implementation of both.
 //!
-//! As [`crate::verify::client`] it was written from the pages of the crate, without its code, and shares no
-//! formula with it. Numbers, habits, view and light are those of that client. Surfels only.
+//! As [`crate::verify::client`], it was written from the pages of the crate, without the crate's
+//! code, and shares no formula with it. It takes numbers, habits, view and light from that client.
+//! It draws surfels only.
 //!
 //! - [`projection`]: surfels to single pixels.
 //! - [`ellipse`] and [`mean`]: discs by orthogonal projection; averages of up to four cells.
 //! - [`template`]: propagation, reconstruction, normalization.
 //! - [`pyramid`]: pull and push.
-//! - [`levels`]: the levels of a pyramid. [`planes`]: what is handed in.
-//! - [`bug`]: what a client does wrong.
+//! - [`levels`]: the levels of a pyramid. [`planes`]: the planes that the client hands in.
+//! - [`bug`]: the mistakes that a client can make.
 //! - [`cases`]: the scenes. [`verdicts`]: what the verifier says.
 
 mod bug;

@@ -1,9 +1,11 @@
-//! The golden `bjfm19_nodes`: a hierarchy whose choices lie beside their limits, and clients that choose.
+//! The golden `bjfm19_nodes`: a hierarchy whose choices lie close to their limits, and clients that
+//! make these choices.
 //!
-//! - [`folder`]: what the folder is, byte by byte.
+//! - [`folder`]: the content of the folder, byte by byte.
 //! - [`choice`]: a client's choice of nodes, of prefixes, and of sizes, and its bugs.
 //!
-//! Every surfel has pixels of its own, and so has the triangle: one that is drawn or is not shows in the picture.
+//! Every surfel has pixels of its own, and so has the triangle. So the picture shows for each
+//! whether it is drawn.
 
 mod choice;
 mod folder;

@@ -1,4 +1,4 @@
-//! The colours of FLIP: opponent colours that are filtered, and Lab that differences are taken in.
+//! The colour spaces of FLIP: opponent colours for filtering, and Lab for taking differences.
 
 use crate::number::{Real, elementary};
 
@@ -9,19 +9,21 @@ const XYZ: [[f64; 3]; 3] = [
     [1_425_312.0 / 73_733_382.0, 8_788_810.0 / 73_733_382.0, 70_074_185.0 / 73_733_382.0],
 ];
 
-/// The rows of its inverse, as the reference implementation has them, nine digits after the point.
+/// The rows of the inverse matrix, as the reference implementation has them, nine digits after the
+/// point.
 const RGB: [[f64; 3]; 3] = [
     [3.241_003_275, -1.537_398_934, -0.498_615_861],
     [-0.969_224_334, 1.875_930_071, 0.041_554_224],
     [0.055_639_423, -0.204_011_202, 1.057_148_933],
 ];
 
-/// XYZ of the linear colour (1, 1, 1), and what divides by it, as the reference implementation has
+/// XYZ of the linear colour (1, 1, 1), and the reciprocals, as the reference implementation has
 /// them.
 const WHITE: [f64; 3] = [0.950_428_545, 1.0, 1.088_900_371];
 const OVER_WHITE: [f64; 3] = [1.052_156_925, 1.0, 0.918_357_670];
 
-/// Written out, here and below: closures over arrays stay calls, which take longer than the work.
+/// Written out, here and below, because closures over arrays stay calls, which take longer than the
+/// work.
 #[inline(always)]
 fn times(matrix: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
     let [p, q, r] = matrix;
@@ -32,14 +34,14 @@ fn times(matrix: &[[f64; 3]; 3], v: [f64; 3]) -> [f64; 3] {
     ]
 }
 
-/// XYZ in parts of white.
+/// XYZ divided by white.
 #[inline(always)]
 fn relative(rgb: [f64; 3]) -> [f64; 3] {
     let [x, y, z] = times(&XYZ, rgb);
     [x * OVER_WHITE[0], y * OVER_WHITE[1], z * OVER_WHITE[2]]
 }
 
-/// Each in [0, 1]; NaN stays NaN.
+/// Clamps each component to [0, 1]; NaN stays NaN.
 #[inline(always)]
 pub(super) fn clamped([r, g, b]: [f64; 3]) -> [f64; 3] {
     [r.clamped(0.0, 1.0), g.clamped(0.0, 1.0), b.clamped(0.0, 1.0)]
@@ -52,7 +54,7 @@ pub(super) fn opponent(rgb: [f64; 3]) -> [f64; 3] {
     [116.0 * y - 16.0, 500.0 * (x - y), 200.0 * (y - z)]
 }
 
-/// The linear RGB of opponent colours, each in [0, 1].
+/// The linear RGB of opponent colours, each component clamped to [0, 1].
 #[inline(always)]
 pub(super) fn clamped_rgb([y, cx, cz]: [f64; 3]) -> [f64; 3] {
     let y = (y + 16.0) / 116.0;
@@ -60,7 +62,7 @@ pub(super) fn clamped_rgb([y, cx, cz]: [f64; 3]) -> [f64; 3] {
     clamped(times(&RGB, [x * WHITE[0], y * WHITE[1], z * WHITE[2]]))
 }
 
-/// CIE L a b, with a and b multiplied by L / 100: colours look paler where it is dark (Hunt).
+/// CIE L a b, with a and b multiplied by L / 100, because colours look paler in the dark (Hunt).
 pub(super) fn hunt_lab(rgb: [f64; 3]) -> [f64; 3] {
     let [x, y, z] = relative(rgb);
     let (x, y, z) = (response(x), response(y), response(z));
@@ -69,7 +71,7 @@ pub(super) fn hunt_lab(rgb: [f64; 3]) -> [f64; 3] {
     [lightness, hunt(500.0 * (x - y)), hunt(200.0 * (y - z))]
 }
 
-/// The cube root, and its tangent where it is dark.
+/// The cube root, replaced by a tangent for dark values.
 fn response(t: f64) -> f64 {
     const DELTA: f64 = 6.0 / 29.0;
     if t > DELTA * DELTA * DELTA {
@@ -79,7 +81,7 @@ fn response(t: f64) -> f64 {
     }
 }
 
-/// The distance `HyAB` of two colours of [`hunt_lab`]: of lightness, and of a and b together.
+/// The distance `HyAB` of two colours of [`hunt_lab`]: lightness alone, plus a and b together.
 #[inline(always)]
 pub(super) fn hyab(p: [f64; 3], q: [f64; 3]) -> f64 {
     let (l, a, b) = (p[0] - q[0], p[1] - q[1], p[2] - q[2]);
@@ -106,7 +108,7 @@ mod tests {
         near(clamped_rgb(opponent([1.5, -0.5, 0.5])), [1.0, 0.0, 0.5], 1e-7);
     }
 
-    /// Lab of the primaries of sRGB as colour tables have it: L, a, b to two digits.
+    /// Lab of the primaries of sRGB as in colour tables: L, a, b to two digits.
     #[test]
     fn the_primaries_have_the_lab_of_tables() {
         let tables = [

@@ -1,31 +1,33 @@
-//! The filters of FLIP: what an eye resolves at a distance, and what it takes for edges and points.
+//! The filters of FLIP: the detail that an eye resolves at a distance, and the edges and points
+//! that it sees.
 //!
-//! A filter is a list of an odd number of weights, its middle at the pixel. Each is used along x and
-//! along y.
+//! A filter is a list of an odd number of weights, its middle at the pixel. Each filter is used
+//! along x and along y.
 
 use crate::number::elementary;
 use std::f64::consts::PI;
 
-/// The filter of Y, of Cx, and the two whose sum is that of Cz; all of one length.
+/// The filters of Y and of Cx, and the two filters whose sum filters Cz; all of one length.
 pub(super) struct Eye(pub(super) [Vec<f64>; 4]);
 
-/// A Gaussian, its first and its second derivative; all of one length.
+/// A Gaussian, and its first and second derivatives; all of one length.
 pub(super) struct Feature(pub(super) [Vec<f64>; 3]);
 
-/// a and b of `a sqrt(pi/b) exp(-pi^2 x^2 / b)`, x in degrees, of each filter of [`Eye`]: the
-/// contrast sensitivity functions of FLIP, Table 1.
+/// The a and b in `a sqrt(pi/b) exp(-pi^2 x^2 / b)`, x in degrees, of each filter of [`Eye`]. They
+/// are the contrast sensitivity functions of FLIP, Table 1.
 const SENSITIVITY: [[f64; 2]; 4] = [[1.0, 0.0047], [1.0, 0.0053], [34.1, 0.04], [13.5, 0.025]];
 
 /// Twice the standard deviation of [`Feature`] in degrees: the width of a feature.
 const WIDTH: f64 = 0.082;
 
 impl Eye {
-    /// The filters of so many pixels a degree. They end three standard deviations of the widest
-    /// away.
+    /// The filters at this number of pixels a degree. They end three standard deviations of the
+    /// widest away.
     ///
-    /// The first two are Gaussians of sum 1. The third and fourth are Gaussians of which each is
-    /// applied along x and along y, the results added: a product carries a sqrt(pi/b), so each of
-    /// the two factors carries its root. Their common scale makes the sum of both products 1.
+    /// The first two are Gaussians of sum 1. The third and fourth are Gaussians too: each is
+    /// applied along x and along y, and the results are added. A product of two passes carries a
+    /// sqrt(pi/b), so each pass carries its root. The common scale makes the sum of both products
+    /// 1.
     pub(super) fn new(pixels_per_degree: f64) -> Self {
         let deviation = (SENSITIVITY[2][1] / (2.0 * PI * PI)).sqrt();
         let radius = (3.0 * deviation * pixels_per_degree).ceil() as i32;
@@ -46,10 +48,10 @@ impl Eye {
 }
 
 impl Feature {
-    /// The filters of so many pixels a degree. They end three standard deviations away.
+    /// The filters at this number of pixels a degree. They end three standard deviations away.
     ///
-    /// g = exp(-x^2/(2 s^2)), of sum 1; -x g and (x^2/s^2 - 1) g, of whose weights the positive ones
-    /// are divided by their sum, and so are the others.
+    /// g = exp(-x^2/(2 s^2)) has the sum 1. In -x g and (x^2/s^2 - 1) g the positive weights are
+    /// divided by their sum, and the negative weights by theirs.
     pub(super) fn new(pixels_per_degree: f64) -> Self {
         let deviation = 0.5 * WIDTH * pixels_per_degree;
         let radius = (3.0 * deviation).ceil() as i32;
@@ -68,7 +70,7 @@ fn taps(radius: i32, weight: impl Fn(f64) -> f64) -> Vec<f64> {
     (-radius..=radius).map(|x| weight(f64::from(x))).collect()
 }
 
-/// Weights of which the positive ones have the sum 1 and the negative ones -1.
+/// Scales weights so that the positive ones have the sum 1 and the negative ones -1.
 fn balanced(mut weights: Vec<f64>) -> Vec<f64> {
     let sum = |sign: f64| weights.iter().map(|w| w * sign).filter(|w| *w > 0.0).sum::<f64>();
     let (above, below) = (sum(1.0), sum(-1.0));
@@ -82,8 +84,8 @@ fn balanced(mut weights: Vec<f64>) -> Vec<f64> {
     weights
 }
 
-/// A row under a filter. The row has been lengthened at either end by half of the filter or more,
-/// and the sums are those of the `width` values in its middle.
+/// Filters a row. The caller has lengthened the row at either end by half of the filter or more.
+/// The result has the `width` values in its middle.
 pub(super) fn along_row(row: &[f64], weights: &[f64], width: usize) -> Vec<f64> {
     let first = (row.len() - width) / 2 - weights.len() / 2;
     let mut sums = vec![0.0; width];
@@ -93,7 +95,7 @@ pub(super) fn along_row(row: &[f64], weights: &[f64], width: usize) -> Vec<f64> 
     sums
 }
 
-/// The middle row of several under a filter.
+/// Filters several rows into their middle row.
 pub(super) fn along_column<'a>(
     rows: impl Iterator<Item = &'a [f64]>,
     weights: &[f64],
@@ -122,7 +124,7 @@ mod tests {
             assert!((sum(&y) - 1.0).abs() < 1e-14 && (sum(&cx) - 1.0).abs() < 1e-14);
             let (first, second) = (sum(&first), sum(&second));
             assert!((first * first + second * second - 1.0).abs() < 1e-14);
-            // The parts of a sum of two Gaussians are as their integrals, a sqrt(b).
+            // The two parts of a sum of Gaussians relate as their integrals, a sqrt(b).
             if pixels_per_degree > 50.0 {
                 let ratio = first * first / (second * second);
                 assert!((ratio - 34.1 * 0.04_f64.sqrt() / (13.5 * 0.025_f64.sqrt())).abs() < 0.02);

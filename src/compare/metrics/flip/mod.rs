@@ -1,33 +1,34 @@
-//! FLIP: how large a difference an observer sees who flips from one picture to the other
-//! \[ANA+20\].
+//! FLIP: measure the difference that an observer sees who flips between two pictures \[ANA+20\].
 //!
-//! Both pictures are linear RGB, clamped to [0, 1] as a display clips them: -inf is 0, +inf is 1. The
-//! published input is sRGB, which the first step makes linear. Of so many pixels p to a degree of
-//! the visual angle, and pixel by pixel:
+//! Both pictures are linear RGB, clamped to [0, 1] as a display clips them: -inf is 0, +inf is 1.
+//! The published input is sRGB, which the first step makes linear. There are p pixels to a degree
+//! of the visual angle. The steps, pixel by pixel:
 //!
 //! 1. *Opponent colours.* XYZ of linear sRGB in parts of white, then Y = 116 Y - 16,
 //!    Cx = 500 (X - Y), Cz = 200 (Y - Z).
-//! 2. *What the eye resolves.* Each is filtered by the contrast sensitivity function of its kind, a
-//!    Gaussian a sqrt(pi/b) exp(-pi^2 x^2/b) of x degrees, and two for Cz. The filters end at
-//!    3 sqrt(0.04/(2 pi^2)) p pixels, rounded up. The result is made RGB again and clamped to [0, 1].
-//! 3. *Colour.* In CIE Lab, a and b multiplied by L/100 (Hunt), the distance `HyAB` of the two
-//!    pictures is |dL| + sqrt(da^2 + db^2). To the power 0.7 it is d; that of green and blue, the
-//!    farthest apart, is m. The colour difference is 0.95 d/(0.4 m) where d < 0.4 m, else
-//!    0.95 + 0.05 (d - 0.4 m)/(m - 0.4 m).
-//! 4. *Features.* (Y + 16)/116 of step 1 under the first (edges) and second (points) derivatives of a
-//!    Gaussian of 0.041 p pixels, ended at three times that: the length of the gradient, and of the
-//!    vector of second derivatives. Of the differences of both lengths the greater, divided by
-//!    sqrt 2, to the power 0.5, is f.
+//! 2. *What the eye resolves.* The contrast sensitivity function of each channel filters it: a
+//!    Gaussian a sqrt(pi/b) exp(-pi^2 x^2/b) of x degrees, and two for Cz. The filters end at 3
+//!    sqrt(0.04/(2 pi^2)) p pixels, rounded up. The result is made RGB again and clamped to [0, 1].
+//! 3. *Colour.* In CIE Lab, with a and b multiplied by L/100 (Hunt), the distance `HyAB` of the two
+//!    pictures is |dL| + sqrt(da^2 + db^2). d is this distance to the power 0.7. m is the same
+//!    number for green and blue, the two colours farthest apart. The colour difference is 0.95
+//!    d/(0.4 m) where d < 0.4 m, else 0.95 + 0.05 (d - 0.4 m)/(m - 0.4 m).
+//! 4. *Features.* (Y + 16)/116 of step 1 is filtered by the first (edges) and second (points)
+//!    derivatives of a Gaussian of 0.041 p pixels, ended at three times that. This gives the length
+//!    of the gradient, and of the vector of second derivatives. Take the difference of either
+//!    length between the pictures. f is the greater difference, divided by sqrt 2, to the power
+//!    0.5.
 //! 5. FLIP is the colour difference to the power 1 - f: 0 where nothing is seen, at most 1.
 //!
-//! Beyond the border the pixel of the border is repeated. The colour difference is not clamped again;
-//! rounding may make 1 a little more.
+//! Beyond the border, the pixel at the border is repeated. The colour difference is not clamped
+//! again, so rounding may make it a little more than 1.
 //!
-//! `Decided:` the form is that of the authors' reference implementation, version 1.7, evaluated in
-//! f64 where theirs is f32: its digits of the matrices, filters that are separable and of sum 1, and
+//! `Decided:` the form is the authors' reference implementation, version 1.7, evaluated in f64
+//! where theirs is f32. It takes over the digits of the matrices, separable filters with sum 1, and
 //! separate sums of positive and negative weights for derivatives. It takes floats, so that nothing
-//! is quantized. Their `ppd` is 67 by default, 0.7 m from a display 0.7 m wide of 3840 pixels. The
-//! same picture twice gives exactly 0, and either may be called the reference.
+//! is quantized. `ppd` is 67 by default as in the reference, 0.7 m from a display 0.7 m wide of
+//! 3840 pixels. The same picture twice gives exactly 0, and either picture may be called the
+//! reference.
 //!
 //! [ANA+20]: https://doi.org/10.1145/3406183
 
@@ -43,23 +44,23 @@ use crate::number::elementary;
 use filter::{Eye, Feature, along_column, along_row};
 use std::ops::Range;
 
-/// Pixels to a degree of the visual angle, where nothing else is said.
+/// The default number of pixels to a degree of the visual angle.
 pub const PIXELS_PER_DEGREE: f64 = 67.0;
 
-/// Rows that are filtered together; those above and below are filtered along x again.
+/// Rows that are filtered together. Neighbouring bands filter their shared rows along x again.
 const BAND: usize = 64;
 
-/// How visible the difference of two pictures is, see the [page](self).
+/// The visible difference of two pictures, see the [page](self).
 #[derive(Clone, Debug, PartialEq)]
 pub struct Flip {
-    /// The mean over the pixels, in [0, 1], of the numbers before they are rounded; NaN if a colour
-    /// is, or if there is no pixel.
+    /// The mean over the pixels, in [0, 1], of the numbers before they are rounded. NaN if a colour
+    /// is NaN, or if there is no pixel.
     pub mean: f64,
-    /// Of each pixel, in [0, 1]; NaN within a filter of a colour that is.
+    /// FLIP of each pixel, in [0, 1]. NaN if a colour within reach of a filter is NaN.
     pub map: Plane<f32>,
 }
 
-/// FLIP of two pictures, linear RGB.
+/// Computes FLIP of two pictures in linear RGB.
 ///
 /// # Errors
 /// [`Error::Invalid`] if the pictures differ in size, if `pixels_per_degree` is not in [1, 1000], or
@@ -91,17 +92,17 @@ pub fn flip(
     Ok(Flip { mean: sum / (width * height) as f64, map })
 }
 
-/// What does not depend on the pictures.
+/// The parts that do not depend on the pictures.
 struct Observer {
     eye: Eye,
     feature: Feature,
-    /// How many pixels a filter reaches to either side.
+    /// Pixels that a filter reaches to either side.
     reach: usize,
     /// The colour difference of green and blue, to the power of [`Self::COLOR`].
     greatest: f64,
 }
 
-/// The opponent colours of rows of a picture, filtered along x.
+/// The opponent colours of some rows of a picture, filtered along x.
 struct Rows {
     /// The number of the first row.
     first: usize,
@@ -117,7 +118,7 @@ impl Observer {
     /// The exponents of colour and feature differences.
     const COLOR: f64 = 0.7;
     const FEATURE: f64 = 0.5;
-    /// The part of the greatest colour difference that is mapped to ...
+    /// This part of the greatest colour difference is mapped to ...
     const KNEE: f64 = 0.4;
     /// ... this colour difference.
     const AT_KNEE: f64 = 0.95;
@@ -130,7 +131,7 @@ impl Observer {
         Self { eye, feature, reach, greatest }
     }
 
-    /// Writes FLIP of some rows, and returns the sum of each.
+    /// Writes FLIP of some rows, and returns the sum of each row.
     fn band(
         &self,
         pictures: [&Plane<[f32; 3]>; 2],
@@ -157,7 +158,7 @@ impl Observer {
         sums.collect()
     }
 
-    /// A row's opponent colours, filtered along x.
+    /// Filters the opponent colours of a row along x.
     fn row(&self, picture: &Plane<[f32; 3]>, y: usize) -> FilteredRow {
         let width = picture.width() as usize;
         let colors = &picture.values()[y * width..(y + 1) * width];
@@ -182,13 +183,13 @@ impl Observer {
         }
     }
 
-    /// What is compared of a row.
+    /// Filters along y, and returns the quantities of one row to compare.
     fn seen(&self, rows: &Rows, y: usize, width: usize) -> Seen {
         let last = rows.rows.len() - 1;
         let under = |weights: &[f64], of: &dyn Fn(&FilteredRow) -> &Vec<f64>| {
             let radius = weights.len() / 2;
             let near = (0..weights.len()).map(|k| {
-                // The rows end where the picture does, or beyond the filter.
+                // The rows end at the border of the picture, or beyond the filter's reach.
                 let at = (y + k).saturating_sub(rows.first + radius).min(last);
                 of(&rows.rows[at]).as_slice()
             });
@@ -211,7 +212,7 @@ impl Observer {
         }
     }
 
-    /// FLIP of a pixel.
+    /// FLIP of one pixel.
     fn difference(&self, [p, q]: [[f64; 3]; 2], features: [[f64; 2]; 2]) -> f64 {
         let (greatest, knee) = (self.greatest, Self::KNEE * self.greatest);
         let distance = elementary::pow(color::hyab(p, q), Self::COLOR);
@@ -228,7 +229,7 @@ impl Observer {
     }
 }
 
-/// What is compared of a row of a picture.
+/// The quantities of one row of a picture that are compared.
 struct Seen {
     /// The colours that the eye resolves.
     lab: Vec<[f64; 3]>,

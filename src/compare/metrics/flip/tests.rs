@@ -31,8 +31,8 @@ fn run(a: &Picture, b: &Picture) -> Flip {
     flip(a, b, PIXELS_PER_DEGREE, &Exec::sequential()).unwrap()
 }
 
-/// Printed by `tests/data/flip.py`: flip-evaluator 1.7, which is f32; the mean, and FLIP of the first
-/// pixel, of one in the middle and of the last.
+/// Printed by `tests/data/flip.py`: flip-evaluator 1.7, which is f32. Each row has the mean, then
+/// FLIP of the first pixel, one in the middle, and the last.
 #[test]
 fn the_published_implementation_agrees() {
     let references = [
@@ -72,7 +72,7 @@ fn the_published_implementation_agrees() {
     }
 }
 
-/// A picture of values that a display clips is as the clipped one.
+/// Values that a display clips give the same FLIP as the clipped values.
 #[test]
 fn a_picture_is_clipped_as_a_display_clips_it() {
     let wide: Picture = Plane::from_pixels([90, 70], |x, y| {
@@ -88,7 +88,7 @@ fn a_picture_is_clipped_as_a_display_clips_it() {
     assert_eq!(run(&infinite, &clipped).mean, 0.0);
 }
 
-/// Rows of any band see the rows of the others; mirrored pictures have the mirrored map.
+/// The rows of a band see the rows of other bands. Mirrored pictures have the mirrored map.
 #[test]
 fn bands_do_not_show_and_neither_side_is_preferred() {
     let [a, b] = pair("shifted", 40, 150);
@@ -100,7 +100,7 @@ fn bands_do_not_show_and_neither_side_is_preferred() {
             assert!(off.abs() < 1e-6, "({x}, {y})");
         }
     }
-    // A pair whose rows all are alike has a map of such rows.
+    // If all rows of both pictures are alike, so are the rows of the map.
     let flat = |p: &Picture| Plane::from_pixels([40, 150], |x, _| *p.at(x, 0));
     let found = run(&flat(&a), &flat(&b)).map;
     assert!((1..150).all(|y| (0..40).all(|x| found.at(x, y) == found.at(x, 0))));

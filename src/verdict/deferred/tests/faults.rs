@@ -17,7 +17,7 @@ fn faults_of_the_selection_are_found() {
         let frame = shown.from(method, planes, "indices");
         assert_first_wrong(shown, method, &frame, "indices", what);
     };
-    // As a check of the check: the rule itself.
+    // A check of the check: with the rule itself, nothing is wrong.
     let own = other_indices(shown, settings, |z| decide::limit(z, epsilon), |t, than| t < than);
     assert_eq!(with(&shown.frame, &own).planes, shown.frame.planes);
     let without = other_indices(shown, settings, |z| z, |t, than| t < than);
@@ -44,7 +44,7 @@ fn faults_of_the_visibility_are_found() {
     let (settings, method) = (&sequence.settings, sequence.method());
     let frames = sequence.frames::<f32>(&exec);
     let (last, shown) = (&frames[1], &frames[2]);
-    // The places of the last frame.
+    // Positions of the previous frame.
     let stale = Shown {
         scene: last.scene.clone(),
         before: shown.before.clone(),
@@ -55,7 +55,7 @@ fn faults_of_the_visibility_are_found() {
         stale.session(method, &exec).stage(&shown.camera, "visibility", &shown.frame).unwrap();
     let frame = shown.from(method, &left.planes, "visibility");
     assert_first_wrong(shown, method, &frame, "visibility", "last frame's places");
-    // Flags off by one group.
+    // Flags that are off by one group.
     let ids = shown.scene.objects.as_ref().unwrap().ids();
     let seen = shown.before.as_ref().unwrap();
     let moved: Vec<u64> = seen
@@ -69,11 +69,11 @@ fn faults_of_the_visibility_are_found() {
     session.resume(Some(Seen::from_selected(ids, settings.flags, &moved)));
     let frame = session.define::<f32>(&shown.camera, true).unwrap().frame;
     assert_first_wrong(shown, method, &frame, "visibility", "flags of the next group");
-    // No flags at all, which no plane but those of pass 1 need show.
+    // No flags at all. Only the planes of pass 1 need to show this.
     session.resume(None);
     let frame = session.define::<f32>(&shown.camera, true).unwrap().frame;
     assert_first_wrong(shown, method, &frame, "visibility", "no flags");
-    // Pass 3 left out.
+    // Without pass 3.
     let before = kept(&shown.frame, "visibility");
     let skipped = shown.from(method, &planes("difference", &shown.frame, &before), "difference");
     assert_first_wrong(shown, method, &skipped, "difference", "without pass 3");
@@ -98,7 +98,7 @@ fn faults_of_the_sums_are_found() {
     };
     assert_wrong(&kept(&last.frame, "indices"), "B(i-1)");
     let right = kept(&shown.frame, "indices");
-    // One that is the nearest of some pixel.
+    // A surfel that is the nearest in some pixel.
     let front = id(&shown.frame, "difference.id").values();
     let some: Vec<usize> =
         (0..right.len()).filter(|&i| right[i].0 != NO_ID && front.contains(&right[i].0)).collect();
@@ -116,7 +116,7 @@ fn faults_are_named_by_ids() {
     let shown = &sequence.frames::<f32>(&exec)[2];
     let mut right = kept(&shown.frame, "indices");
     let ids = shown.scene.objects.as_ref().unwrap().ids();
-    // One whose id is not its number, and that is not near to others.
+    // A surfel whose id is not its number, and with no other surfel near.
     let at =
         right.iter().rposition(|(id, _)| ids.rank((*id).into()).is_some_and(|i| i as u32 != *id));
     let dropped = std::mem::replace(&mut right[at.unwrap()], (NO_ID, f32::INFINITY)).0;
@@ -129,7 +129,7 @@ fn faults_are_named_by_ids() {
     assert!(worst.causes.left_out.contains_key(&dropped));
 }
 
-/// Discs in a plane across the view, at depths that only rounding tells apart.
+/// Discs in a plane across the view, at depths that differ only by rounding.
 fn across() -> (Scene, Camera) {
     let eye = DVec3::new(1.0, 2.0, 3.0);
     let camera = Camera::new(
@@ -159,7 +159,7 @@ fn of_near_ties_either_may_be_selected() {
     let frame =
         Session::new(&scene, method, &exec).unwrap().define::<f32>(&camera, true).unwrap().frame;
     let shown = Shown { scene, camera, before: None, frame };
-    // Of each pixel the last.
+    // The last fragment of each pixel.
     let last = other_indices(&shown, &settings, |_| f32::INFINITY, |t, than| t >= than);
     let differ = kept(&shown.frame, "indices");
     let other = with(&shown.frame, &last);
@@ -172,7 +172,7 @@ fn of_near_ties_either_may_be_selected() {
         assert_eq!(wrong(&found), None);
         assert_eq!(found.outcome(), Outcome::Right);
     }
-    // A little behind the plane it is not.
+    // A disc a little behind the plane is no tie.
     let mut cloud = shown.scene.surfels.clone().into_cloud();
     let towards = cloud.normal.as_ref().unwrap()[0];
     cloud.position.iter_mut().step_by(2).for_each(|p| *p -= 1e-4 * towards);

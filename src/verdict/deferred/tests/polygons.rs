@@ -44,8 +44,8 @@ fn place(axis: DVec3, turn: f64, at: [f64; 3]) -> Similarity {
     Similarity { rotation: rotation(axis, turn), scale: 1.0, translation }
 }
 
-/// A wall through the surfels, a floor that the near plane cuts, a small one that is seen from both sides,
-/// and one without pass 3.
+/// Four sequences: a wall through the surfels, a floor that the near plane cuts, a small square
+/// seen from both sides, and one without pass 3.
 pub(super) fn sequences() -> Vec<Sequence> {
     let grey = Some(Vec3::new(0.125, 0.25, 0.0625));
     let flags = |flags| Settings { flags, ..Settings::default() };
@@ -66,7 +66,7 @@ pub(super) fn sequences() -> Vec<Sequence> {
     ]
 }
 
-/// The planes of a stage as a client leaves them that draws another scene or by other rules.
+/// The planes of a stage from a client that draws another scene or follows other rules.
 fn of_stage(shown: &Shown, method: Method, scene: &Scene, stage: &str) -> Vec<NamedPlane<f32>> {
     let exec = Exec::new(1, 16).unwrap();
     let mut session = Session::new(scene, method, &exec).unwrap();
@@ -74,7 +74,7 @@ fn of_stage(shown: &Shown, method: Method, scene: &Scene, stage: &str) -> Vec<Na
     session.stage(&shown.camera, stage, &shown.frame).unwrap().planes
 }
 
-/// The scene with other polygons in the place of its last object.
+/// The scene with other polygons in place of its last object.
 fn other_square(shown: &Shown, change: impl Fn(&mut Vertices)) -> Scene {
     let objects = shown.scene.objects.as_ref().unwrap();
     let mut geometries = objects.geometries().to_vec();
@@ -108,7 +108,7 @@ fn faults_of_polygons_are_found() {
         let shifted = other_square(shown, |vertices| {
             vertices.position.iter_mut().for_each(|p| p.x += 0.08);
         });
-        // A wall beyond the picture is the same wall wherever it lies in its plane.
+        // A wall larger than the picture looks the same wherever it lies in its plane.
         if !std::ptr::eq(sequence, &raw const all[0]) {
             found(&shifted, "visibility", "shifted by a pixel");
         }
@@ -138,7 +138,7 @@ fn a_polygon_over_nearer_surfels_is_found() {
     let sequence = &sequences()[0];
     let (method, frames) = (sequence.method(), sequence.frames::<f32>(&exec));
     let shown = &frames[2];
-    // Everywhere what a picture without surfels shows.
+    // Replace all pixels by a picture without surfels.
     let objects = shown.scene.objects.as_ref().unwrap();
     let bare = objects.geometries().iter().map(|geometry| Geometry {
         surfels: Surfels::none(),
@@ -155,7 +155,7 @@ fn a_polygon_over_nearer_surfels_is_found() {
     let planes: Vec<_> = below.planes.iter().filter(resolved).cloned().collect();
     let frame = shown.from(method, &planes, "normalization");
     assert_first_wrong(shown, method, &frame, "normalization", "polygons over all");
-    // At one pixel alone where a surfel is.
+    // Replace only one pixel that shows a surfel.
     let ids = id(&shown.frame, "id").values();
     let at = ids.iter().rposition(|&id| id != NO_ID).unwrap();
     let mut one = shown.frame.clone();

@@ -1,6 +1,6 @@
 use super::*;
 
-/// The sequence, of whose objects some are left out.
+/// The sequence with some of its objects left out.
 fn with_share(share: f32) -> Sequence {
     let settings = Settings { flags: 8, share, ..Settings::default() };
     sequence(settings, Lens::FieldOfView(40.0))
@@ -12,7 +12,7 @@ fn left_out(shown: &Shown, settings: &Settings) -> Vec<u32> {
     (0..3).filter(|&object| whole.leaves_out(object)).collect()
 }
 
-/// What a client shows that takes something else for what the last frame saw, or other settings.
+/// The picture of a client that has another idea of what the previous frame saw, or other settings.
 fn other(shown: &Shown, method: Method, seen: Option<Seen>) -> Frame<f32> {
     let exec = Exec::new(1, 16).unwrap();
     let mut session = shown.session(method, &exec);
@@ -44,13 +44,13 @@ fn frames_without_some_objects_are_judged() {
             let before = shown.before.as_ref().unwrap();
             let all = Settings { share: 0.0, ..*settings };
             let frame = other(shown, all.into(), shown.before.clone());
-            // What is hidden shows in pass 2 alone.
+            // Hidden surfels show only in pass 2.
             let stages = ["visibility", "indices"];
             assert_first_wrong_of(shown, method, &frame, &stages, "nothing is left out");
             let plain = plain(&frame);
             let found = shown.judge(method, &plain, Rounding::Gpu);
             assert!(found.first_wrong().is_some(), "nothing is left out, the picture alone");
-            // Of another object as few as of this one.
+            // As few surfels of another object as of this one.
             let ids = shown.scene.objects.as_ref().unwrap().ids();
             let mut selected = before.selected().to_vec();
             let next = (object as usize + 1) % selected.len();

@@ -2,7 +2,7 @@ use super::*;
 use crate::scene::objects::Split;
 use crate::verdict::Fault;
 
-/// The frames of a sequence whose ids have 40 bits: the highest 8 are the object.
+/// The frames of a sequence whose ids have 40 bits; the highest 8 are the object.
 fn frames(sequence: &Sequence, exec: &Exec) -> Vec<Shown> {
     let mut before: Option<Seen> = None;
     let of_frame = |Shown { scene, camera, .. }: Shown| {
@@ -32,7 +32,8 @@ fn complete(frame: &Frame<f32>, of: &str) -> Vec<u64> {
 
 const PLANES: [&str; 4] = ["visibility.", "indices.", "difference.", ""];
 
-/// Both planes say the surfel that 32 bits say by another split; all other planes are the same.
+/// Both planes together name the same surfel as 32 bits do with another split. All other planes are
+/// the same.
 #[test]
 fn ids_of_40_bits_have_a_plane_for_the_highest() {
     let exec = Exec::new(1, 16).unwrap();
@@ -72,7 +73,7 @@ fn ids_of_40_bits_are_judged() {
             let judged =
                 |stage: &crate::verdict::StageVerdict| stage.planes.contains(&"indices.id");
             assert!(found.stages.iter().any(judged));
-            // Without the highest bits ids are not judged, and the rest is.
+            // Without the highest bits, ids are not judged, but all else is.
             let left = |plane: &&NamedPlane<f32>| !plane.name.ends_with("stencil");
             let planes = frame.planes.iter().filter(left).cloned().collect();
             let found = shown.judge(method, &Frame { planes, ..*frame }, Rounding::Gpu);
@@ -101,7 +102,7 @@ fn a_wrong_object_in_the_highest_bits_is_found() {
         assert_eq!(first.stage, of.trim_end_matches('.'));
         let fault = &first.worst.as_ref().unwrap().fault;
         assert!(matches!(fault, Fault::Absent { .. } | Fault::Outside { .. }), "{fault:?}");
-        // The next stage cannot be run from what is the id of no surfel.
+        // The next stage cannot run from an id without a surfel.
         if *of == "indices." {
             for plane in frame.planes.iter_mut().filter(|plane| plane.name == name) {
                 let Samples::Count(high) = &mut plane.samples else { panic!("{name}") };

@@ -1,8 +1,8 @@
-//! The plane `margin` by the page of the method, from balls of its own.
+//! Oracle for the plane `margin`, written from the page of the method, with its own balls.
 //!
-//! Nothing of the crate's arithmetic is shared: the balls, the projection and the fragments are
-//! written anew from the documentation, so that a formula of the page that the program does not
-//! follow shows. The nearest surfel of a pixel is the picture's own, as the page says.
+//! It shares no arithmetic with the crate. The balls, the projection and the fragments are written
+//! again from the documentation, so a formula of the page that the program does not follow shows.
+//! The nearest surfel of a pixel comes from the picture, as the page says.
 
 mod ball;
 mod cases;
