@@ -104,7 +104,7 @@ impl Bench {
     fn arcs(&self, subjects: &[Subject]) -> Result<()> {
         println!("What is off, %, by the number of depth bins");
         let titles = BINS.map(|bins| match bins {
-            BinCount::Epsilon => "of epsilon".to_owned(),
+            BinCount::Epsilon => "from epsilon".to_owned(),
             BinCount::Count(count) => count.to_string(),
         });
         let columns =

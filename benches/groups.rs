@@ -57,7 +57,7 @@ fn main() -> Result<()> {
         "c = 0.6",
         "c = 0.4",
         "time at c = 1",
-        "all four",
+        "time, all four c",
     ]);
     for (name, points, cells, _) in PAPER {
         table.row(&format!("{name} (the paper) | {points} | | {} | | ", cells.join(" | ")));
@@ -75,7 +75,7 @@ fn main() -> Result<()> {
         "points",
         "K",
         "c",
-        "most",
+        "`--most`",
         "added",
         "coverage before",
         "after",
@@ -85,7 +85,7 @@ fn main() -> Result<()> {
         // As it was scanned, and as the paper's models: sampled, with radii of the paper's degree.
         let scan = surfels(cloud.clone(), &exec);
         for (count, most) in COVERINGS {
-            table.row(&covering(&format!("{name}, as it is"), &scan, (count, most), &exec));
+            table.row(&covering(&format!("{name}, original scan"), &scan, (count, most), &exec));
         }
         let (_, count, _, degree) = PAPER[2];
         let (scene, _) = scaled(&surfels(resample(cloud, count, 1), &exec), degree, &exec);
@@ -94,7 +94,7 @@ fn main() -> Result<()> {
         }
     }
     table.publish_times(&arguments, "zp06.md", "covering")?;
-    let mut table = Table::new(&["surfels", "groups", "K", "time", "of it"]);
+    let mut table = Table::new(&["surfels", "groups", "K", "time", "longest steps"]);
     for count in [100_000, 1_000_000, 10_000_000] {
         let sphere = Shape::Sphere.surfels(count, 0)?;
         // Enlarging ten million takes minutes, and no method asks for it.
@@ -111,9 +111,9 @@ fn defaults() -> [(&'static str, Grouping); 3] {
     let of = |method: Method| method.grouping().expect("a method with groups");
     let four = of(transparent::Settings::default().into());
     [
-        ("of the single pass", of(single_pass::Settings::default().into())),
-        ("of transparent splats", four),
-        ("the same, enlarged", Grouping { extension: Extension::Enlarge, ..four }),
+        ("`single-pass`", of(single_pass::Settings::default().into())),
+        ("`transparent`", four),
+        ("`transparent`, enlarged", Grouping { extension: Extension::Enlarge, ..four }),
     ]
 }
 

@@ -7,7 +7,7 @@
 //! picture that it fills. One headlight, back faces culled, `f32`, as many threads as cores. Each
 //! number is the median over the pictures of one run in milliseconds, the minimum in brackets;
 //! `frame` is the whole call, from the scene to shaded planes in the memory of the picture before.
-//! `moving` is the time in which as many threads do no more than move what the projection moves:
+//! `traffic` is the time that as many threads need for the memory traffic of the projection alone:
 //! read 28 bytes of every surfel, write 24 for each that is seen, and read those again.
 
 mod common;
@@ -99,13 +99,13 @@ fn main() -> Result<()> {
     ];
     let mut table = Table::new(&[
         "method",
-        "model of the paper",
+        "paper's model",
         "points",
-        "paper",
-        "frame",
+        "paper, ms",
+        "frame, ms",
         "ratio",
-        "stages",
-        "moving",
+        "stages, ms",
+        "traffic, ms",
     ]);
     for (name, method, rows, side, colored) in tables {
         for row in rows.iter().filter(|_| name.contains(&arguments.pattern)) {
@@ -117,8 +117,8 @@ fn main() -> Result<()> {
             let exec = Exec::new(0, 32)?;
             let (mut frames, stages, seen) = measure(&scene, &camera, &method, &exec)?;
             let mut points = vec![[1; 6]; row.count];
-            let mut moved = || moving(&scene.surfels, seen, &exec, &mut points);
-            let mut moving: Vec<_> = (0..9).map(|_| moved()).collect();
+            let mut moved = || traffic(&scene.surfels, seen, &exec, &mut points);
+            let mut traffic: Vec<_> = (0..9).map(|_| moved()).collect();
             let frame = median(&mut frames);
             let stages: Vec<String> =
                 stages.into_iter().map(|(n, mut t)| format!("{n} {}", cell(&mut t))).collect();
@@ -133,7 +133,7 @@ fn main() -> Result<()> {
                 row.count / 1000,
                 cell(&mut frames),
                 stages.join(", "),
-                cell(&mut moving)
+                cell(&mut traffic)
             ));
         }
     }
@@ -165,7 +165,7 @@ type Times = (Vec<Duration>, Vec<(&'static str, Vec<Duration>)>, u64);
 
 /// How long it takes to move what the projection moves: to read position, normal and radius of
 /// every surfel, and to write 24 bytes for each of the `seen` ones and read them again.
-fn moving(surfels: &Surfels, seen: u64, exec: &Exec, points: &mut [[u32; 6]]) -> Duration {
+fn traffic(surfels: &Surfels, seen: u64, exec: &Exec, points: &mut [[u32; 6]]) -> Duration {
     const CHUNK: usize = 16_384;
     let share = seen as f64 / surfels.len() as f64;
     let seen = |surfels: usize| (surfels as f64 * share) as usize;

@@ -64,8 +64,8 @@ fn main() -> Result<()> {
         "splats",
         "frame, ms",
         "ratio",
-        "frames a second",
-        "the paper's",
+        "frames/s",
+        "paper, frames/s",
     ]);
     for subject in subjects(&arguments, &exec)? {
         let rows = rows(&subject, &exec)?;

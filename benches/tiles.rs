@@ -30,7 +30,7 @@ const FRAMES: usize = 5;
 fn main() -> Result<()> {
     let arguments = Arguments::parse()?;
     let mut table =
-        Table::new(&["workload", "threads", "tiles of 8", "16", "32", "64", "slowest / fastest"]);
+        Table::new(&["workload", "threads", "8 px tiles", "16", "32", "64", "slowest / fastest"]);
     for workload in WORKLOADS.iter().filter(|w| w.name.contains(&arguments.pattern)) {
         let scene = Scene::unlit(workload.name, sphere(workload));
         for threads in [1, 2] {

@@ -54,7 +54,7 @@ fn failures(arguments: &Arguments, exec: &Exec) -> Result<()> {
         table.row(&format!("{fade} | {count} | {holes:.2}"));
     }
     table.publish(arguments, "bjfm19.md", "fade")?;
-    let mut table = Table::new(&["load step", "0 late", "1", "2", "3", "4"]);
+    let mut table = Table::new(&["load step", "0 frames late", "1", "2", "3", "4"]);
     for step in failures::STEPS {
         let cells: Vec<_> =
             (0..5).map(|late| failures::load_step(step, late).to_string()).collect();

@@ -112,7 +112,7 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
         bars.push(Bar { name: format!("{name}, with"), parts: with.passes.to_vec() });
     }
     rates.publish_times(arguments, "gbp04.md", "rates-of-frames")?;
-    let mut columns = vec!["scene", "", "frame, ms"];
+    let mut columns = vec!["scene", "row", "frame, ms"];
     columns.extend(PASSES);
     let mut table = Table::new(&columns);
     table.row(&format!("the paper | ms, primitives | | {}", PAPER.join(" | ")));

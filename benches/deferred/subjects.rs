@@ -117,7 +117,7 @@ pub(crate) fn subjects<'a>(
 }
 
 const HEAD: &str = "head, 285 k";
-const SHUFFLED: &str = "the same, in random order";
+const SHUFFLED: &str = "head, random order";
 const TREE: &str = "tree, 750 k";
 pub(crate) const FOREST: &str = "forest, 6,800 trees of 750 k";
 const CROWD: &str = "200 objects, 450 k in all";

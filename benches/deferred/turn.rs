@@ -38,7 +38,7 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
     let (mut kinds, mut series) = (Vec::new(), Vec::new());
     for (name, stage) in stages(arguments, exec)? {
         for (side, flags) in VIEWS {
-            let frames = ["of the turn", "after"];
+            let frames = ["turned", "after"];
             let frames = &frames[..1 + usize::from(side == CHARTED.0)];
             let found = measured(&stage, flags, frames.len(), &Stage::camera(side)?, exec)?;
             for (second, pass) in ["off", "on"].into_iter().enumerate() {
@@ -77,7 +77,7 @@ fn publish_kinds(kinds: &[String], arguments: &Arguments) -> Result<()> {
         "turn",
         "m",
         "pass 3",
-        "judged, px",
+        "compared, px",
         "holes, %",
         "spill, %",
         "another surface, %",

@@ -1,7 +1,7 @@
 //! Shading before and after the interpolation: \[MKC08, Fig. 5\], "sharper specular highlights".
 //!
-//! A sphere whose material shines (specular 0.6, shininess 60), 600 x 600 pixels. *Deferred*: the
-//! method interpolates normals, and each pixel is shaded. *Before*: each surfel is shaded at its
+//! A sphere whose material shines (specular 0.6, shininess 60), 600 x 600 pixels. *Shaded after*:
+//! the method interpolates normals, and each pixel is shaded. *Shaded before*: each surfel is shaded at its
 //! centre, and the method interpolates colours. RMSE to the true picture, and the brightest pixel as
 //! a part of the true one.
 
@@ -23,7 +23,7 @@ pub(crate) fn table(arguments: &Arguments, exec: &Exec) -> Result<()> {
         ("pyramid", pyramid::Settings::default().into()),
         ("template", template::Settings::default().into()),
     ];
-    let mut table = Table::new(&["sphere of", "method", "deferred", "before"]);
+    let mut table = Table::new(&["surfels", "method", "shaded after", "shaded before"]);
     for count in [1_000, 3_000, 10_000, 100_000] {
         let shape = Shape::Sphere;
         let camera = Camera::new(600, 600, shape.default_pose(), shape.default_lens())?;

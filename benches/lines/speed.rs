@@ -23,7 +23,7 @@ const FRAMES: usize = 9;
 pub(crate) fn table(arguments: &Arguments, exec: &Exec) -> Result<()> {
     let plant = apple_tree(LEAVES, 0)?;
     let kinds = [("triangles", plant.polygons()?), ("lines", plant.lines()?)];
-    let mut table = Table::new(&["scene", "primitives", "ms", "paper, ms"]);
+    let mut table = Table::new(&["trees", "primitives", "ms", "paper, ms"]);
     for (trees, paper) in [(1, [1000.0 / 28.0, 1000.0 / 31.0]), (10, [1000.0 / 9.0, 1000.0 / 15.0])]
     {
         for ((kind, primitives), paper) in kinds.iter().zip(paper) {

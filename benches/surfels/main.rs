@@ -47,9 +47,9 @@ fn sets() -> Result<[(&'static str, Vec<Vec3>); 3]> {
     let cube = (0..POINTS as u64).map(unit).collect();
     let raster = (0..POINTS).map(|i| [i % 50, i / 50 % 100, i / 5000].map(|v| v as f32));
     Ok([
-        ("torus, at random", torus),
-        ("cube, at random", cube),
-        ("grid of 50 x 100 x 100, in rows", raster.map(Vec3::from).collect()),
+        ("torus, random", torus),
+        ("cube, random", cube),
+        ("grid, 50 x 100 x 100, in rows", raster.map(Vec3::from).collect()),
     ])
 }
 

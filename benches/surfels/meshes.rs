@@ -23,7 +23,7 @@ const FIGURE: &str = "bunny";
 const SAMPLERS: [&str; 4] = ["greedy", "progressive", "as shipped", "random"];
 
 pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
-    let mut meshes = Table::new(&["mesh", "triangles", "candidates", "s", "M triangles/s"]);
+    let mut meshes = Table::new(&["mesh", "triangles", "candidates", "time, s", "M triangles/s"]);
     let mut times = Table::new(&["mesh", "sampler", "10 k, s", "50 k, s", "100 k, s"]);
     let mut spread = Table::new(&[
         "mesh",

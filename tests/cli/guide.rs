@@ -28,9 +28,14 @@ pages! {
     readme: "README.md";
     contributing: "CONTRIBUTING.md";
     backends: "docs/backends.md";
+    bjfm19: "docs/bjfm19.md";
+    ewa: "docs/ewa.md";
+    gbp04: "docs/gbp04.md";
     goldens: "docs/goldens.md";
+    image_space: "docs/image-space.md";
     plan: "docs/plan.md";
     speed: "docs/speed.md";
+    zp06: "docs/zp06.md";
     index: "docs/guide/README.md";
     first_picture: "docs/guide/first-picture.md";
     golden_in_your_tests: "docs/guide/golden-in-your-tests.md";
