@@ -22,7 +22,7 @@ pub struct Stage {
 
 /// A plane that a stage leaves: everything that is said of it, once.
 ///
-/// A plane of a record is one row of the table of its record's planes, see [`mod@super::record`].
+/// A plane of a record is one row of the table of its record's planes, see `record.rs`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlaneRow {
     /// The name, see [`crate::frame::NamedPlane`]; each run of `#` stands for a number of as many
