@@ -178,7 +178,7 @@ mod tests {
         assert!(line.contains("a.ply: no texture coordinates, so x/b.exr"), "{line}");
         assert!(
             refused(&mut cloud(&[]), &model, Some(Path::new("b.jpg")))
-                .starts_with("b.jpg: no texture; give a .png")
+                .starts_with("b.jpg: not a texture; give a .png")
         );
         assert!(refused(&mut cloud(&[]), &model, Some(Path::new("b.exr"))).starts_with("b.exr: "));
         let bad = at.path().join("bad.exr");

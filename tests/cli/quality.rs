@@ -92,7 +92,7 @@ fn what_has_no_quality_is_refused() {
         (&["in.ply", "--prefix", "1"], 2, "--prefix 1: one point has no distance"),
         (&["in.ply", "--prefix", "9,x"], 2, "--prefix"),
         (&["in.ply", "--prefix", "1201"], 1, "in: a prefix of 1201 of 1200 points"),
-        (&["in.ply", "-o", "in.ply"], 2, "in.ply: charts are .svg or .png"),
+        (&["in.ply", "-o", "in.ply"], 2, "in.ply: charts are written as .svg or .png"),
         (&["in.ply", "-o", "none/a.svg"], 1, "none/a.svg"),
         (&["in.ply", "--of", "sphere"], 2, "sphere: points are read"),
         (&["in.ply", "--of", "missing.ply"], 1, "missing.ply"),

@@ -195,7 +195,7 @@ fn a_prefix_is_the_file_of_its_points() {
     }
     for (arguments, code, what) in [
         (["all.ply", "--prefix", "0"], 1, "a prefix of 0 points"),
-        (["sphere", "--prefix", "9"], 2, "sphere is none"),
+        (["sphere", "--prefix", "9"], 2, "sphere is not one"),
         (["mesh.ply", "--prefix", "9"], 1, "mesh.ply: a prefix needs points"),
     ] {
         let line = fails(at.path(), &[&["render", "-o", "out.exr"], &arguments[..]].concat(), code);
@@ -295,7 +295,8 @@ fn distances_along_a_surface_do_not_go_through_it() {
         let options = ["surfels", "in.ply", "-o", "out.ply", "--threads", threads];
         let said = succeeds(at.path(), &[&options[..], &along].concat());
         assert!(
-            said.contains("parts      2, which") && said.contains("at least along the"),
+            said.contains("parts      2, not connected")
+                && said.contains("at least 12.728 along the surface"),
             "{said}"
         );
         ply::read(&at.path().join("out.ply")).unwrap().position

@@ -59,6 +59,7 @@ fn no_lawful_habit_is_called_wrong() {
 }
 
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn with_its_records_a_client_is_judged_more_sharply() {
     let cases = cases();
     for (name, case) in &cases {
@@ -201,6 +202,7 @@ fn what_is_not_of_epsilon_is_not_called_so() {
 }
 
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn known_mistakes_are_named() {
     let cases = cases();
     for (bug, words) in [

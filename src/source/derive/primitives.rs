@@ -332,7 +332,7 @@ mod tests {
         let asked = Derive { radius: Some(1.0) };
         assert!(line(ribbons(mesh(), &asked).unwrap_err()).contains("ribbons need normals; give"));
         let asked = Derive { radius: Some(-1.0) };
-        assert!(line(tubes(mesh(), &asked).unwrap_err()).contains("must be finite and > 0"));
+        assert!(line(tubes(mesh(), &asked).unwrap_err()).contains("give a finite number > 0"));
         let flat = Cloud { normal: Some(vec![Vec3::ZERO; 5]), ..mesh() };
         let error = line(drawn(flat).unwrap_err());
         assert_eq!(error, "the scene is empty: none of its 2 triangles can be drawn");

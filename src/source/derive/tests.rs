@@ -147,7 +147,7 @@ fn a_radius_may_be_asked_for() {
     let (surfels, derived) = ask(0.5).unwrap();
     assert_eq!((surfels.radius(), derived.radii), (&[0.5][..], Origin::Given));
     for bad in [0.0, -1.0, f32::NAN, f32::INFINITY] {
-        assert!(ask(bad).unwrap_err().to_string().contains("it must be finite and > 0"));
+        assert!(ask(bad).unwrap_err().to_string().contains("give a finite number > 0"));
     }
 }
 

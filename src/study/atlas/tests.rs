@@ -28,6 +28,7 @@ fn every_failure_has_a_name_and_a_sweep() {
 /// Checks every error on the page, and its charts; `splatref study failures -o docs` blesses the
 /// page.
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn the_page_is_what_is_measured() {
     let curves = failures().into_iter().map(|failure| {
         (failure.curve(&exec(), &|_, _| ()).unwrap_or_else(|e| panic!("{}: {e}", failure.id)), None)

@@ -83,6 +83,7 @@ pub(crate) fn flat(name: &str, objects: &Objects, seen: &Objects, shown: &[Shown
 }
 
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn views_are_those_of_the_page() {
     let mut states: Vec<State> = Vec::new();
     let [mut steps, mut cut, mut beside] = [0; 3];

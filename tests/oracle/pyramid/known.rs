@@ -53,6 +53,7 @@ fn reached(disc: Colored, side: u32, settings: &Settings) -> f64 {
 /// centres that are: what is reached depends on where it lies among the cells, and the rest is a
 /// hole. The floors are a little below what was measured.
 #[test]
+#[ignore = "slow: .ci/run runs it"]
 fn pyramid_disc_stays_in_its_ellipse() {
     let radii = [1.0, 1.5, 2.0, 3.0, 4.0, 6.0, 8.0, 12.0, 16.0, 24.0, 32.0, 48.0, 64.0];
     let tilts = [(1.0, 0.98), (0.8125, 0.98), (0.5, 0.95), (0.3125, 0.875), (0.1875_f32, 0.7)];
