@@ -142,7 +142,7 @@ impl<'a> RecordPlanes<'a> {
             }
             match (plane, part) {
                 (AnyStored::Index(plane), Part::Id(of)) => {
-                    *of(record) = *plane.plane.at(at.0, at.1)
+                    *of(record) = *plane.plane.at(at.0, at.1);
                 }
                 (AnyStored::Count(plane), Part::Count(of)) => {
                     *of(record) = *plane.plane.at(at.0, at.1);

@@ -186,7 +186,11 @@ fn what_no_rule_covers() {
         let place = format!(": planes.{plane}: {why}");
         assert!(line.contains(&place), "{line}");
     }
-    let at = at.with("c.raw", &[0; 12]);
+}
+
+#[test]
+fn what_no_value_of_a_file_fits() {
+    let at = folder().with("c.raw", &[0; 12]);
     let color = "[planes.RGB]\nfile = \"c.raw\"\nformat = \"unorm8\"\n";
     let line = at.refusal(&format!("{color}premultiplied = true"));
     assert!(line.ends_with("planes.RGB: `premultiplied` needs the plane `A`"), "{line}");
