@@ -52,12 +52,12 @@ pub(super) const FAILURES: [Failure; 2] = [
         why: "Sixteen discs are spread over a picture of 90 degrees, and their planes are tilted \
               by 30 degrees to the ray. [ZRB+04, 3] writes the outline as the conic a x^2 + 2 b x \
               y + c y^2 + 2 d x + 2 e y = f, from the inverse of (U, V, p), and moves the conic to \
-              its centre. This leaves f - d x_t - e y_t of f: a fraction as small as the squared \
-              ratio of the splat's size to its distance from the axis. At 1024 radii a disc has a \
-              radius of 1 px in a picture 2048 px wide. The error is the largest error of a side \
-              of the box in f32, as a fraction of half the box; it is 1 where no ellipse is left. \
-              Pictures: each disc magnified at its place in the picture; light is right, red is \
-              missing, blue is too much.",
+              its centre. The move leaves only f - d x_t - e y_t of f. This fraction is as small \
+              as the squared ratio of the splat's size to its distance from the axis, so f32 loses \
+              digits. At 1024 radii a disc has a radius of 1 px in a picture 2048 px wide. The \
+              error is the largest error of a side of the box in f32, as a fraction of half the \
+              box; it is 1 where no ellipse is left. Pictures: each disc magnified at its place in \
+              the picture; light is right, red is missing, blue is too much.",
         swept: "distance, radii",
         values: &[4.0, 16.0, 64.0, 128.0, 256.0, 512.0, 1024.0, 2048.0],
         error: "error of the box, part of half its side",
@@ -72,10 +72,10 @@ pub(super) const FAILURES: [Failure; 2] = [
         why: "A disc is tilted by 45 degrees, 20 degrees off the axis. [WHA+07] takes the box from \
               tangents, x = (h_13 +- sqrt(h_13^2 - h_11 h_33)) / h_33 with h_ij = U_i U_j + V_i \
               V_j - p_i p_j. The box is exact as long as the whole disc is in front of the eye. \
-              Below 0.71 radii the near half is not. Then the outline is a hyperbola, and the two \
-              tangents enclose the gap between its branches; or the root is of a negative number, \
-              and there is no box. Pictures: the disc is light inside the box and red outside; \
-              blue is the rest of the box.",
+              Below 0.71 radii the near half is not in front. Then the outline is a hyperbola, and \
+              the two tangents enclose the gap between its branches; or the root is of a negative \
+              number, so that there is no box. Pictures: the disc is light inside the box and red \
+              outside; blue is the rest of the box.",
         swept: "distance, radii",
         values: &[4.0, 2.0, 1.0, 0.8, 0.72, 0.7, 0.6, 0.35],
         error: "pixels of the disc outside, per mille",

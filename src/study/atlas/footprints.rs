@@ -16,10 +16,10 @@ pub(super) const FAILURES: [Failure; 4] = [
     Failure {
         id: "ewa-grazing",
         title: "The footprint of a tilted disc is not its outline",
-        why: "One disc, three radii away, is tilted more and more, without a low-pass filter and \
-              cut off at its rim. The affine footprint of EWA is a linear map at the disc's centre \
-              [ZPvBG01, eq. 8]. Perspective makes the near half of a tilted disc larger and its \
-              far half smaller, but the footprint shows neither.",
+        why: "One disc, three radii away, is tilted more and more. It has no low-pass filter and \
+              is cut off at its rim. The affine footprint of EWA is a linear map at the disc's \
+              centre [ZPvBG01, eq. 8]. Perspective makes the near half of a tilted disc larger and \
+              its far half smaller, but the footprint shows neither.",
         swept: "tilt, degrees",
         values: &[0.0, 15.0, 30.0, 45.0, 60.0, 70.0, 80.0, 85.0],
         error: "wrong pixels of the footprint, per mille of the disc",
@@ -44,9 +44,9 @@ pub(super) const FAILURES: [Failure; 4] = [
     Failure {
         id: "ewa-near",
         title: "Discs close to the eye leave holes and cover the sky",
-        why: "The eye comes down to a checked plane of 2,000 surfels. A disc that reaches behind \
-              the camera does not have an ellipse as its outline. An affine footprint ends above \
-              the horizon, or before the disc does.",
+        why: "The eye comes down to a checked plane of 2,000 surfels. The outline of a disc that \
+              reaches behind the camera is no ellipse. An affine footprint ends above the horizon, \
+              or before the disc does.",
         swept: "height of the eye over the plane, radii of the nearest discs",
         values: &[16.0, 8.0, 4.0, 2.0, 1.0, 0.5, 0.25, 0.125],
         error: "wrongly covered or missed pixels, per mille of all",
@@ -59,7 +59,7 @@ pub(super) const FAILURES: [Failure; 4] = [
         title: "Checks smaller than a pixel alias",
         why: "A sphere of 100,000 surfels has finer and finer checks, and is drawn without the \
               low-pass filter. Splats smaller than a pixel then count only if their centres fall \
-              right [ZPvBG01, 4].",
+              in the right place [ZPvBG01, 4].",
         swept: "side of a check, px",
         values: &[8.0, 4.0, 3.0, 2.0, 1.5, 1.0, 0.75, 0.5],
         error: "RMSE, linear RGB, to 8 x 8 times the pixels",

@@ -15,9 +15,10 @@ pub(super) const FAILURES: [Failure; 3] = [
     Failure {
         id: "group-c",
         title: "Surfels of one group that overlap show flaps",
-        why: "The single pass draws the spheres of the cluster, 20,000 surfels. There are fewer \
-              groups if surfels may overlap more, down to c = 0 [ZP06, 5.1]. Where two surfels of \
-              one group overlap, the plain depth test keeps the nearest.",
+        why: "The single pass draws the spheres of the cluster, 20,000 surfels. A smaller c, down \
+              to 0, lets surfels of one group overlap more, so that fewer groups are needed [ZP06, \
+              5.1]. Where two surfels of one group overlap, the plain depth test keeps the \
+              nearest.",
         swept: "c",
         values: &[1.0, 0.8, 0.6, 0.4, 0.2],
         error: "RMSE, linear RGB, to the picture of EWA",
@@ -50,7 +51,8 @@ pub(super) const FAILURES: [Failure; 3] = [
         values: &[8.0, 16.0, 32.0, 64.0, 128.0, 256.0, 512.0, 1024.0, 4096.0],
         error: "RMSE, linear RGB, to the picture of peeling",
         limit: 0.012,
-        cure: "`--bins epsilon --bin-edges staggered`, the defaults; without them `--bin-edges common`",
+        cure: "`--bins epsilon --bin-edges staggered`, the defaults; the broken sweep has \
+               `--bin-edges common`",
         at: arcs,
     },
 ];

@@ -21,8 +21,8 @@ pub(super) const FAILURES: [Failure; 4] = [
         values: &[16.0, 8.0, 4.0, 3.0, 2.5, 2.0, 1.5, 1.0, 0.5, 0.25],
         error: "RMSE, linear RGB",
         limit: 0.05,
-        cure: "an `--epsilon` of half the gap, as long as it exceeds how much the depth of the \
-               surface differs within a disc",
+        cure: "an `--epsilon` of half the gap, as long as it exceeds the depth range of the \
+               surface within a disc",
         at: sheets,
     },
     Failure {
@@ -43,7 +43,8 @@ pub(super) const FAILURES: [Failure; 4] = [
         title: "One epsilon does not fit a scan of uneven density",
         why: "The left half is from a sphere of 40,000 surfels, the right half from a sphere of \
               fewer. The default epsilon is two radii of the median surfel, which is less than one \
-              radius of a large surfel. Large discs therefore tear each other where they overlap.",
+              radius of a large surfel. Where large discs overlap, they are therefore not blended, \
+              and the surface is torn.",
         swept: "how many times denser the left half is",
         values: &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0, 64.0, 128.0, 256.0],
         error: "normal error, 99 %, degrees",

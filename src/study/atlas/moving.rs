@@ -19,8 +19,8 @@ pub(super) const FAILURES: [Failure; 2] = [
         id: "deferred-motion",
         title: "Holes after a fast turn",
         why: "A sphere of 20,000 surfels in front of a sheet is at rest for three frames, and then \
-              turned. Deferred splatting draws it without the third pass, with a flag for each \
-              surfel. Pass 1 draws the surfels that the last frame saw. Where the sphere's surfels \
+              turned. Deferred splatting draws it without the third pass, and flags each surfel by \
+              itself. Pass 1 draws the surfels that the last frame saw. Where the sphere's surfels \
               were not seen, pass 1 leaves no depth, and the sheet shines through between the new \
               surfels [GBP04, 4.1, Fig. 3].",
         swept: "degrees in a frame",
@@ -33,9 +33,9 @@ pub(super) const FAILURES: [Failure; 2] = [
     Failure {
         id: "deferred-dense",
         title: "More than one surfel for a pixel flickers",
-        why: "The camera moves towards a sphere that has checks of a pixel and more and more \
-              surfels. Deferred splatting draws the surfel nearest to each pixel's centre, and \
-              that surfel changes from frame to frame [GBP04, 4.4].",
+        why: "The camera moves towards a sphere with checks one pixel wide, sampled by more and \
+              more surfels. Deferred splatting draws the surfel nearest to each pixel's centre, \
+              and that surfel changes from frame to frame [GBP04, 4.4].",
         swept: "surfels a pixel",
         values: &[0.0625, 0.125, 0.25, 0.5, 1.0, 2.0, 4.0, 8.0],
         error: "change that EWA does not show, RMSE, linear RGB",

@@ -16,12 +16,12 @@ pub(super) const FAILURES: [Failure; 3] = [
         id: "ewa-thin",
         title: "The determinant of a thin ellipse cancels",
         why: "A disc is seen nearly edge-on, turned by 45 degrees. Its covariance with the \
-              low-pass filter is [[a, b], [b, c]], and the textbook has q = (c dx^2 - 2 b dx dy + \
-              a dy^2) / (a c - b^2). Where the ellipse is long and thin, a c and b^2 agree in more \
-              and more digits of f32. The error is the largest error of q at 64 points of the \
+              low-pass filter is [[a, b], [b, c]], and the textbook computes q = (c dx^2 - 2 b dx \
+              dy + a dy^2) / (a c - b^2). Where the ellipse is long and thin, a c and b^2 agree in \
+              more and more digits of f32. The error is the largest error of q at 64 points of the \
               ellipse, as a fraction of the textbook's q in f64. Pictures: the ellipse stretched \
-              to a circle, light where q is right to 0.001 and red where it is not; around it blue \
-              and black.",
+              to a circle, light where q is right to 0.001 and red where it is not; around the \
+              ellipse, blue and black.",
         swept: "radius, px",
         values: &[1.0, 4.0, 16.0, 64.0, 256.0, 1024.0, 4096.0],
         error: "relative error of q",
@@ -35,8 +35,8 @@ pub(super) const FAILURES: [Failure; 3] = [
         why: "A disc is tilted by 45 degrees, 20 degrees off the axis. [BHZK05, 3] gives a point \
               sprite the square of side 2 r f / t around its centre. That square fits a disc at \
               the centre's depth that faces the camera, but the near half of a tilted disc \
-              projects to more. Pictures: the disc is light inside the square and red outside; \
-              blue is the rest of the square.",
+              projects to a greater length. Pictures: the disc is light inside the square and red \
+              outside; blue is the rest of the square.",
         swept: "distance, radii",
         values: &[64.0, 32.0, 16.0, 8.0, 4.0, 2.0, 1.5, 1.25],
         error: "pixels of the disc outside, per mille",
@@ -49,7 +49,7 @@ pub(super) const FAILURES: [Failure; 3] = [
         title: "Off the axis that square falls short even of a disc that faces the eye",
         why: "A disc at a depth of four radii turns its normal towards the eye, and moves farther \
               and farther off the axis of a fixed picture plane. Off the axis a length projects to \
-              more than r f / t. Pictures: as before.",
+              more than r f / t. Pictures: as for bounds.",
         swept: "angle to the axis, degrees",
         values: &[0.0, 10.0, 20.0, 30.0, 40.0, 50.0, 60.0],
         error: "pixels of the disc outside, per mille",

@@ -19,8 +19,8 @@ pub(super) const FAILURES: [Failure; 5] = [
         id: "mesh-paddles",
         title: "Vertices of thin triangles are paddles",
         why: "The vertices of a cylinder with 64 columns are drawn as surfels, and its triangles \
-              are longer and longer. The derived radius is the longest edge, so that discs cover \
-              the surface. Discs at long edges therefore stick out over the silhouette.",
+              become longer and longer. The derived radius is the longest edge, so that discs \
+              cover the surface. Discs at long edges therefore stick out over the silhouette.",
         swept: "length of a triangle, its widths",
         values: &[1.0, 2.0, 4.0, 8.0, 16.0, 32.0],
         error: "spill, per mille",
@@ -31,9 +31,9 @@ pub(super) const FAILURES: [Failure; 5] = [
     Failure {
         id: "blue-thin",
         title: "Walls that are nearer to each other than surfels are have holes",
-        why: "A plate of 2 x 2 in 500 surfels on both sides together is seen from the front, by \
-              the method blue. The order keeps surfels apart in space, even two on different sides \
-              [BJFM19, 6].",
+        why: "The method blue draws a plate of 2 x 2 from the front. Its two sides have 500 \
+              surfels together. The order keeps surfels apart in space, even if they are on \
+              different sides [BJFM19, 6].",
         swept: "thickness, distances of surfels",
         values: &[4.0, 2.0, 1.0, 0.5, 0.25, 0.0625],
         error: "holes, per mille",
@@ -44,9 +44,10 @@ pub(super) const FAILURES: [Failure; 5] = [
     Failure {
         id: "blue-prefix",
         title: "Prefixes too short for their estimate have holes",
-        why: "A torus in an order of 20,000 is so far away that few surfels are needed. The radius \
-              of a prefix is estimated from the first 1,000 surfels, as if each had the same share \
-              of the area [BJFM19, 4.1]. A few surfels on a curved surface do not.",
+        why: "A torus of 20,000 ordered surfels is so far away that few surfels are needed. The \
+              radius of a prefix is estimated from the first 1,000 surfels, as if each had the \
+              same share of the area [BJFM19, 4.1]. A few surfels on a curved surface have unequal \
+              shares.",
         swept: "surfels asked for",
         values: &[10_000.0, 1000.0, 300.0, 100.0, 30.0, 10.0, 3.0],
         error: "holes, per mille",
@@ -71,9 +72,9 @@ pub(super) const FAILURES: [Failure; 5] = [
         id: "blue-controller",
         title: "The frame-time controller swings",
         why: "From one moment on frames take four times as long, and their times are known some \
-              frames late. The controller answers each late time again with a step of the size \
-              [BJFM19, 4.3]. Pictures: the sizes of the last 100 frames, a column each, light up \
-              to the size; the height of the picture is the largest possible size.",
+              frames late. The controller answers each late time with another step of the size \
+              [BJFM19, 4.3]. Pictures: the sizes of the last 100 frames, one column per frame, \
+              light up to the size; the height of the picture is the largest possible size.",
         swept: "frames until a time is known",
         values: &[0.0, 1.0, 2.0, 3.0, 4.0, 6.0],
         error: "largest size by smallest, of the last 100 of 1,000 frames",

@@ -42,10 +42,10 @@ pub(super) const FAILURES: [Failure; 5] = [
     Failure {
         id: "template-cover",
         title: "Regular holes in a plain sphere, at some sizes of the picture",
-        why: "A sphere of 2,500 surfels is drawn by templates of 5 x 5, at the level in the \
-              paper's words, D the projected radius [MOC08, eq. 1]. That level cuts ellipses to \
-              half their radius: just before a disc moves to the next level, it does not reach its \
-              neighbours.",
+        why: "A sphere of 2,500 surfels is drawn by templates of 5 x 5. The level follows the \
+              paper's words, where D is the projected radius [MOC08, eq. 1]. That level cuts \
+              ellipses to half their radius: just before a disc moves to the next level, it does \
+              not reach its neighbours.",
         swept: "rows of the picture",
         values: &[150.0, 175.0, 200.0, 225.0, 250.0, 275.0, 300.0],
         error: "holes, per mille",
@@ -57,8 +57,8 @@ pub(super) const FAILURES: [Failure; 5] = [
         id: "template-mirror",
         title: "A mirrored scene gives another picture",
         why: "Spheres of more and more surfels are compared with their mirror image. The ternary \
-              test of a template compares with the samples gathered before [MOC08, 3.1], so the \
-              order decides among ellipses that overlap in depth.",
+              test of a template compares each sample with the samples gathered before it [MOC08, \
+              3.1], so the order decides among ellipses that overlap in depth.",
         swept: "surfels",
         values: &[100.0, 300.0, 1000.0, 3000.0, 10_000.0, 30_000.0],
         error: "normals that turn by more than a degree, per mille",
@@ -71,9 +71,9 @@ pub(super) const FAILURES: [Failure; 5] = [
         title: "Tangents of alternating sign would cancel",
         why: "Three quarters of a ring is drawn as a tube. Its vertices carry tangents, and every \
               second tangent is reversed. Averaged as they are [MKC08, 4.3], tangents of opposite \
-              signs cancel. Here a tangent is an axis: each is turned to the foremost tangent's \
-              side before averaging, so the picture equals the picture with agreeing tangents. \
-              This entry must not break.",
+              signs cancel. splatref treats a tangent as an axis: it turns each tangent to the \
+              foremost tangent's side before averaging, so the picture equals the picture with \
+              agreeing tangents. This entry must not break.",
         swept: "vertices",
         values: &[5.0, 9.0, 17.0, 33.0, 65.0, 129.0, 257.0],
         error: "RMSE, linear RGB, to the picture of tangents that agree",

@@ -73,7 +73,7 @@ pub(super) const CLAIMS: [Claim; 13] = [
     Claim {
         id: "zp06-added",
         from: "[ZP06] 6.2",
-        says: "that four groups cover the surface takes 45 % more points",
+        says: "covering the surface with four groups takes 45 % more points",
         measured: "points that are added, at most 0.45 times: K = 4, `--most 0.5`; all points",
         at_most: 0.45,
         timed: false,
@@ -133,7 +133,7 @@ pub(super) const CLAIMS: [Claim; 13] = [
     Claim {
         id: "zp06-peeling",
         from: "[ZP06] 6.2",
-        says: "Algorithm 3 has 5 frames a second where depth peeling of at most 8 layers has less than 2",
+        says: "Algorithm 3 has 5 frames per second where depth peeling of at most 8 layers has less than 2",
         measured: "ms, at most 0.4 times: Algorithm 3; peeling of 8 layers",
         at_most: 0.4,
         timed: true,

@@ -36,8 +36,8 @@ pub(super) const CLAIMS: [Claim; 6] = [
         id: "bjfm19-law",
         from: "[BJFM19] 4.1",
         says: "four times as many surfels are half as far apart",
-        measured: "smallest distance in the greedy prefix of a fifth, times 2, by that of a twentieth, or the inverse if \
-                   that is more; 1",
+        measured: "twice the smallest distance in the greedy prefix of a fifth, divided by the smallest distance in \
+                   the prefix of a twentieth, or the inverse if that is greater; 1",
         at_most: 1.25,
         timed: false,
         more: "bjfm19.md",

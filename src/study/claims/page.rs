@@ -11,12 +11,13 @@ pub const PICTURES: &str = "claims";
 const INTRODUCTION: &str = "\
 # What the five papers claim, measured
 
-This page measures what five papers claim. Every claim compares two numbers: the first must be at most the second, or at most
-a multiple of it that the row names; the second may be a limit.
+This page measures what five papers claim. Every claim compares two numbers. It holds if the first is at most the second,
+or at most the multiple of the second that the row names. The second number may be a limit.
 
 - Each claim is measured in nine cases: a sphere, a torus and a cluster of spheres, in pictures of 120, 180 and 300 rows. The
   shapes have 10,000 surfels unless the claim is about more. Scans have a table below.
-- *Holds* says in how many of the nine cases the claim holds. The numbers are the pair of each shape at 180 rows.
+- *Holds* says in how many of the nine cases the claim holds: *yes* is all, *no* is none. The column of a shape has the two
+  numbers at 180 rows.
 - A claim without a number in its paper is read as weakly as its words allow: *better* means less error. For *similar*,
   *slightly* and *hardly* this page sets a limit, which the row shows.
 - A pixel is *inside* if it and its neighbours are covered. It is *visibly off* if R, G or B differs by more than 8/255 in sRGB.
@@ -27,7 +28,7 @@ depths. Only the methods draw into these formats; the pictures to compare with s
 about single pictures. Algorithms 2 and 3 of [ZP06] use the bins of its equation 6 in all groups, `--bin-edges common`.
 
 The command `splatref study claims bunny.ply igea.ply fandisk.ply -o docs` writes this page. Errors are the same on every
-machine, and a test compares the page with them. Rows with *ms* are times of the machine that wrote the page, on a CPU with
+machine, and a test compares the page with them. Rows with *ms* are times on the CPU of the machine that wrote the page, with
 two threads; the papers used GPUs. The pages in the last column have more settings, and the times in the papers.
 
 ";
@@ -84,8 +85,8 @@ pub fn page(verdicts: &[Verdict], scans: &[&str]) -> Files {
 const SCANS: &str = "
 ## Scans
 
-These are the same claims for scans: each triangle becomes a surfel, and the triangles are the truth. The numbers are in the
-order of the table above, for 180 rows.
+These are the same claims, measured on scans: each triangle becomes a surfel, and the triangles are the truth. The claims are
+in the order of the table above, and the numbers are at 180 rows.
 
 ";
 
