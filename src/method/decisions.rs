@@ -1,4 +1,4 @@
-//! Explanations: the fragments that reach a pixel, and each decision on them with its operands.
+//! Explain a pixel: the fragments that reach it, and each decision on them with its operands.
 
 use super::algorithm::Job;
 use super::fragment::TileSplats;
@@ -10,25 +10,26 @@ use crate::number::Exact;
 use crate::splat::{Shared, Splat};
 use std::fmt;
 
-/// A comparison that decided what became of a fragment.
+/// A comparison that decided the fate of a fragment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Decision<R> {
-    /// What is compared: `q`, `nearness`, `depth`, `z`, `bin`.
+    /// The quantity that is compared: `q`, `nearness`, `depth`, `z`, `bin`.
     pub quantity: &'static str,
     /// The fragment's value.
     pub own: R,
-    /// What it is compared with.
+    /// The value that it is compared with.
     pub against: R,
     /// Whether the comparison holds.
     pub holds: bool,
-    /// The comparison as it came out: `<=`, `>`.
+    /// The sign of the comparison as it came out: `<=`, `>`.
     sign: &'static str,
-    /// What that makes of the fragment: `inside`.
+    /// The word for the result: `inside`.
     word: &'static str,
 }
 
 impl<R: Exact> Decision<R> {
-    /// A decision; signs and words are those of a comparison that holds, and of one that does not.
+    /// A decision. The first of `signs` and of `words` stands for a comparison that holds, the
+    /// second for one that does not.
     pub(crate) fn new(
         quantity: &'static str,
         [own, against]: [R; 2],
@@ -46,7 +47,7 @@ impl<R: Exact> Decision<R> {
         Self::new("q", [q, shared.limit], decide::inside(q, shared.limit), ["<=", "> "], words)
     }
 
-    /// Whether a fragment is nearer than what the pixel holds.
+    /// Whether a fragment is nearer than the fragment that the pixel holds.
     pub(crate) fn nearer(w: R, held: R, words: [&'static str; 2]) -> Self {
         Self::new("nearness", [w, held], decide::nearer(w, held), ["> ", "<="], words)
     }
@@ -90,13 +91,14 @@ pub struct Touch<R> {
     pub surfel: u32,
     /// q of the fragment.
     pub q: R,
-    /// Its depth.
+    /// Depth of the fragment.
     pub t: R,
-    /// Its nearness.
+    /// Nearness of the fragment.
     pub w: R,
-    /// The decisions, in the order in which they are made: the first that does not hold ends them.
+    /// The decisions, in the order in which they are made. The first decision that does not hold
+    /// ends them.
     pub decisions: Vec<Decision<R>>,
-    /// What came out, by name: its depth, its weight.
+    /// The result, by name: its depth, its weight.
     pub gives: Option<(&'static str, R)>,
 }
 
@@ -123,7 +125,7 @@ impl<R: Exact> fmt::Display for Touch<R> {
 }
 
 impl<R: Exact> Touch<R> {
-    /// What was decided, and what came out.
+    /// Writes what was decided, and the result.
     pub(crate) fn fmt_decisions(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         for (i, decision) in self.decisions.iter().enumerate() {
             write!(f, "{}{decision}", if i == 0 { "  " } else { "   " })?;
@@ -140,7 +142,7 @@ impl<R: Exact> Touch<R> {
 pub(crate) struct Place {
     /// The tile that holds the pixel.
     pub(crate) tile: usize,
-    /// The pixel alone.
+    /// The rectangle of this one pixel.
     pub(crate) rect: Rect,
 }
 

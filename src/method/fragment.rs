@@ -1,4 +1,4 @@
-//! The fragments of splats: what every method that draws splats does with one.
+//! Visit the fragments of splats: what every method that draws splats does with a fragment.
 
 use super::prepare::Prepared;
 use crate::composite::decide;
@@ -6,7 +6,7 @@ use crate::frame::Rect;
 use crate::number::{Exact, Real};
 use crate::splat::{Shared, Splat, fragment};
 
-/// The splats that may touch some pixels, all of one tile.
+/// The splats that may touch some pixels of one tile.
 #[derive(Debug)]
 pub(crate) struct TileSplats<'a, R: Exact> {
     prepared: &'a Prepared<R, Splat<R>>,
@@ -16,12 +16,12 @@ pub(crate) struct TileSplats<'a, R: Exact> {
 }
 
 impl<'a, R: Exact> TileSplats<'a, R> {
-    /// The splats of a tile, at these of its pixels.
+    /// The splats of a tile, at the pixels of `rect`.
     pub(crate) fn new(prepared: &'a Prepared<R, Splat<R>>, tile: usize, rect: Rect) -> Self {
         Self { prepared, tile, rect }
     }
 
-    /// What the fragments of all splats share.
+    /// The constants that the fragments of all splats share.
     pub(crate) fn shared(&self) -> &'a Shared<R> {
         &self.prepared.shared
     }
@@ -31,8 +31,8 @@ impl<'a, R: Exact> TileSplats<'a, R> {
         self.prepared.epsilon
     }
 
-    /// Runs `draw` for every pixel in the bounds of every splat, in ascending surfel index: splat,
-    /// pixel counted row by row, q and nearness.
+    /// Runs `draw` for every pixel in the bounds of every splat, in ascending surfel index. `draw`
+    /// receives the splat, the pixel counted row by row, q and nearness.
     #[inline(always)]
     pub(crate) fn each_in_bounds(&self, mut draw: impl FnMut(&Splat<R>, usize, R, R)) {
         self.prepared.for_each(self.tile, |splat| {
@@ -42,8 +42,8 @@ impl<'a, R: Exact> TileSplats<'a, R> {
         });
     }
 
-    /// Runs `draw` for every fragment that is inside, in ascending surfel index: splat, pixel
-    /// counted row by row, q and nearness.
+    /// Runs `draw` for every fragment that is inside, in ascending surfel index. `draw` receives
+    /// the splat, the pixel counted row by row, q and nearness.
     #[inline(always)]
     pub(crate) fn each_inside(&self, mut draw: impl FnMut(&Splat<R>, usize, R, R)) {
         self.prepared.for_each(self.tile, |splat| {
@@ -52,8 +52,8 @@ impl<'a, R: Exact> TileSplats<'a, R> {
     }
 }
 
-/// Runs `visit` for the pixels of `rect` in the bounds of a splat: the pixel, counted row by row, and
-/// its column and row.
+/// Runs `visit` for the pixels of `rect` in the bounds of a splat. `visit` receives the pixel,
+/// counted row by row, and its column and row.
 #[inline(always)]
 pub(crate) fn each_pixel<R: Real>(
     splat: &Splat<R>,
@@ -69,7 +69,8 @@ pub(crate) fn each_pixel<R: Real>(
     }
 }
 
-/// Runs `draw` for these pixels: the pixel, counted row by row, q and nearness.
+/// Runs `draw` for the pixels of `rect` in the bounds of a splat. `draw` receives the pixel,
+/// counted row by row, q and nearness.
 #[inline(always)]
 pub(crate) fn each_in_bounds<R: Real>(
     shared: &Shared<R>,
@@ -83,7 +84,7 @@ pub(crate) fn each_in_bounds<R: Real>(
     });
 }
 
-/// The same for the fragments that are inside.
+/// As [`each_in_bounds`], for the fragments that are inside only.
 #[inline(always)]
 pub(crate) fn each_inside<R: Exact>(
     shared: &Shared<R>,

@@ -1,4 +1,4 @@
-//! Projection and binning: what every method does first.
+//! Project the surfels and bin the splats into tiles: the first step of every method.
 
 use super::algorithm::Job;
 use crate::frame::{Bins, Grid, Rect};
@@ -7,10 +7,10 @@ use crate::splat::SplatSettings;
 use crate::splat::{Projector, Shared, Splat, Tally, View, batch};
 use std::ops::Range;
 
-/// The visible splats of a picture, as records `S`, in batches of ascending items with their bins; in
-/// a batch as the bins number them.
+/// The visible splats of a picture, as records `S`, in batches of ascending items with their bins.
+/// Within a batch the splats stand in the order of the bins' numbers.
 ///
-/// An item is what is drawn as one splat: a surfel, or a surfel in one of its groups.
+/// An item is drawn as one splat: a surfel, or a surfel in one of its groups.
 #[derive(Debug)]
 pub(crate) struct Prepared<R, S> {
     pub(crate) shared: Shared<R>,
@@ -22,7 +22,7 @@ pub(crate) struct Prepared<R, S> {
 impl<R: Real, S: Send> Prepared<R, S> {
     /// Projects `count` items and sorts the splats into tiles.
     ///
-    /// `project` makes the records of a range of items; `bounds` gives the pixels of a record.
+    /// `project` makes the records of a range of items; `bounds` returns the pixels of a record.
     pub(crate) fn new(
         (job, grid): (&Job<'_>, &Grid),
         settings: &SplatSettings,
@@ -39,8 +39,8 @@ impl<R: Real, S: Send> Prepared<R, S> {
             splats.reserve_exact(range.len());
             project(projector, range, splats)
         };
-        // A tile finds its splats side by side: of a million, fetching each from elsewhere took a fifth
-        // of a frame.
+        // Copied side by side for a tile: with a million splats, fetching each from elsewhere took
+        // a fifth of a frame.
         let side_by_side = |splats: Vec<S>, bins: &mut Bins| match bins.renumber(splats.len()) {
             Some(order) => order.iter().map(|&i| splats[i as usize]).collect(),
             None => splats,
@@ -48,9 +48,9 @@ impl<R: Real, S: Send> Prepared<R, S> {
         Self::arranged((job, grid), settings, ranges.collect(), projected, bounds, side_by_side)
     }
 
-    /// Projects the items of some batches and sorts the splats into tiles; the order of the items is
-    /// that of the batches, of which each has items near each other. `project` and `bounds` are as in
-    /// [`Prepared::new`].
+    /// Projects the items of some batches and sorts the splats into tiles. The order of the items
+    /// is the order of the batches; the items of one batch are near each other. `project` and
+    /// `bounds` are as in [`Prepared::new`].
     pub(crate) fn of_batches<B: Send>(
         (job, grid): (&Job<'_>, &Grid),
         settings: &SplatSettings,
@@ -61,7 +61,8 @@ impl<R: Real, S: Send> Prepared<R, S> {
         Self::arranged((job, grid), settings, batches, project, bounds, |splats, _| splats)
     }
 
-    /// [`Prepared::of_batches`], with the splats of a batch as `arrange` puts them for its bins.
+    /// [`Prepared::of_batches`], with the splats of a batch in the order in which `arrange` puts
+    /// them for its bins.
     fn arranged<B: Send>(
         (job, grid): (&Job<'_>, &Grid),
         settings: &SplatSettings,
@@ -87,7 +88,7 @@ impl<R: Real, S: Send> Prepared<R, S> {
         }
     }
 
-    /// At most how many splats [`Prepared::for_each`] visits.
+    /// An upper bound on how many splats [`Prepared::for_each`] visits.
     fn count(&self, tile: usize) -> usize {
         self.batches.iter().map(|(_, bins)| bins.count(tile)).sum()
     }
@@ -100,8 +101,8 @@ impl<R: Real, S: Send> Prepared<R, S> {
         }
     }
 
-    /// The splats that touch a tile, in the order of the items, in the place of what was `gathered`
-    /// before; `touches` tells of a splat near the tile whether the splat may touch the tile.
+    /// Gathers the splats that touch a tile, in the order of the items; replaces the previous
+    /// content of `gathered`. `touches` says whether a splat near the tile may touch the tile.
     #[inline(always)]
     pub(crate) fn gather(&self, tile: usize, touches: impl Fn(&S) -> bool, gathered: &mut Vec<S>)
     where
@@ -110,6 +111,7 @@ impl<R: Real, S: Send> Prepared<R, S> {
         gathered.clear();
         gathered.reserve(self.count(tile));
         for (splats, bins) in &self.batches {
+            // Exact bins hold only splats that touch the tile.
             let exact = bins.is_exact();
             bins.for_each(tile, |i| {
                 let splat = &splats[i as usize];
@@ -121,16 +123,16 @@ impl<R: Real, S: Send> Prepared<R, S> {
     }
 }
 
-/// How many of `count` items a batch has.
+/// How many of the `count` items go into one batch.
 pub(crate) fn batch_size(grid: &Grid, count: usize) -> usize {
-    // Many batches, so that threads end together, of at most 8192 surfels, which fit the cache; but of
-    // two items for each tile, so that the starts of its bins take about 2 bytes an item; where tiles
-    // are so many that this would be all, four batches.
+    // At most 8192 surfels, which fit the cache, and many batches, so that threads end together. At
+    // least two items for each tile, so that the starts of the bins take about 2 bytes an item. If
+    // there are so many tiles that this would put everything into one batch, four batches.
     (count / 64).min(8192).max(2 * grid.len()).min(count.div_ceil(4).max(1))
 }
 
 impl<R: Exact> Prepared<R, Splat<R>> {
-    /// Every surfel as the splat it is, in ascending index.
+    /// Every surfel as its splat, in ascending index.
     pub(crate) fn splats(job: &Job<'_>, settings: &SplatSettings) -> Self {
         let surfels = &job.scene.surfels;
         Self::new(

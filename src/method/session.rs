@@ -1,4 +1,4 @@
-//! A scene that is drawn by one method from as many cameras as one likes.
+//! Draw one scene by one method, from as many cameras as you like.
 
 mod emulation;
 mod names;
@@ -21,7 +21,8 @@ use crate::number::Exact;
 use crate::progress::Progress;
 use crate::scene::{Boxes, Camera, Groups, Scene};
 
-/// A scene, a method, what the method prepared of the scene, and memory that is used again.
+/// A scene, a method, the index that the method prepared of the scene, and memory that every
+/// picture uses again.
 ///
 /// ```
 /// use splatref::frame::Exec;
@@ -48,7 +49,7 @@ pub struct Session<'a> {
     index: Index,
     memory: Memory,
     pool: Pool,
-    /// What [`Session::render`] has drawn last.
+    /// The last picture of [`Session::render`].
     picture: Option<Picture<f32>>,
 }
 
@@ -56,8 +57,8 @@ pub struct Session<'a> {
 pub type Made = (GroupingReport, Option<Extended>);
 
 impl<'a> Session<'a> {
-    /// Prepares a scene for a method: with the groups that the scene brought along, else with
-    /// groups made as [`Method::grouping`] says.
+    /// Prepares a scene for a method, with the groups that the scene brought along. If it brought
+    /// none, makes groups as [`Method::grouping`] says.
     ///
     /// # Errors
     /// As [`Session::with_groups`] and [`Grouping::groups`].
@@ -65,10 +66,10 @@ impl<'a> Session<'a> {
         Ok(Self::prepare(scene, method, None, exec, &|_, _, _| ())?.0)
     }
 
-    /// As [`Session::new`], with a grouping of one's own in place of the scene's groups and of the
-    /// method's; tells how the groups were made, if they were.
+    /// As [`Session::new`], with your own grouping in place of the scene's groups and the method's
+    /// grouping. Returns how the groups were made, if they were made.
     ///
-    /// `progress` is told the name of a step, how much of it is done, and of how much.
+    /// `progress` is called with the name of a step, how much of it is done, and the total.
     ///
     /// # Errors
     /// As [`Session::new`].
@@ -84,6 +85,7 @@ impl<'a> Session<'a> {
         let Some(default) = method.grouping() else {
             return Ok((Self::with_groups(scene, method, None, exec)?, None));
         };
+        // The scene brought groups along, and the caller asked for no others.
         if let (None, Some(groups)) = (grouping, scene.surfels.groups()) {
             return Ok((Self::with_groups(scene, method, Some(groups.clone()), exec)?, None));
         }
@@ -93,11 +95,11 @@ impl<'a> Session<'a> {
         Ok((session, Some((report, extended))))
     }
 
-    /// As [`Session::new`], with groups that somebody else has made.
+    /// As [`Session::new`], with groups that you have made.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] if the settings are out of range, if the method cannot draw the
-    /// scene, or if the groups are missing or of another number of surfels.
+    /// scene, or if the groups are missing or are for another number of surfels.
     pub fn with_groups(
         scene: &'a Scene,
         method: Method,
@@ -106,6 +108,7 @@ impl<'a> Session<'a> {
     ) -> Result<Self> {
         method.check()?;
         method.check_scene(scene)?;
+        // A method without groups must not see any.
         let groups = groups.filter(|_| method.grouping().is_some());
         let order = method.needs_order().then(|| BackToFront::new(&scene.surfels, exec));
         let alone = method.draws_objects() && scene.objects.is_none();
@@ -140,31 +143,32 @@ impl<'a> Session<'a> {
         self.index.groups.as_ref()
     }
 
-    /// What the next frame is given of the last one: what [`Session::render`] saw, or what somebody
-    /// resumed; none before the first frame, and of a method that carries nothing.
+    /// What the next frame receives from the last one: what [`Session::render`] saw, or what
+    /// [`Session::resume`] put in its place. It is none before the first frame, and for a method
+    /// without temporal state.
     #[must_use]
     pub fn seen(&self) -> Option<&Seen> {
         self.index.seen.as_ref()
     }
 
-    /// Goes on from what a frame saw, as if this session had drawn it; from nothing if there is none.
-    /// A method that carries nothing takes no notice.
+    /// Resumes from what a frame saw, as if this session had drawn that frame; from nothing if
+    /// `seen` is none. A method without temporal state ignores it.
     pub fn resume(&mut self, seen: Option<Seen>) {
         self.index.seen = seen;
     }
 
-    /// The picture in `f32`, by the fast path where there is one, in the memory of the last one. The
-    /// next picture is the next frame of a method that carries something from frame to frame; one that is
-    /// defined is so too, but leaves what the session carries as it is.
+    /// Renders the picture in `f32`, by the fast path where there is one, in the memory of the last
+    /// picture. Each call renders the next frame of a method with temporal state.
+    /// [`Session::define`] renders that next frame too, but does not advance the state.
     ///
     /// # Errors
-    /// [`crate::Error::Invalid`] if the camera is out of range, or what the method asks of scene
-    /// and settings together does not hold.
+    /// [`crate::Error::Invalid`] if the camera is out of range, or if scene and settings together
+    /// break a condition of the method.
     pub fn render(&mut self, camera: &Camera) -> Result<&Picture<f32>> {
         camera.check()?;
         let last = self.picture.take();
         let size = |picture: &Picture<f32>| [picture.frame.width, picture.frame.height];
-        // The memory of the last picture is there, if it was one of this size.
+        // A last picture of this size has already got the memory.
         if last.as_ref().map(size) != Some(camera.size()) {
             self.ask(camera, Making::Render)?;
         }
@@ -183,18 +187,18 @@ impl<'a> Session<'a> {
         Ok(self.picture.insert(picture))
     }
 
-    /// The picture by the definition, in any number; with `stages`, the planes of every stage,
-    /// which [`Method::stages`] lists.
+    /// Renders the picture by the definition, in any number; with `stages`, also the planes of
+    /// every stage, which [`Method::stages`] lists.
     ///
     /// # Errors
     /// As [`Session::render`].
-    // Compiled here for what the crate has itself, and not again in every crate that draws by definitions.
+    // Compiled once, in this crate, and not again in every crate that draws by definitions.
     #[inline(never)]
     pub fn define<R: Exact>(&self, camera: &Camera, stages: bool) -> Result<Picture<R>> {
         self.defined(&self.job(camera)?, stages)
     }
 
-    /// The picture of a job by the definition.
+    /// Renders a job by the definition.
     fn defined<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
         self.ask(job.camera, Making::Define { number: size_of::<R>() as u64, stages })?;
         let mut picture = self.method.define(job, stages)?;
@@ -204,25 +208,25 @@ impl<'a> Session<'a> {
         Ok(picture)
     }
 
-    /// The ids of the surfels in planes of ids, where a method that draws surfels draws those of objects;
-    /// none where it names them by their indices. Primitives are counted on after the surfels: a scene
-    /// that has any keeps its indices.
+    /// The ids of the surfels for planes of ids, if a method that draws surfels draws a scene of
+    /// objects; none if the planes hold the indices of the surfels. Primitives are numbered after
+    /// the surfels, so a scene that has any keeps its indices.
     fn names(&self) -> Option<Names<'_>> {
         if self.method.draws_objects() { None } else { self.numbers() }
     }
 
-    /// The ids of the surfels, which a verdict numbers by their order whatever the method.
+    /// The ids of the surfels, which a verdict numbers by their order, whichever the method.
     pub(crate) fn numbers(&self) -> Option<Names<'_>> {
         let objects = self.scene.objects.as_ref().filter(|_| self.scene.primitives.is_empty());
         objects.map(Names::new)
     }
 
-    /// Runs one stage of the method on somebody's planes of the stages that it reads, and gives
+    /// Runs one stage of the method on a client's planes of the stages that it reads, and returns
     /// the planes that the stage leaves.
     ///
     /// # Errors
-    /// [`crate::Error::Invalid`] if a plane is missing, or of another type or size than the
-    /// stage's; if there is no such stage; else as [`Session::render`].
+    /// [`crate::Error::Invalid`] if a plane is missing, or has another type or size than the
+    /// stage's, or if there is no such stage; else as [`Session::render`].
     pub fn stage<R: Exact>(
         &self,
         camera: &Camera,
@@ -232,7 +236,7 @@ impl<'a> Session<'a> {
         self.run(&self.job(camera)?, stage, from)
     }
 
-    /// A stage of a job on somebody's planes.
+    /// Runs a stage of a job on a client's planes.
     fn run<R: Exact>(&self, job: &Job<'_>, stage: &str, from: &Frame<R>) -> Result<Frame<R>> {
         let Some(names) = self.names() else { return self.method.stage(job, stage, from) };
         let mut numbered = from.clone();
@@ -242,7 +246,7 @@ impl<'a> Session<'a> {
         Ok(left)
     }
 
-    /// Every decision at one pixel, in words.
+    /// Explains every decision at one pixel, in words.
     ///
     /// # Errors
     /// [`crate::Error::Usage`] if the pixel is outside the picture; else as [`Session::render`].
@@ -252,8 +256,8 @@ impl<'a> Session<'a> {
         self.method.explain::<R>(&job, pixel)
     }
 
-    /// The surfels that weigh most at a pixel, by the ids of its planes, in `f64`, the heaviest first; none if the method does
-    /// not say.
+    /// The surfels that weigh most at a pixel, by the ids of its planes, in `f64`, the heaviest
+    /// first. The list is empty if the method does not report weights.
     ///
     /// # Errors
     /// As [`Session::explain`].
@@ -267,7 +271,7 @@ impl<'a> Session<'a> {
         Ok(weights)
     }
 
-    /// Runs a test of the job that a picture is.
+    /// Runs a test on the job of a picture.
     #[cfg(test)]
     pub(crate) fn with_job<T>(&self, camera: &Camera, test: impl FnOnce(&Job<'_>) -> T) -> T {
         test(&self.job(camera).expect("a camera that has been checked"))
@@ -280,8 +284,8 @@ impl<'a> Session<'a> {
     }
 }
 
-/// The id of a surfel that a verdict has numbered; what is the number of none stays, and so does that of
-/// an id of 40 bits.
+/// The id of a surfel that a verdict has numbered. A number that belongs to no surfel stays, and so
+/// does the number of a surfel whose id has 40 bits.
 pub(crate) fn named(names: Option<&Names<'_>>, index: u32) -> u32 {
     names.and_then(|names| names.told(index)).unwrap_or(index)
 }

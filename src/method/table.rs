@@ -1,4 +1,5 @@
-//! The table of methods: one row a method, from which everything follows that is said of methods.
+//! The table of methods: one row a method. Everything that the program says about a method follows
+//! from its row.
 
 use super::algorithm::{Algorithm, Job};
 use super::input_planes::InputPlanes;
@@ -14,8 +15,7 @@ use crate::scene::{Camera, Objects, Primitives, Scene};
 use crate::setting::{Fields, Visit};
 use crate::splat::SplatSettings;
 
-/// Makes the enum of methods, and hands every question on to the settings of the method that is
-/// asked.
+/// Makes the enum of methods, and forwards every question to the settings of the method.
 macro_rules! methods {
     ($($(#[$doc:meta])* $method:ident($settings:ty),)*) => {
         /// A method and what it computes.
@@ -24,7 +24,7 @@ macro_rules! methods {
             $($(#[$doc])* $method($settings),)*
         }
 
-        /// What the fast path of a method works in.
+        /// The memory that the fast path of a method works in.
         #[derive(Debug)]
         pub(crate) enum Memory {
             $($method(<$settings as Algorithm>::Memory),)*
@@ -55,7 +55,7 @@ macro_rules! methods {
                 match self { $(Self::$method(_) => <$settings>::NAME,)* }
             }
 
-            /// What the method is, in one line, with its source.
+            /// A one-line summary of the method, with its source.
             #[must_use]
             pub fn summary(&self) -> &'static str {
                 match self { $(Self::$method(_) => <$settings>::SUMMARY,)* }
@@ -67,38 +67,39 @@ macro_rules! methods {
                 match self { $(Self::$method(_) => <$settings>::STAGES,)* }
             }
 
-            /// Whether triangles, ribbons and tubes are drawn beside surfels.
+            /// Whether the method draws triangles, ribbons and tubes beside surfels.
             #[must_use]
             pub fn draws_primitives(&self) -> bool {
                 match self { $(Self::$method(_) => <$settings>::DRAWS_PRIMITIVES,)* }
             }
 
-            /// Whether triangles are drawn beside surfels, with other primitives or without.
+            /// Whether the method draws triangles beside surfels, with other primitives or without.
             #[must_use]
             pub fn draws_polygons(&self) -> bool {
                 let alone = match self { $(Self::$method(_) => <$settings>::DRAWS_POLYGONS,)* };
                 alone || self.draws_primitives()
             }
 
-            /// Whether the objects of a scene are drawn as they are; else the scene must be made flat.
+            /// Whether the method draws the objects of a scene as they are; else the scene must be
+            /// made flat.
             #[must_use]
             pub fn draws_objects(&self) -> bool {
                 match self { $(Self::$method(_) => <$settings>::DRAWS_OBJECTS,)* }
             }
 
-            /// How surfels are divided into groups if nobody says; none: the method draws no groups.
+            /// How the method groups surfels by default; none: the method draws no groups.
             #[must_use]
             pub fn grouping(&self) -> Option<Grouping> {
                 match self { $(Self::$method(_) => <$settings>::GROUPING,)* }
             }
 
-            /// Whether layers of surfels with opacities are blended; else a surfel is opaque.
+            /// Whether the method blends layers of surfels with opacities; else a surfel is opaque.
             #[must_use]
             pub fn blends(&self) -> bool {
                 match self { $(Self::$method(_) => <$settings>::BLENDS,)* }
             }
 
-            /// Whether surfels are needed from back to front.
+            /// Whether the method needs the surfels from back to front.
             #[must_use]
             pub fn needs_order(&self) -> bool {
                 match self { $(Self::$method(_) => <$settings>::BACK_TO_FRONT,)* }
@@ -108,21 +109,21 @@ macro_rules! methods {
                 match self { $(Self::$method(_) => <$settings>::FAST_BYTES_A_PIXEL,)* }
             }
 
-            /// Footprints, epsilon and culling of a method that draws splats.
+            /// Footprints, epsilon and culling, if the method draws splats.
             #[must_use]
             pub fn splats(&self) -> Option<&SplatSettings> {
                 match self { $(Self::$method(settings) => Algorithm::splats(settings),)* }
             }
 
-            /// Whether the numbers are in range.
+            /// Checks that the numbers are in range.
             ///
             /// # Errors
-            /// [`Error::Invalid`] if one is not.
+            /// [`Error::Invalid`] if a number is not.
             pub fn check(&self) -> Result<()> {
                 match self { $(Self::$method(settings) => settings.check(),)* }
             }
 
-            /// What the settings come to in a scene: names and values as TOML.
+            /// What the settings resolve to in a scene: names and values as TOML.
             #[must_use]
             pub fn settings_in_scene(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {
                 match self { $(Self::$method(settings) => Algorithm::settings_in_scene(settings, scene, camera),)* }
@@ -205,17 +206,17 @@ methods! {
 }
 
 impl Default for Method {
-    /// The first of the table.
+    /// The first row of the table.
     fn default() -> Self {
         Self::Ewa(ewa::Settings::default())
     }
 }
 
 impl Method {
-    /// The method of a name, with its default settings.
+    /// The method with this name, with its default settings.
     ///
     /// # Errors
-    /// [`Error::Usage`] with the names there are.
+    /// [`Error::Usage`] with the existing names.
     pub fn by_name(name: &str) -> Result<Self> {
         Self::all().into_iter().find(|method| method.name() == name).ok_or_else(|| {
             let names: Vec<_> = Self::all().iter().map(Self::name).collect();
@@ -223,11 +224,11 @@ impl Method {
         })
     }
 
-    /// Whether the method can draw all of a scene.
+    /// Checks that the method can draw everything in a scene.
     ///
     /// # Errors
     /// [`Error::Invalid`] if the scene has primitives and the method draws surfels alone, or if the
-    /// scene is of objects, has not been made flat, and the method does not draw objects.
+    /// scene consists of objects, has not been made flat, and the method does not draw objects.
     pub fn check_scene(&self, scene: &Scene) -> Result<()> {
         let flat = !scene.surfels.is_empty() || !scene.primitives.is_empty();
         if scene.objects.is_some() && !flat && !self.draws_objects() {
@@ -237,12 +238,14 @@ impl Method {
                 self.name()
             )));
         }
-        // Those of objects too, where nobody makes the scene flat.
+        // The primitives of objects count too, because a method that draws objects never makes the
+        // scene flat.
         let objects = scene.objects.iter().flat_map(|objects| {
             objects.objects().iter().map(|object| &objects.geometries()[object.geometry].primitives)
         });
         let all = || objects.clone().chain([&scene.primitives]);
         let lines = all().any(|one| !one.ribbons.is_empty() || !one.tubes.is_empty());
+        // Primitives of a geometry that was not loaded cannot be looked at, only counted.
         let unread = scene.objects.as_ref().is_some_and(Objects::have_primitives);
         let nothing = all().all(Primitives::is_empty) && !unread;
         let draws = |method: &Self| match (lines, nothing) {

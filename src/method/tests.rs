@@ -1,4 +1,4 @@
-//! What the tests of several methods draw, and tests of every method in the table.
+//! Scenes that the tests of several methods draw, and tests of every method in the table.
 
 mod explanations;
 mod extremes;
@@ -43,7 +43,7 @@ pub(crate) fn cameras() -> Vec<Camera> {
     cameras.map(|([w, h], lens)| Camera::new(w, h, pose, lens).unwrap()).collect()
 }
 
-/// A sphere in a light, its surfels in three groups, and no two neighbours in one.
+/// A sphere in a light, its surfels in three groups, so that no two neighbours share one.
 pub(crate) fn sphere_of_groups() -> (Scene, Groups) {
     let surfels = Shape::Sphere.surfels(150, 3).unwrap();
     let own = (0..surfels.len()).map(|i| (i % 3) as u8).collect();

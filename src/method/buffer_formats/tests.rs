@@ -8,7 +8,7 @@ use crate::splat::Epsilon;
 use glam::{DVec3, Vec3};
 use proptest::prelude::*;
 
-/// What the bits of a half float say, by its fields.
+/// The value of a half float's bits, by its fields.
 fn decoded(bits: u16) -> f64 {
     let (exponent, fraction) = (i32::from(bits >> 10 & 0x1f), f64::from(bits & 0x3ff));
     let power = |e: i32| (0..e.abs()).fold(1.0, |p, _| if e < 0 { p / 2.0 } else { p * 2.0 });
@@ -19,7 +19,8 @@ fn decoded(bits: u16) -> f64 {
     if bits >> 15 == 1 { -value } else { value }
 }
 
-/// Every half float is itself; what lies between two goes to the nearer one, halfway to the even one.
+/// Every half float stays itself. A number between two half floats goes to the nearer one, and
+/// halfway to the even one.
 #[test]
 fn halves_are_the_nearest() {
     for bits in 0..0x7c00_u16 {
@@ -54,7 +55,7 @@ fn range(perspective: bool) -> DepthRange {
     DepthRange { near: 2.0, far: 6.0, perspective }
 }
 
-/// The step of t is that of z by the derivative of z, t^2 (f - n) / (n f) / (2^N - 1).
+/// The step of t is the step of z times the derivative of t by z: t^2 (f - n) / (n f) / (2^N - 1).
 #[test]
 fn a_depth_is_off_by_half_a_step_of_its_buffer() {
     for (format, count) in [(DepthBuffer::Unorm16, 65_535.0), (DepthBuffer::Unorm24, 16_777_215.0)]
@@ -77,7 +78,7 @@ fn a_depth_is_off_by_half_a_step_of_its_buffer() {
     assert_eq!(ends, [2.0, 6.0], "what lies beyond is at the end");
 }
 
-/// So many discs one behind the other, closer than epsilon, seen from the front.
+/// A stack of `count` discs, closer than epsilon, seen from the front.
 fn stack(count: usize, color: f32) -> Scene {
     let cloud = Cloud {
         position: (0..count).map(|i| Vec3::Z * (i as f32 * 1e-5)).collect(),
@@ -104,12 +105,13 @@ fn formats(buffers: Buffers) -> Formats {
     Formats { buffers, ..Formats::default() }
 }
 
-/// Additions one by one, by a table of all half floats: the sum sticks where half a step is more than a weight.
+/// Additions one by one, by a table of all half floats: the sum sticks where half a step is more
+/// than a weight.
 #[test]
 fn sums_are_rounded_after_every_addition() {
     let count = 3000;
     let scene = stack(count, 0.7);
-    // All discs have the same weight: the camera is orthographic.
+    // All discs have the same weight, because the camera is orthographic.
     let one = sums(&stack(1, 0.7), Formats::default());
     let weight = f64::from(*one.scalar("attributes.weight").unwrap().at(8, 8));
     let halves: Vec<f64> = (0..=0x7bff).map(decoded).collect();
@@ -135,7 +137,8 @@ fn sums_are_rounded_after_every_addition() {
     assert_eq!(*eight.color("attributes").unwrap().at(8, 8), [1.0; 3], "colours saturate too");
 }
 
-/// Sheets of one disc each, apart by more than epsilon, peeled: every layer by the page, in 8 bits.
+/// Sheets of one disc each, apart by more than epsilon, peeled: every layer as the page says, in 8
+/// bits.
 #[test]
 fn layers_are_rounded_one_under_the_other() {
     let (count, own, opacity) = (6, 0.7, 0.3);
@@ -171,7 +174,8 @@ fn layers_are_rounded_one_under_the_other() {
     assert_ne!(whole.color("").unwrap().at(8, 8)[0], seen[0]);
 }
 
-/// A depth buffer that is coarser than epsilon gives a depth back before which the fragment is left over.
+/// A depth buffer coarser than epsilon can return a depth before the fragment; the fragment is then
+/// left over.
 #[test]
 fn a_layer_may_begin_before_its_fragment() {
     let cloud = stack(1, 0.7).surfels.into_cloud();
@@ -190,14 +194,14 @@ fn a_layer_may_begin_before_its_fragment() {
     }
 }
 
-/// What every method draws, before a camera of this size.
+/// A scene that every method draws, and a camera of this size.
 fn torus([width, height]: [u32; 2]) -> (Scene, Camera) {
     let shape = Shape::Torus;
     let camera = Camera::new(width, height, shape.default_pose(), shape.default_lens()).unwrap();
     (Scene::lit("torus", shape.surfels(800, 0).unwrap()), camera)
 }
 
-/// In `f32` the stages one by one are the definition, of every method.
+/// Buffers of `f32` change nothing: the stages one by one give the definition, for every method.
 #[test]
 fn stored_as_they_are_pictures_are_the_definition() {
     let exec = Exec::new(2, 16).unwrap();
@@ -210,7 +214,7 @@ fn stored_as_they_are_pictures_are_the_definition() {
     }
 }
 
-/// What every number of every plane is, where it is stored.
+/// Every number of every plane is one that its buffer can store.
 #[test]
 fn every_plane_holds_what_its_buffer_can() {
     let exec = Exec::new(2, 16).unwrap();
@@ -235,8 +239,8 @@ fn every_plane_holds_what_its_buffer_can() {
     }
 }
 
-/// Every stage, run on what is stored, all of its levels at once, leaves what is stored: no stage and no level was
-/// made of numbers that no buffer held.
+/// Every stage, run on the stored planes with all of its levels at once, leaves the stored planes.
+/// So no stage and no level was made from numbers that no buffer held.
 #[test]
 fn what_is_stored_was_made_of_what_is_stored() {
     let exec = Exec::new(2, 16).unwrap();
@@ -269,7 +273,7 @@ fn what_is_stored_was_made_of_what_is_stored() {
 }
 
 proptest! {
-    /// No rounding turns two numbers around, and none gives what a plane may not hold.
+    /// Rounding never swaps two numbers, and never gives a value that a plane may not hold.
     #[test]
     fn order_stays(a in any::<f32>(), b in any::<f32>()) {
         prop_assume!(!a.is_nan() && !b.is_nan());
@@ -295,7 +299,7 @@ fn an_empty_plane_is_left_alone() {
     assert_eq!(plane.scalar("visibility.Z").unwrap().values(), [f32::INFINITY; 2]);
 }
 
-/// Discs of one group at these heights, the colour of each its index.
+/// Discs of one group at these heights; the colour of each is its index.
 fn discs(heights: &[f32], offsets: &[f32]) -> Scene {
     let count = heights.len();
     let place = |(z, x): (&f32, &f32)| Vec3::new(*x, 0.0, *z);
@@ -309,7 +313,7 @@ fn discs(heights: &[f32], offsets: &[f32]) -> Scene {
     Scene::unlit("discs", Surfels::new(cloud).unwrap().0)
 }
 
-/// The disc that is seen in the middle, by every index plane that holds the nearest fragment.
+/// The disc seen in the middle, by every index plane that holds the nearest fragment.
 fn winners(scene: &Scene, method: Method, depth: DepthBuffer) -> Vec<u32> {
     let exec = Exec::new(2, 8).unwrap();
     let groups = method
@@ -327,16 +331,19 @@ fn winners(scene: &Scene, method: Method, depth: DepthBuffer) -> Vec<u32> {
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
-    /// The depth buffer's whole numbers decide, and of equal ones the first: by the orthographic z of the page.
+    /// The depth buffer's whole numbers decide, and the first of equal ones wins: by the
+    /// orthographic z of the page.
     #[test]
     fn fragments_that_round_to_one_depth_tie(heights in prop::collection::vec(-1e-4_f32..1e-4, 2..6)) {
         let scene = discs(&heights, &vec![0.0; heights.len()]);
-        // Of discs around the origin the sphere's radius is at least 1, and the eye 4 away.
+        // The bounding sphere of discs around the origin has a radius of at least 1, and the eye is
+        // 4 away.
         let (center, radius) = scene.bounding_sphere();
         let (near, far) = (4.0 - center.z - radius, 4.0 - center.z + radius);
         let far = if far > 2.0 * near { far } else { 2.0 * near };
         let code = |z: f32, count: f64| {
-            // The depth of the program, in f32: the view matrix of this camera only moves.
+            // The depth as the program computes it, in f32: the view matrix of this camera only
+            // moves.
             let t = f64::from(-(z - 4.0));
             ((t - near) / (far - near) * count + 0.5).floor()
         };
@@ -366,8 +373,9 @@ proptest! {
     }
 }
 
-/// z / n of [ZP06, eq. 10]: with as many bins as a buffer has numbers none is left for the ratio, and the first disc of
-/// a bin stays although the second is seen nearer to its centre.
+/// z / n of \[ZP06, eq. 10\]: if there are as many bins as the buffer has numbers, no number is
+/// left for the ratio. The first disc of a bin then stays, although the second is seen nearer to
+/// its centre.
 #[test]
 fn a_voronoi_depth_has_what_the_bins_leave() {
     let scene = discs(&[0.0, 0.0], &[0.4, 0.1]);

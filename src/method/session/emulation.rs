@@ -1,4 +1,5 @@
-//! Pictures as they become where passes leave their numbers in buffers of few digits.
+//! Emulate buffer formats of few digits: the picture as it becomes where passes store their numbers
+//! in them.
 
 use super::{Making, Session};
 use crate::error::Result;
@@ -10,9 +11,10 @@ use crate::method::{Method, Picture};
 use crate::scene::Camera;
 
 impl Session<'_> {
-    /// The picture by the definition in `f32`, as it becomes where passes leave their numbers in buffers of
-    /// these formats, see [`mod@crate::method::buffer_formats`]; with `stages`, the planes of every stage, too. What a
-    /// method carries to the next frame is what this frame saw in `f32`.
+    /// Renders the picture by the definition in `f32`, as it becomes where passes store their
+    /// numbers in buffers of these formats, see [`mod@crate::method::buffer_formats`]; with
+    /// `stages`, also the planes of every stage. A method with temporal state carries to the next
+    /// frame what this frame saw in `f32`.
     ///
     /// # Errors
     /// As [`Session::define`].
@@ -33,8 +35,8 @@ impl Session<'_> {
         Ok(picture)
     }
 
-    /// The planes of [`Session::emulate`] without those of the stages. Nothing is carried to the next frame, and
-    /// the picture in `f32` is not drawn for what else it tells.
+    /// The planes of [`Session::emulate`] without the planes of the stages. Nothing is carried to
+    /// the next frame. The picture in `f32` is not drawn, because only its planes are wanted.
     ///
     /// # Errors
     /// As [`Session::define`].
@@ -47,12 +49,13 @@ impl Session<'_> {
         Ok(frame)
     }
 
-    /// Whether a single stage draws all layers, and rounds each of them itself.
+    /// Whether one stage of the method draws all layers, and rounds each of them itself.
     fn stores_itself(&self) -> bool {
         matches!(self.method, Method::Peeling(_))
     }
 
-    /// The picture whose sums and depth tests are those of buffers, and between which depths these tell apart.
+    /// The job whose sums and depth tests are rounded as in the buffers, and the range of depths
+    /// that the depth buffer covers.
     pub(crate) fn storing<'j>(
         &'j self,
         camera: &'j Camera,
@@ -63,7 +66,8 @@ impl Session<'_> {
         Ok((Job { buffers: formats.buffers, key, ..self.job(camera)? }, range))
     }
 
-    /// Runs stage after stage, and puts what each leaves in the frame, rounded, before the next one reads it.
+    /// Runs stage after stage, and puts the planes of each into the frame, rounded, before the next
+    /// stage reads them.
     fn store_stages(
         &self,
         camera: &Camera,
@@ -76,6 +80,8 @@ impl Session<'_> {
         for stage in self.method.stages().iter().filter(|stage| !stage.leaves.is_empty()) {
             let levels = self.method.levels(&job, stage.name);
             let parts =
+                // A pyramid stores level after level, because a level reads the rounded level
+                // before it.
                 if levels.is_empty() { vec![None] } else { levels.into_iter().map(Some).collect() };
             for level in parts {
                 let mut left = self.run(&Job { level, ..job }, stage.name, frame)?;
@@ -89,7 +95,7 @@ impl Session<'_> {
         Ok(())
     }
 
-    /// Whether a plane is one of a picture without the planes of the stages.
+    /// Whether a plane belongs to a picture without the planes of the stages.
     pub(crate) fn is_shown(&self, plane: &NamedPlane<f32>) -> bool {
         let rows = self.method.stages().iter().flat_map(|stage| stage.leaves);
         let row = rows.into_iter().find(|row| row.is_called(&plane.name));

@@ -114,13 +114,13 @@ fn every_method_has_a_name_of_its_own_and_is_found_by_it() {
     assert_eq!(line, format!("method `evva`; give one of {names}"));
 }
 
-/// Whatever an earlier picture had, its memory shows nothing of it; and what a session draws is
-/// what the definition says.
+/// The memory of an earlier picture changes nothing in the next picture, and a session draws what
+/// the definition says.
 #[test]
 fn the_memory_of_an_earlier_picture_changes_no_bit() {
     let exec = Exec::new(2, 16).unwrap();
     let [small, large] = [6, 8].map(|i| cameras()[i]);
-    // Light, colours.
+    // With and without light, with and without colours.
     for (i, (lit, color)) in
         [(true, true), (false, false), (true, false), (false, true)].into_iter().enumerate()
     {
@@ -132,12 +132,13 @@ fn the_memory_of_an_earlier_picture_changes_no_bit() {
                 || Session::with_groups(&scene, method, Some(groups.clone()), &exec).unwrap();
             let mut again = session();
             for camera in [large, small, large, large] {
-                // What a frame saw is no memory: the next one is given it.
+                // What a frame saw is not memory: the next frame must not receive it here.
                 again.resume(None);
                 let after = again.render(&camera).unwrap();
                 assert!(after.tally.visible > 50, "{after:?}");
                 let defined = session().define::<f32>(&camera, false).unwrap();
-                // The shortest decimals of floats tell them apart to the last bit.
+                // The shortest decimals of two floats differ if any bit differs, except between
+                // NaNs.
                 let same = format!("{:?}", after.frame) == format!("{:?}", defined.frame);
                 assert!(same, "{method:?}, scene {i}");
             }
@@ -160,7 +161,7 @@ pub(crate) fn two_spheres() -> [Scene; 2] {
     [Scene { objects: None, ..flat.clone() }, flat]
 }
 
-/// Planes of ids name the surfels of objects, whichever way they come out or go in.
+/// Planes of ids name the surfels of objects, as output and as input.
 #[test]
 fn surfels_of_objects_are_named_by_their_ids() {
     let exec = Exec::sequential();

@@ -1,4 +1,4 @@
-//! What an explanation says is what the picture shows, and who asks for a pixel outside is told so.
+//! An explanation says what the picture shows; a pixel outside the picture is an error.
 
 use super::{cameras, color, count, id, scalar};
 use crate::composite::over::Blend;
@@ -10,7 +10,8 @@ use crate::method::{Method, Session, blue, ewa, peeling, transparent, transparen
 use crate::number::random::unit;
 use crate::scene::{Camera, Cloud, Groups, Light, Scene, Surfels};
 
-/// Random surfels of random opacities under a light, in three groups, from the side of a camera.
+/// Random surfels of random opacities under a light, in three groups, seen from one side by a
+/// camera.
 struct Example {
     scene: Scene,
     index: Index,
@@ -88,7 +89,7 @@ fn peeling_is_explained_as_it_is_drawn() {
     });
 }
 
-/// The layers that an explanation blends, from back to front.
+/// The layers that an explanation blends, from back to front, agree with the planes.
 fn agree(found: &transparent::explain::TransparentReplay<f64>, frame: &Frame<f64>) -> usize {
     let (x, y) = found.pixel;
     for at in &found.groups {

@@ -9,7 +9,7 @@ use crate::scene::{Camera, Cloud, Lens, Light, Phong, Pose, Scene, Surfels};
 use crate::shade::optics::{BendingLayers, Refraction};
 use glam::{DVec3, Vec3};
 
-/// What no plane may hold.
+/// A value that no plane may hold.
 fn bad<R: Exact>(values: &[R]) -> Option<&R> {
     values.iter().find(|v| {
         let v = v.to_f64();
@@ -32,7 +32,7 @@ fn assert_sound<R: Exact>(frame: &Frame<R>, what: &str) {
     }
 }
 
-/// Sheets of surfels that face the axes, one behind another, all of these colours and opacities.
+/// Sheets of surfels that face the axes, one behind another, all with this colour and opacity.
 fn scene(color: f32, opacity: Option<f32>, light: f32) -> Scene {
     let mut cloud = Cloud { color: Some(Vec::new()), ..Cloud::default() };
     for i in 0..300_u16 {
@@ -81,7 +81,7 @@ fn no_plane_holds_a_nan_or_a_negative_zero() {
     }
 }
 
-/// What is brighter than any light may be is dropped as other colours are that cannot be.
+/// A colour brighter than any light may be is dropped, like every other impossible colour.
 #[test]
 fn brighter_colours_are_dropped() {
     let cloud = |colors: [f32; 4]| Cloud {

@@ -1,4 +1,4 @@
-//! The page of planes says what pictures hold.
+//! The page of planes lists exactly the planes that pictures hold.
 
 use super::sphere_of_groups;
 use crate::frame::{Exec, pyramid};
@@ -8,13 +8,13 @@ use crate::scene::{Camera, Cloud, Light, Primitives, Scene, Surfels, Vertices};
 use crate::source::Shape;
 use glam::Vec3;
 
-/// The page that people read.
+/// The page in the documentation.
 const PAGE: &str = include_str!("../planes.md");
 
-/// The line of a row.
+/// The line of the page for a row.
 fn line(stage: &Stage, row: &PlaneRow) -> String {
     let PlaneRow { name, unit, meaning, .. } = row;
-    // Formulas as code: an underscore is markup else.
+    // Formulas become code, because an underscore outside code is markup.
     let word = |word: &str| if word.contains('_') { format!("`{word}`") } else { word.to_owned() };
     let meaning = meaning.split(' ').map(word).collect::<Vec<_>>().join(" ");
     let name = if name.is_empty() { "no name".to_owned() } else { format!("`{name}`") };
@@ -22,7 +22,7 @@ fn line(stage: &Stage, row: &PlaneRow) -> String {
     format!("| {} | {name} | {holds} | {unit} | {when} | {meaning} |\n", stage.name)
 }
 
-/// The page as the rows of the stages have it.
+/// The page as the rows of the stages write it.
 fn page() -> String {
     let mut page = String::new();
     for method in Method::all() {
@@ -44,7 +44,7 @@ fn the_page_has_every_row() {
     assert_eq!(PAGE, page);
 }
 
-/// The planes of a method that the page lists, and when each is there.
+/// The planes of a method that the page lists, and when a picture has each.
 fn listed(method: &Method) -> Vec<(&'static str, &'static str)> {
     let heading = format!("\n# `{}`\n", method.name());
     let (_, section) = PAGE.split_once(&heading).expect("a section");
@@ -124,7 +124,7 @@ fn agrees(session: &Session<'_>, camera: &Camera, stages: bool, found: Vec<&str>
     assert_eq!(found, expected, "{:?}, stages {stages}, {size:?}", session.method());
 }
 
-/// Spheres, with colours and without, lit and not, some with tubes, ribbons and an environment.
+/// Spheres with and without colours and light, some with tubes, ribbons and an environment.
 fn scenes() -> Vec<Scene> {
     let (sphere, _) = sphere_of_groups();
     let surfels = Shape::Sphere.surfels(60, 3).unwrap();

@@ -1,4 +1,5 @@
-//! Stages are what they say: a plane has one row, and planes come in as they went out.
+//! Stages keep their contract: a plane has one row, and a stage gives the same planes from planes
+//! that were read back.
 
 use crate::frame::{Exec, Frame};
 use crate::method::stage::{PlaneRow, Stage, When};
@@ -9,12 +10,12 @@ use crate::scene::{Camera, Cloud, Environment, Light, Scene, Surfels};
 use crate::shade::optics::{BendingLayers, Refraction};
 use crate::source::Shape;
 
-/// Every method, and what changes the planes of some.
+/// Every method, and settings that change the planes of some methods.
 fn methods() -> Vec<Method> {
     let mut methods = Method::all();
     for method in &mut methods {
         if let Method::Peeling(settings) = method {
-            // The layers that leave planes are all the layers.
+            // Every layer must leave its planes.
             settings.layers = crate::method::peeling::STAGES;
         }
     }
@@ -53,7 +54,8 @@ fn camera() -> Camera {
     Camera::new(43, 35, Shape::Torus.default_pose(), Shape::Torus.default_lens()).unwrap()
 }
 
-/// Every scene that a method can draw, in a session, with the method's stages.
+/// Runs `test` with a session of every scene and every method that can draw it, and with the
+/// method's stages.
 fn each_session(mut test: impl FnMut(&mut Session<'_>, &Camera, &'static [Stage])) {
     let exec = Exec::new(2, 16).unwrap();
     for scene in scenes() {
@@ -68,7 +70,7 @@ fn each_session(mut test: impl FnMut(&mut Session<'_>, &Camera, &'static [Stage]
     }
 }
 
-/// Whether a picture of a scene must have a plane; none if the settings say.
+/// Whether a picture of a scene must have a plane; none if the settings decide.
 fn is_there(when: When, scene: &Scene, stages: bool) -> Option<bool> {
     let tubes = !scene.primitives.is_empty();
     match when {
@@ -84,7 +86,8 @@ fn is_there(when: When, scene: &Scene, stages: bool) -> Option<bool> {
     }
 }
 
-/// A picture has the planes of the rows, each of one row, and was timed by stages.
+/// A picture has the planes of the rows, exactly one row matches each plane, and every stage was
+/// timed.
 fn agrees<R: Exact>(session: &Session<'_>, frame: &Frame<R>, laps: &[&str], keeps: bool) {
     let (method, scene) = (session.method(), session.scene());
     let rows: Vec<_> = method.stages().iter().flat_map(|stage| stage.leaves).collect();
@@ -118,7 +121,7 @@ fn every_plane_has_one_row_and_every_row_its_planes() {
     });
 }
 
-/// The planes of the stages that a stage reads, of a pool of planes.
+/// The planes of the stages that a stage reads, from a pool of planes.
 fn read<R: Exact>(pool: &Frame<R>, stages: &'static [Stage], stage: &Stage) -> Frame<R> {
     let read = stages.iter().filter(|before| stage.reads.contains(&before.name));
     let planes = read.flat_map(|before| before.planes_of(pool).planes).collect();
@@ -139,7 +142,7 @@ fn comes_in_as_it_went_out<R: Exact>(
         for plane in left.planes {
             let row = stage.row(&plane.name).expect("a row of the stage");
             match pool.plane(&plane.name) {
-                // Bit for bit: -0 is not 0.
+                // Bit for bit, because -0 is not 0.
                 Some(of) => {
                     let same = format!("{of:?}") == format!("{:?}", plane.samples);
                     assert!(same, "{method:?}, {}: plane `{}`", stage.name, plane.name);

@@ -19,8 +19,8 @@ fn twins() -> Scene {
     Scene::unlit("twins", Surfels::new(cloud).unwrap().0)
 }
 
-/// The planes `Z` and `id` of Algorithm 2, for surfels in these groups: at each pixel that is
-/// covered the surfel.
+/// The planes `Z` and `id` of Algorithm 2 for surfels in these groups: the surfel at each covered
+/// pixel.
 fn nearest<R: Exact>(groups: [u8; 2]) -> Vec<u32> {
     let (scene, exec) = (twins(), Exec::sequential());
     let groups = Groups::new(groups.to_vec(), Vec::new(), vec![1.0; 2]).unwrap();
@@ -46,8 +46,8 @@ fn nearest<R: Exact>(groups: [u8; 2]) -> Vec<u32> {
     found
 }
 
-/// \[ZP06, Algorithm 2\]: of two groups of equal depth the lower surfel is the nearest, whichever
-/// group is averaged first.
+/// \[ZP06, Algorithm 2\]: if two groups have equal depth, the lower surfel is the nearest,
+/// whichever group is averaged first.
 #[test]
 fn of_groups_of_equal_depth_the_lower_surfel_is_the_nearest() {
     for groups in [[0, 1], [1, 0]] {
