@@ -14,7 +14,7 @@ use crate::scene::Surfels;
 use crate::splat::Splat;
 use glam::Vec3;
 
-/// What has been added up at a pixel.
+/// The sums of a pixel so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Sums<R> {
     pub(crate) weight: R,
@@ -42,8 +42,9 @@ pub(crate) fn attributes<R: Exact>(
 }
 
 /// The sums over the fragments that are inside, for which `candidate` holds (as in
-/// [`super::visibility::foremost`]) and that pass the epsilon-z test against the nearest, in
-/// ascending surfel index, each stored as its buffer does.
+/// [`super::visibility::foremost`]) and that pass the epsilon-z test against the nearest fragment.
+/// The fragments are added in ascending surfel index, and each sum is stored as its buffer stores
+/// it.
 pub(crate) fn sums<R: Exact>(
     tile: &TileSplats<'_, R>,
     (surfels, buffers): (&Surfels, Buffers),
@@ -87,14 +88,14 @@ impl<R: Real> Sums<R> {
         }
     }
 
-    /// Adds the attributes of a fragment of a surfel, of which the back is seen or not.
+    /// Adds the attributes of a fragment; `back` says whether the back of its surfel is seen.
     pub(crate) fn add(&mut self, surfels: &Surfels, (surfel, back): (u32, R::Truth), weight: R) {
         let opacity = R::from_f32(surfels.opacity_of(surfel as usize));
         self.opacity = self.opacity + weight * opacity;
         self.add_opaque(surfels, (surfel, back), weight);
     }
 
-    /// The same without the opacity, which nobody reads of opaque splats.
+    /// As [`Sums::add`], without the opacity, because no pass reads the opacity of opaque splats.
     #[inline(always)]
     pub(crate) fn add_opaque(
         &mut self,

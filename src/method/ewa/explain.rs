@@ -1,4 +1,4 @@
-//! Every decision at one pixel, with its operands.
+//! Explain every decision at one pixel, with its operands.
 
 use super::Settings;
 use super::attributes::{Sums, sums};
@@ -15,7 +15,7 @@ use crate::number::Exact;
 use crate::scene::Surfels;
 use std::fmt;
 
-/// What happened at one pixel.
+/// The replay of one pixel.
 #[derive(Clone, Debug)]
 pub struct EwaReplay<R> {
     /// Column and row.
@@ -30,7 +30,8 @@ pub struct EwaReplay<R> {
     pub id: Option<u32>,
     /// Visibility splatting: the splats whose bounds hold the pixel, in ascending surfel index.
     pub touches: Vec<Touch<R>>,
-    /// Attribute splatting: those of them that are inside; each gives its weight, if it is visible.
+    /// Attribute splatting: the splats of `touches` that are inside; each gives its weight, if it
+    /// is visible.
     pub visible: Vec<Touch<R>>,
 }
 
@@ -60,8 +61,8 @@ pub(crate) struct TwoPasses<R> {
     pub(crate) visible: Vec<Touch<R>>,
 }
 
-/// Replays both passes at the one pixel of a rectangle, over the fragments strictly beyond a depth,
-/// if there is one.
+/// Replays both passes at the one pixel of a rectangle. If there is a depth `beyond`, only
+/// fragments strictly beyond it take part.
 pub(crate) fn two_passes<R: Exact>(
     tile: &TileSplats<'_, R>,
     surfels: &Surfels,

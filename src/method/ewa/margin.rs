@@ -1,4 +1,4 @@
-//! How close the decisions at each pixel come to being undecided.
+//! Measure how close the decisions at each pixel come to being undecided.
 
 use super::Settings;
 use super::possible::{PossibleSplat, PossibleSplats, project};
@@ -30,7 +30,8 @@ fn margins_of<R: Exact>(
     let shared = &splats.shared;
     Tiled::new(job, |tile, rect| {
         let ids = visible.tile(tile);
-        // The nearness of the nearest fragment of each pixel; if it has none, that of nothing.
+        // The nearness of the nearest fragment of each pixel; without one, the nearness of an empty
+        // pixel.
         let mut nearest = vec![shared.empty(); rect.pixels()];
         splats.for_each(tile, |PossibleSplat { splat, .. }| {
             each_pixel(splat, &rect, |pixel, at| {
@@ -46,6 +47,7 @@ fn margins_of<R: Exact>(
                     let (id, nearest) = (ids[pixel].id, nearest[pixel]);
                     let limit = decide::limit(shared.depth(nearest), splats.epsilon);
                     let operands = Operands { q, cutoff: shared.limit, t: shared.depth(w), limit };
+                    // A surfel that may not be drawn at all makes every decision undecided.
                     let own = if *certain {
                         operands.margin([w, nearest], id, splat.surfel)
                     } else {
@@ -73,7 +75,8 @@ struct Operands {
 }
 
 impl Operands {
-    /// The margin of the fragment of a surfel, of this nearness beside that of the nearest.
+    /// The margin of the fragment of a surfel; `w` is its nearness, `nearest` the nearness of the
+    /// nearest fragment.
     fn margin(&self, [w, nearest]: [Ball; 2], id: u32, surfel: u32) -> f64 {
         let mut margin = f64::INFINITY;
         let mut ask = |distance: f64| {
@@ -81,9 +84,11 @@ impl Operands {
                 margin = distance;
             }
         };
+        // Where the fragment is hidden either way, its rim changes nothing.
         if decide::visible(self.t, self.limit).possibly() {
             ask(self.q.distance(self.cutoff));
         }
+        // The nearest fragment is not compared with itself.
         if id != surfel && id != NO_ID {
             ask(self.t.distance(self.limit));
             ask(w.distance(nearest));
@@ -128,7 +133,7 @@ mod tests {
         assert_eq!(exact.margin(w, 7, 7), f64::INFINITY, "at the limit, and nothing was rounded");
     }
 
-    /// Runs a test of a shape, its picture, and its visibility in both numbers.
+    /// Runs a test on a shape, its picture, and its visibility in both number types.
     fn each_shape(
         mut test: impl FnMut(&Job<'_>, &Settings, &Tiled<Foremost<f32>>, &Tiled<Foremost<f64>>),
     ) {
@@ -149,7 +154,7 @@ mod tests {
         }
     }
 
-    /// The fragments that are inside, of all pixels of the picture: surfel and pixel.
+    /// The fragments that are inside, over all pixels of the picture: surfel and pixel.
     fn inside<R: Exact>(job: &Job<'_>, settings: &Settings) -> Vec<(u32, [u32; 2])> {
         let projector = Projector::<R>::new(View::new(job.camera), &settings.kernel, settings.cull);
         let shared = Shared::new(&View::new(job.camera), &settings.kernel);

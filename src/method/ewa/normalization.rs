@@ -1,4 +1,4 @@
-//! Normalization: averages and directions in place of sums.
+//! Normalization: turn sums into averages and directions.
 
 use super::attributes::Sums;
 use super::visibility::Foremost;
@@ -6,7 +6,8 @@ use crate::composite::sum;
 use crate::method::surface::SurfacePixel;
 use crate::number::Exact;
 
-/// At one pixel: depth of the nearest fragment; colour = sum / weight; normal = direction of sum / weight.
+/// The surface at one pixel: depth of the nearest fragment; colour = sum / weight; normal =
+/// direction of sum / weight.
 pub(crate) fn resolve<R: Exact>(nearest: &Foremost<R>, sums: &Sums<R>) -> SurfacePixel<R> {
     SurfacePixel {
         depth: nearest.depth,

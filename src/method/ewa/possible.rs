@@ -15,19 +15,19 @@ use std::ops::Range;
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PossibleSplat<P: Profile> {
     pub(crate) splat: Splat<Ball<P>>,
-    /// Whether it certainly is, and with this outline.
+    /// Whether the surfel is certainly drawn, and certainly with this outline.
     pub(crate) certain: bool,
 }
 
 /// The splats of a picture, each with the pixels that may be inside.
 pub(crate) type PossibleSplats<P> = Prepared<Ball<P>, PossibleSplat<P>>;
 
-/// The surfels that may be drawn.
+/// Projects the surfels that may be drawn.
 pub(crate) fn project<P: Profile>(job: &Job<'_>, settings: &Settings) -> PossibleSplats<P> {
     project_into(job, settings, |possible| possible, |possible| possible.splat.bounds)
 }
 
-/// The same as other records, of which `bounds` gives the pixels.
+/// As [`project`], with other records; `bounds` returns the pixels of a record.
 pub(crate) fn project_into<P: Profile, S: Copy + Send>(
     job: &Job<'_>,
     settings: &Settings,
@@ -54,8 +54,8 @@ pub(crate) fn project_into<P: Profile, S: Copy + Send>(
     )
 }
 
-/// [`each_possible`] of a range of surfels, in ascending order; affine outlines in lanes, but for what
-/// these leave open.
+/// [`each_possible`] for a range of surfels, in ascending order. Affine outlines are computed in
+/// lanes, except for the surfels that the lanes cannot decide.
 pub(crate) fn each_of_range<P: Profile>(
     (projector, common): (&Projector<Ball<P>>, &Projector<Ball<Common<P>>>),
     surfels: &Surfels,
@@ -72,8 +72,9 @@ pub(crate) fn each_of_range<P: Profile>(
     }
 }
 
-/// What a surfel may become: one splat, two if it is not certain whether it reaches the near plane,
-/// or none; and whether that is certain. Compiled once for all who ask: it is 120 kB.
+/// Calls `each` for every splat that a surfel may become: one splat, two if it is not certain
+/// whether the surfel reaches the near plane, or none; and says whether the splat is certain.
+/// Compiled once for all callers, because it takes 120 kB.
 #[inline(never)]
 pub(crate) fn each_possible<P: Profile>(
     projector: &Projector<Ball<P>>,

@@ -13,11 +13,11 @@ use crate::splat::{Shared, Splat};
 /// The nearest fragment of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Foremost<R> {
-    /// Its nearness; that of an empty pixel where there is none.
+    /// Nearness of the fragment; where there is none, the nearness of an empty pixel.
     pub(crate) nearness: R,
-    /// Its depth in world units; +inf where there is none.
+    /// Depth of the fragment in world units; +inf where there is none.
     pub(crate) depth: R,
-    /// Its surfel; [`NO_ID`] where there is none.
+    /// Surfel of the fragment; [`NO_ID`] where there is none.
     pub(crate) id: u32,
 }
 
@@ -38,8 +38,9 @@ pub(crate) fn visibility<R: Exact>(
     })
 }
 
-/// Of the fragments that are inside and for which `candidate` holds (the pixel, counted row by row,
-/// and the nearness), each pixel keeps the greatest nearness; ties: the lower surfel index.
+/// Each pixel keeps the greatest nearness of the fragments that are inside and for which
+/// `candidate` holds. `candidate` receives the pixel, counted row by row, and the nearness. Ties:
+/// the lower surfel index.
 pub(crate) fn foremost<R: Exact>(
     tile: &TileSplats<'_, R>,
     key: &DepthKey,
@@ -54,6 +55,7 @@ pub(crate) fn foremost<R: Exact>(
             (held.nearness, held.id) = (w, splat.surfel);
         }
     });
+    // The depth is computed once, for the fragment that stayed.
     for pixel in &mut pixels {
         pixel.depth = shared.depth(pixel.nearness);
     }

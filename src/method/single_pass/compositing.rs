@@ -7,7 +7,7 @@ use crate::frame::NO_ID;
 use crate::method::surface::SurfacePixel;
 use crate::number::Exact;
 
-/// What the compositing pass makes of one pixel.
+/// The result of the compositing pass at one pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Composite<R> {
     /// The sums, with the nearest depth.
@@ -18,7 +18,8 @@ pub(crate) struct Composite<R> {
     pub(crate) id: u32,
 }
 
-/// The compositing pass over the first `pixels` pixels of all images; `empty` is the nearness of an empty pixel.
+/// The compositing pass over the first `pixels` pixels of all images; `empty` is the nearness of an
+/// empty pixel.
 pub(crate) fn composites<R: Exact>(
     images: &[impl AsRef<[ImagePixel<R>]>],
     pixels: usize,
@@ -43,7 +44,7 @@ pub(crate) fn composites<R: Exact>(
 }
 
 impl<R: Exact> Composite<R> {
-    /// Normalization.
+    /// Normalizes the sums.
     pub(crate) fn surface(&self) -> SurfacePixel<R> {
         let Self { sums, id, .. } = *self;
         SurfacePixel {

@@ -1,4 +1,4 @@
-//! Every decision at one pixel, with its operands.
+//! Explain every decision at one pixel, with its operands.
 
 use super::Settings;
 use super::compositing::composites;
@@ -11,7 +11,7 @@ use crate::method::decisions::{Decision, Place, Touch, touch};
 use crate::number::Exact;
 use std::fmt;
 
-/// What happened at one pixel.
+/// The replay of one pixel.
 #[derive(Clone, Debug)]
 pub struct GroupsReplay<R> {
     /// Column and row.
@@ -24,7 +24,7 @@ pub struct GroupsReplay<R> {
     pub nearest: R,
     /// Whether the Voronoi depth test was made.
     pub voronoi: bool,
-    /// The groups that splats reach the pixel from, ascending.
+    /// The groups whose splats reach the pixel, ascending.
     pub groups: Vec<GroupAt<R>>,
 }
 
@@ -33,11 +33,11 @@ pub struct GroupsReplay<R> {
 pub struct GroupAt<R> {
     /// The group.
     pub group: usize,
-    /// Geometry pass: the splats whose bounds hold the pixel, in ascending surfel index; each that
-    /// passes was kept, until the next one that passes.
+    /// Geometry pass: the splats whose bounds hold the pixel, in ascending surfel index. Each splat
+    /// that passes was kept, until the next one that passes.
     pub touches: Vec<Touch<R>>,
-    /// Compositing pass: the fragment that the depth-image keeps, if any is inside; it gives its
-    /// weight.
+    /// Compositing pass: the fragment that the depth-image keeps, if a fragment is inside; it gives
+    /// its weight.
     pub kept: Option<Touch<R>>,
 }
 
@@ -65,7 +65,7 @@ pub fn explain<R: Exact>(
     Ok(GroupsReplay { pixel, limit, epsilon, nearest, voronoi, groups })
 }
 
-/// The geometry pass: each group that reaches the pixel, and by which splats.
+/// Replays the geometry pass: each group that reaches the pixel, and the splats by which it does.
 fn geometry_pass<R: Exact>(
     geometry: &Geometry<'_, R>,
     place: Place,
@@ -92,7 +92,7 @@ fn geometry_pass<R: Exact>(
     reached.filter(|(_, touches)| !touches.is_empty()).collect()
 }
 
-/// The compositing pass: whether the fragment that an image keeps is visible.
+/// Replays the compositing pass: whether the fragment that an image keeps is visible.
 fn compositing_pass<R: Exact>(
     touches: &[Touch<R>],
     image: &ImagePixel<R>,

@@ -14,7 +14,7 @@ use crate::number::{Exact, Real};
 use crate::scene::{Groups, Surfels};
 use crate::splat::{Shared, Splat};
 
-/// The splats of a picture, projected and sorted into tiles, and what the depth test needs.
+/// The splats of a picture, projected and sorted into tiles, and the data of the depth test.
 #[derive(Debug)]
 pub(crate) struct Geometry<'a, R: Exact> {
     surfels: &'a Surfels,
@@ -25,16 +25,16 @@ pub(crate) struct Geometry<'a, R: Exact> {
     key: DepthKey,
 }
 
-/// What a depth-image keeps at a pixel while it is drawn.
+/// The fragment that a depth-image keeps at a pixel while it is drawn.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Kept<R> {
     /// Voronoi-enhanced depth in bins, +inf where there is none; 0 under the plain depth test.
     pub(super) z: R,
-    /// Nearness of the fragment; that of an empty pixel where there is none.
+    /// Nearness of the fragment; where there is none, the nearness of an empty pixel.
     pub(super) nearness: R,
-    /// Its weight.
+    /// Weight of the fragment.
     weight: R,
-    /// Its surfel; [`NO_ID`] where there is none.
+    /// Surfel of the fragment; [`NO_ID`] where there is none.
     surfel: u32,
     /// Whether the back of the surfel is seen.
     back: bool,
@@ -45,16 +45,17 @@ pub(super) struct Kept<R> {
 pub(crate) struct ImagePixel<R> {
     /// Depth and weighted attributes of the fragment that was kept.
     pub(crate) sample: WeightedFragment<R>,
-    /// Its nearness; that of an empty pixel where there is none.
+    /// Nearness of the fragment; where there is none, the nearness of an empty pixel.
     pub(crate) nearness: R,
-    /// Its Voronoi-enhanced depth in bins, +inf where there is none; 0 under the plain depth test.
+    /// Voronoi-enhanced depth of the fragment in bins, +inf where there is none; 0 under the plain
+    /// depth test.
     pub(crate) z: R,
-    /// Its surfel; [`NO_ID`] where there is none.
+    /// Surfel of the fragment; [`NO_ID`] where there is none.
     pub(crate) surfel: u32,
 }
 
 impl<'a, R: Exact> Geometry<'a, R> {
-    /// Projection.
+    /// Projects the splats and sets up the depth test.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] if there are no groups, or if the Voronoi depth test takes too
@@ -71,7 +72,7 @@ impl<'a, R: Exact> Geometry<'a, R> {
         })
     }
 
-    /// What the fragments of all splats share.
+    /// The constants that the fragments of all splats share.
     pub(crate) fn shared(&self) -> &Shared<R> {
         &self.splats.shared
     }
@@ -96,7 +97,7 @@ impl<'a, R: Exact> Geometry<'a, R> {
         usize::from(self.groups.own()[splat.surfel as usize])
     }
 
-    /// What a pixel keeps before anything is drawn.
+    /// The content of a pixel before anything is drawn.
     pub(super) fn empty(&self) -> Kept<R> {
         let z = if self.voronoi() { R::INFINITY } else { R::ZERO };
         let (nearness, weight) = (self.shared().empty(), R::ZERO);
@@ -108,9 +109,9 @@ impl<'a, R: Exact> Geometry<'a, R> {
         self.bins.is_some()
     }
 
-    /// The depth test: replaces what a pixel keeps by a fragment that is inside, if it passes.
-    /// Gives the fragment's Voronoi-enhanced depth, 0 under the plain depth test, and whether it
-    /// passed.
+    /// The depth test: a fragment that is inside replaces the kept fragment of a pixel, if it
+    /// passes. Returns the fragment's Voronoi-enhanced depth, 0 under the plain depth test, and
+    /// whether the fragment passed.
     pub(super) fn offer(
         &self,
         splat: &Splat<R>,
@@ -154,7 +155,7 @@ impl<'a, R: Exact> Geometry<'a, R> {
     }
 }
 
-/// The distance of a fragment from the centre of its splat, as a part of the splat's radius.
+/// The distance of a fragment from the centre of its splat, as a fraction of the splat's radius.
 pub(crate) fn ratio<R: Real>(q: R, limit: R) -> R {
     (q / limit).root_of_squares()
 }

@@ -1,18 +1,19 @@
-//! Single-pass point rendering: deferred blending over groups \[ZP06, Algorithm 1\].
+//! Render points in a single geometry pass: deferred blending over groups \[ZP06, Algorithm 1\].
 //!
-//! The passes of \[ZP06, Fig. 7\], for surfels whose [`Groups`] are known, each in its own group
-//! and at its own radius (what an extension added or enlarged is for transparency alone):
+//! The method runs the passes of \[ZP06, Fig. 7\]. It needs surfels whose [`Groups`] are known. It
+//! draws each surfel in its own group and at its own radius, because what an extension added or
+//! enlarged is for transparency alone:
 //!
 //! 1. **Projection.** Each surfel becomes a [`Splat`], as in [`super::ewa`].
-//! 2. **Geometry pass.** Each group k has a depth-image `I_k`. Each fragment of its surfels that is
-//!    inside (q <= k^2), in ascending surfel index, replaces what the pixel of `I_k` holds if it
-//!    passes the depth test ([`DepthTest`]); the fragment kept leaves its depth, its weight, and
-//!    its weight times normal and times colour (eq. 4), each added to 0, so that -0 becomes 0. A
-//!    surfel seen from behind gives its normal reversed.
-//! 3. **Compositing pass.** The operator of Fig. 5 over all `I_k`, see
-//!    [`crate::composite::groups`], with the sums in the order of the groups; then depth, average
-//!    colour and direction of the normal as in [`super::ewa`]. The id of a pixel is that of the
-//!    greatest nearness of all `I_k`, ties to the lower surfel.
+//! 2. **Geometry pass.** Each group k has a depth-image `I_k`. Take each fragment of the group's
+//!    surfels that is inside (q <= k^2), in ascending surfel index. If it passes the depth test
+//!    ([`DepthTest`]), it replaces the fragment that the pixel of `I_k` holds. The fragment kept
+//!    leaves its depth, its weight, and its weight times normal and times colour (eq. 4), each
+//!    added to 0, so that -0 becomes 0. A surfel seen from behind gives its normal reversed.
+//! 3. **Compositing pass.** Apply the operator of Fig. 5 over all `I_k`, see
+//!    [`crate::composite::groups`], with the sums in the order of the groups. Then compute depth,
+//!    average colour and direction of the normal as in [`super::ewa`]. The id of a pixel is the
+//!    surfel of the greatest nearness of all `I_k`, ties to the lower surfel.
 //! 4. **Deferred shading**, see [`crate::shade`].
 //!
 //! The depth test of the geometry pass:
@@ -20,28 +21,27 @@
 //! - [`DepthTest::Plain`]: the greater nearness wins, ties to the lower surfel.
 //! - [`DepthTest::Voronoi`]: the smaller Voronoi-enhanced depth wins (eq. 10, see
 //!   [`crate::composite::bins`]), ties to the lower surfel, with `ratio = sqrt(q / (k k))`. With
-//!   the paper's kernel, a disc by ray casting without low-pass filter, that is `|f_i - p_i| /
-//!   r_i`. `Decided:` with any other footprint q is the squared distance from its own centre in its
-//!   own standard deviations, and the ratio is the same formula.
+//!   the paper's kernel, a disc by ray casting without low-pass filter, this ratio is `|f_i - p_i|
+//!   / r_i`. `Decided:` the ratio has the same formula with any other footprint. There q is the
+//!   squared distance from the footprint's own centre in its own standard deviations.
 //!
-//! `Decided:` `d_min` and `d_max` are the depths of [`depth_range`], which a backend knows before
-//! it has drawn anything; the depth of a fragment is brought into the bins (an enlarged splat can
-//! leave them).
+//! `Decided:` `d_min` and `d_max` are the depths of [`depth_range`], because a backend knows them
+//! before it has drawn anything. The depth of a fragment is clamped into the bins, because an
+//! enlarged splat can leave them.
 //!
-//! # When it is the 2+1-pass method
+//! # When the picture equals the 2+1-pass method
 //!
-//! At a pixel where no two fragments of one group are within epsilon of the nearest fragment of
-//! all, and with the plain depth test, the sums of both methods are over the same fragments: the
-//! pictures differ by the order of the sums alone. Groups that do not overlap (c = 1, nothing
-//! relaxed) leave these pixels where it does not hold, because two fragments of one group are
-//! within epsilon:
+//! The sums of both methods are over the same fragments at every pixel where no two fragments of
+//! one group are within epsilon of the nearest fragment of all, if the depth test is the plain one.
+//! There the pictures differ by the order of the sums alone. Groups that do not overlap (c = 1,
+//! nothing relaxed) still have pixels where two fragments of one group are within epsilon:
 //!
 //! - discs that do not overlap in space, but do on the screen within epsilon of depth: at steep
 //!   angles, at the silhouette, and where two sheets are closer than epsilon;
 //! - footprints that are larger than their disc: the skirt of a low-pass filter, and the affine
 //!   outline of a disc under perspective.
 //!
-//! There the group keeps the nearer fragment alone.
+//! There the group keeps only the nearer fragment.
 //!
 //! The definition is over any [`Exact`] number; `fast` gives the same bits for `f32`. [`explain`]
 //! lists every decision at one pixel. What each stage leaves: [`mod@super::planes`].

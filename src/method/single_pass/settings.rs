@@ -1,4 +1,4 @@
-//! What is computed.
+//! The settings of the method.
 
 use crate::composite::bins::{DepthBins, MAX_BINS, Range};
 use crate::error::{Error, Result};
@@ -7,7 +7,7 @@ use crate::scene::{Camera, Scene, Surfels};
 use crate::setting::{Field, Fields, Slot, Visit, Words};
 use crate::splat::SplatSettings;
 
-/// What is computed; everything here may change the picture.
+/// The settings of the method; each of them may change the picture.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Settings {
     /// Footprints, the epsilon of the compositing pass, culling.
@@ -21,7 +21,7 @@ pub struct Settings {
 pub enum DepthTest {
     /// The nearest.
     Plain,
-    /// In the nearest depth bin the one nearest to its own centre \[ZP06, section 5.1\].
+    /// In the nearest depth bin, the fragment nearest to its own centre \[ZP06, section 5.1\].
     Voronoi(BinCount),
 }
 
@@ -48,6 +48,7 @@ impl Fields for Settings {
         each(self.depth.field());
         match &mut self.depth {
             DepthTest::Voronoi(bins) => bins.field(&mut |field| each(field)),
+            // Without the Voronoi test the row stays, marked idle.
             DepthTest::Plain => BinCount::default()
                 .field(&mut |field| each(field.idle("without depth = \"voronoi\""))),
         }
@@ -55,7 +56,7 @@ impl Fields for Settings {
 }
 
 impl DepthTest {
-    /// The row of the depth test, without that of its bins.
+    /// The row of the depth test, without the row of its bins.
     pub(crate) fn field(&mut self) -> Field<'_> {
         let help = "choose which of a group's overlapping fragments to keep: the nearest, or, in \
                     the nearest depth bin, the one closest to its own centre";
@@ -80,10 +81,10 @@ impl BinCount {
         *self = count.map_or(Self::Epsilon, Self::Count);
     }
 
-    /// Whether the number is in range.
+    /// Checks that the number is in range.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if it is not.
+    /// [`Error::Invalid`] if the number is not.
     pub fn check(&self) -> Result<()> {
         match *self {
             Self::Count(n) if !(1..=MAX_BINS).contains(&n) => {
@@ -105,8 +106,8 @@ impl BinCount {
         }
     }
 
-    /// The bins of a picture as TOML: `d_min`, `d_max` and n of \[ZP06, eq. 6\], if there are not
-    /// too many.
+    /// The bins of a picture as TOML: `d_min`, `d_max` and n of \[ZP06, eq. 6\]; none if there are
+    /// too many bins.
     pub(crate) fn settings_in_scene(
         &self,
         splats: &SplatSettings,
@@ -121,7 +122,7 @@ impl BinCount {
 }
 
 impl Settings {
-    /// Whether the numbers are in range.
+    /// Checks that the numbers are in range.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`SplatSettings::check`] and [`BinCount::check`].
@@ -147,11 +148,11 @@ impl Settings {
 
 /// `d_min` and `d_max` of \[ZP06, eq. 6\]: the depths of the scene's bounding sphere.
 ///
-/// With the centre (x, y, z) and the radius r of [`Surfels::bounding_sphere`] and the third row m
-/// of the view matrix, in f64: `t = -(((m0 x + m1 y) + m2 z) + m3)`; `d_min` is t - r, at least the
-/// near plane, and `d_max` is t + r, each rounded once to `f32`. Where `d_max` would not be greater
-/// than `d_min` (nothing is in sight, or the scene is less deep than the spacing of `f32` there) it
-/// is the next `f32` after it.
+/// The inputs are the centre (x, y, z) and the radius r of [`Surfels::bounding_sphere`] and the
+/// third row m of the view matrix. In f64: `t = -(((m0 x + m1 y) + m2 z) + m3)`; `d_min` is t - r,
+/// at least the near plane, and `d_max` is t + r, each rounded once to `f32`. If `d_max` would not
+/// be greater than `d_min`, it is the next `f32` after `d_min`. That happens if nothing is in
+/// sight, or if the scene is less deep than the spacing of `f32` there.
 #[must_use]
 pub fn depth_range(surfels: &Surfels, camera: &Camera) -> (f32, f32) {
     let (center, radius) = surfels.bounding_sphere();
