@@ -7,7 +7,7 @@ use crate::composite::over::Blend;
 use crate::frame::NO_ID;
 use crate::number::{Exact, Real};
 
-/// The groups of a pixel together.
+/// The average of all groups at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct GroupAverage<R> {
     pub(crate) blend: Blend<R>,
@@ -19,7 +19,7 @@ pub(crate) struct GroupAverage<R> {
     pub(crate) layers: R,
     /// Least depth of any group.
     pub(crate) depth: R,
-    /// Its surfel; of equal depths the lower one.
+    /// Surfel of that depth; the lower one if depths are equal.
     pub(crate) surfel: u32,
 }
 
@@ -38,7 +38,7 @@ pub(crate) fn averages<R: Exact>(
             count += u8::from(layers.count > 0 || holes == Holes::Background);
             sum.add(layers);
         }
-        // An image that is left out has added zeros.
+        // An image that is left out has added zeros, so only the count differs.
         if count == 0 { sum } else { sum.divided(R::from_f32(f32::from(count))) }
     };
     (0..pixels).map(average).collect()

@@ -17,22 +17,22 @@ use crate::scene::Scene;
 use crate::shade::phong::Shader;
 use crate::splat::{Fate, Shared, Splat, Tally, View, batch, project};
 
-/// A surfel in one of its groups, on the screen.
+/// A surfel in one of its groups, projected.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct GroupSplat<R: Exact> {
     pub(super) splat: Splat<R>,
     pub(super) group: u8,
-    /// Shaded at the centre.
+    /// The colour, shaded at the centre.
     color: [R; 3],
     pub(super) alpha: R,
 }
 
-/// What the image of a group holds at a pixel.
+/// The content of a group's image at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct GroupLayers<R> {
     /// The bin of the nearest fragment so far; +inf where there is none.
     pub(crate) bin: R,
-    /// All fragments that passed, blended.
+    /// The blend of all fragments that passed.
     pub(crate) blend: Blend<R>,
     /// The sum of the opacities in front of the nearest opaque fragment.
     pub(crate) opacity: R,
@@ -42,7 +42,7 @@ pub(crate) struct GroupLayers<R> {
     pub(crate) count: u8,
     /// Depth of the fragment that passed last, the nearest; +inf where there is none.
     pub(crate) depth: R,
-    /// Its surfel.
+    /// Surfel of that fragment.
     pub(crate) surfel: u32,
 }
 
@@ -58,7 +58,7 @@ impl<R: Exact> GroupLayers<R> {
         surfel: NO_ID,
     };
 
-    /// The depth test: whether a fragment is in a nearer bin than all before.
+    /// The depth test: whether a fragment is in a nearer bin than all fragments before.
     pub(super) fn is_behind(&self, bin: R) -> bool {
         decide::nearer_bin(bin, self.bin)
     }
@@ -66,6 +66,7 @@ impl<R: Exact> GroupLayers<R> {
     /// Blends a fragment that passed the depth test.
     pub(super) fn add(&mut self, drawn: &GroupSplat<R>, bin: R, depth: R) {
         let GroupSplat { alpha, color, .. } = *drawn;
+        // An opaque fragment hides everything that was blended before it.
         let opaque = decide::opaque(alpha);
         *self = Self {
             bin,
@@ -83,13 +84,13 @@ impl<R: Exact> GroupLayers<R> {
 #[derive(Debug)]
 pub(crate) struct Blending<R: Exact> {
     prepared: Prepared<R, GroupSplat<R>>,
-    /// Of each group.
+    /// The bins of each group.
     pub(super) bins: Vec<DepthBins<R>>,
     buffers: Buffers,
 }
 
 impl<R: Exact> Blending<R> {
-    /// Order, projection and shading.
+    /// Orders, projects and shades the surfels.
     pub(crate) fn project(job: &Job<'_>, settings: &Settings) -> Result<Self> {
         let (scene, groups) = (job.scene, job.index.groups()?);
         let surfels = &scene.surfels;
@@ -120,12 +121,12 @@ impl<R: Exact> Blending<R> {
         Ok(Self { prepared, bins, buffers: job.buffers })
     }
 
-    /// What became of the surfels, each counted once in each of its groups.
+    /// Counts the fate of the surfels; each counts once in each of its groups.
     pub(crate) fn tally(&self) -> Tally {
         self.prepared.tally
     }
 
-    /// What the fragments of all splats share.
+    /// The constants that the fragments of all splats share.
     pub(super) fn shared(&self) -> &Shared<R> {
         &self.prepared.shared
     }
@@ -142,8 +143,8 @@ impl<R: Exact> Blending<R> {
 
     /// The geometry pass over some pixels of a tile: the image of each group, row by row.
     ///
-    /// Fragments for which `stays` (the pixel, counted row by row, and the depth) does not hold are
-    /// dropped.
+    /// `stays` receives the pixel, counted row by row, and the depth of a fragment. Fragments for
+    /// which it does not hold are dropped.
     pub(crate) fn images(
         &self,
         tile: usize,
@@ -170,8 +171,8 @@ impl<R: Exact> Blending<R> {
         images
     }
 
-    /// Runs `visit` for every pixel of `rect` in the bounds of every splat, from back to front:
-    /// splat, q and nearness.
+    /// Runs `visit` for every pixel of `rect` in the bounds of every splat, from back to front.
+    /// `visit` receives the splat, q and nearness.
     pub(super) fn each_in_bounds(
         &self,
         tile: usize,

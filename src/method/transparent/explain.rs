@@ -1,4 +1,4 @@
-//! Every decision at one pixel, with its operands.
+//! Explain every decision at one pixel, with its operands.
 
 use super::Settings;
 use super::averaging::{GroupAverage, averages};
@@ -10,16 +10,16 @@ use crate::method::decisions::{Decision, Place, Touch, touch};
 use crate::number::Exact;
 use std::fmt;
 
-/// What happened at one pixel.
+/// The replay of one pixel.
 #[derive(Clone, Debug)]
 pub struct TransparentReplay<R> {
     /// Column and row.
     pub pixel: (u32, u32),
     /// k^2, the limit of q.
     pub limit: R,
-    /// Fragments up to this depth are masked, if there is a layer before the others.
+    /// If there is a nearest layer before these, fragments up to this depth are masked.
     pub beyond: Option<R>,
-    /// The groups that splats reach the pixel from, ascending.
+    /// The groups whose splats reach the pixel, ascending.
     pub groups: Vec<BlendedGroupAt<R>>,
     /// Opacity of the average of all groups.
     pub alpha: R,
@@ -29,7 +29,7 @@ pub struct TransparentReplay<R> {
     pub layers: R,
     /// Depth of the nearest fragment; +inf if the pixel is empty.
     pub nearest: R,
-    /// Its surfel.
+    /// Surfel of that fragment.
     pub id: u32,
 }
 
@@ -38,16 +38,16 @@ pub struct TransparentReplay<R> {
 pub struct BlendedGroupAt<R> {
     /// The group.
     pub group: usize,
-    /// The splats whose bounds hold the pixel, from back to front; each that passes is blended by
-    /// the opacity that it gives.
+    /// The splats whose bounds hold the pixel, from back to front. Each splat that passes is
+    /// blended with the opacity that it gives.
     pub touches: Vec<Touch<R>>,
     /// How many layers were blended, up to 255.
     pub count: u8,
-    /// Their opacity together.
+    /// The opacity of these layers together.
     pub alpha: R,
     /// Sum of the opacities in front of the nearest opaque layer.
     pub opacity: R,
-    /// Their colour, over black.
+    /// The colour of these layers, over black.
     pub color: [R; 3],
 }
 
@@ -64,8 +64,8 @@ pub fn explain<R: Exact>(
     Ok(replay(job, settings, pixel, None)?.0)
 }
 
-/// Replays both passes; fragments that are not strictly beyond a depth are dropped, if there is one.
-/// Gives the average of the groups, too.
+/// Replays both passes. If there is a depth `beyond`, fragments that are not strictly beyond it are
+/// dropped. Also returns the average of the groups.
 pub(crate) fn replay<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -97,7 +97,7 @@ pub(crate) fn replay<R: Exact>(
     Ok((replay, average))
 }
 
-/// The geometry pass: each group that reaches the pixel, and by which splats.
+/// Replays the geometry pass: each group that reaches the pixel, and the splats by which it does.
 fn geometry_pass<R: Exact>(
     blending: &Blending<R>,
     place: Place,

@@ -1,62 +1,69 @@
-//! Transparent surfels: back-to-front blending within groups, averaged \[ZP06, Algorithm 2\].
+//! Draw transparent surfels: blend them from back to front within groups, and average the groups
+//! \[ZP06, Algorithm 2\].
 //!
-//! A surfel has its own opacity alpha; where a scene has none it is 1. Opaque and transparent
-//! surfels mix freely. Back faces are layers too: [`Settings::default`] does not cull.
+//! Each surfel has its own opacity alpha; in a scene without opacities it is 1. Opaque and
+//! transparent surfels mix freely. Back faces are layers too, because [`Settings::default`] does
+//! not cull.
 //!
 //! # Algorithm 2
 //!
-//! 1. **Order.** The surfels from back to front, see [`crate::index::order`]. A surfel is drawn
-//!    once in each of its groups, its radius (or tangents) times the scale of the group, see
-//!    [`Groups`]; the order of a surfel's groups does not matter.
-//! 2. **Shading.** `Decided:` (blended fragments cannot be shaded later) each surfel is shaded
-//!    once, by [`crate::shade::phong`] at its centre with the normal of the side that is seen.
-//! 3. **Geometry pass.** For each fragment that is inside (q <= k^2; the kernel's weight plays no
-//!    part, section 3.3), with its bin of low-precision depth (eq. 6, [`crate::composite::bins`]; the bins of
-//!    the group, see below):
-//!    it passes if `bin < bin of the pixel`, at first +inf. Then the pixel takes its bin, and
-//!    blends ([`crate::composite::over`]) its shaded colour by alpha; alpha is added to the pixel's
-//!    sum of opacities (section 5.2.3), and one to its count of layers. `Departs:` an opaque
-//!    fragment sets that sum to 0 and marks the pixel as hiding what is behind: eq. 11 is made for
-//!    one opacity everywhere.
-//!    The pixel takes the depth t and the surfel of the fragment, too: the depth and the surfel of
-//!    the group are those of the fragment that passed last. A count of 255 stays 255.
-//! 4. **Compositing pass.** The average of the images, see [`Holes`]: colour, opacity, sum of
-//!    opacities, hidden part, count of layers; each is a sum in the order of the groups, divided
-//!    once by the count of the groups that [`Holes`] takes. The sums begin at 0. The average of no
-//!    group is 0.
+//! 1. **Order.** Sort the surfels from back to front, see [`crate::index::order`]. A surfel is
+//!    drawn once in each of its groups, its radius (or tangents) times the scale of the group, see
+//!    [`Groups`]. The order of a surfel's groups does not matter.
+//! 2. **Shading.** `Decided:` each surfel is shaded once, by [`crate::shade::phong`] at its centre
+//!    with the normal of the side that is seen, because blended fragments cannot be shaded later.
+//! 3. **Geometry pass.** Take each fragment that is inside (q <= k^2). The kernel's weight plays no
+//!    part (section 3.3). The fragment has a bin of low-precision depth (eq. 6,
+//!    [`crate::composite::bins`]; the bins of the group, see below). It passes if `bin < bin of the
+//!    pixel`; the bin of the pixel is +inf at first. A fragment that passes changes the pixel:
+//!    - The pixel takes the fragment's bin.
+//!    - The pixel blends ([`crate::composite::over`]) the fragment's shaded colour by alpha.
+//!    - Alpha is added to the pixel's sum of opacities (section 5.2.3). `Departs:` an opaque
+//!      fragment sets that sum to 0 and marks the pixel as hiding the fragments behind, because eq.
+//!      11 assumes one opacity everywhere.
+//!    - One is added to the pixel's count of layers. A count of 255 stays 255.
+//!    - The pixel takes the depth t and the surfel of the fragment. So the depth and the surfel of
+//!      the group belong to the fragment that passed last.
+//! 4. **Compositing pass.** Average the images, see [`Holes`]: colour, opacity, sum of opacities,
+//!    hidden part, count of layers. Each is a sum in the order of the groups, divided once by the
+//!    count of the groups that [`Holes`] takes. The sums begin at 0. The average of no group is 0.
 //!
-//! **Bins of a group.** `Decided:` eq. 6 with an n has one set of bins; \[ZP06\] does not say that all images
-//! have to share it. By default the bins of group k of K are [moved](crate::composite::bins) towards the eye by k/K
-//! of a bin, those of group 0 not at all; k/K is a quotient of the whole numbers in `f32`, the same for every number
-//! type. The arcs of a group, where fragments of a layer fall on either side of an edge, then lie elsewhere than those of
-//! the other groups, and the average has each with 1/K of its strength. So which group has which number matters, and with one bin a group
-//! may have two. [`BinEdges::Common`] moves none. (`docs/zp06.md` has what is off by both.)
+//! **Bins of a group.** `Decided:` each group has its own bins. Eq. 6 with an n has one set of
+//! bins, but \[ZP06\] does not say that all images have to share it. By default the bins of group k
+//! of K are [moved](crate::composite::bins) towards the eye by k/K of a bin; the bins of group 0 do
+//! not move. k/K is a quotient of the whole numbers in `f32`, the same for every number type.
+//!
+//! Where fragments of a layer fall on either side of an edge, a group shows an arc. Moved bins put
+//! the arcs of each group in a different place, so that the average shows each arc with 1/K of its
+//! strength. So it matters which group has which number, and with one bin a group may have two.
+//! [`BinEdges::Common`] moves no bins. (`docs/zp06.md` has the error of both.)
 //!
 //! # The nearest surfel
 //!
 //! The planes `Z` and `id` of the picture come from one group: the group of the least depth. Depths
-//! decide, not nearnesses: the depth is t = 1/w (or -w under an orthographic camera), rounded to
-//! the number type, so that two groups of different nearness can tie. Of equal depths the lower
-//! surfel index wins ([`crate::composite::decide::before_or_lower`]). A group without a fragment has
-//! the depth +inf and the surfel `0xFFFF_FFFF`.
+//! decide, not nearnesses. The depth is t = 1/w (or -w under an orthographic camera), rounded to
+//! the number type, so that two groups of different nearness can tie. If depths are equal, the
+//! lower surfel index wins ([`crate::composite::decide::before_or_lower`]). A group without a
+//! fragment has the depth +inf and the surfel `0xFFFF_FFFF`.
 //!
-//! `Decided:` within a group the depth test is the one of the bins. A fragment that is nearer than
-//! the layer before, but in the same bin, is dropped, and leaves no depth. So `Z` can be deeper than
-//! the nearest fragment that is inside.
+//! `Decided:` within a group the depth test compares bins. A fragment that is nearer than the layer
+//! before, but in the same bin, is dropped, and leaves no depth. So `Z` can be deeper than the
+//! nearest fragment that is inside.
 //!
 //! An environment is behind everything: colour + (1 - A) env(ray of the pixel), and A becomes 1.
-//! Without one colours are over black, that is, multiplied by A.
+//! Without an environment, colours are over black, that is, multiplied by A.
 //!
-//! # What it gets wrong
+//! # What the method gets wrong
 //!
 //! - Two fragments of one layer and one group that fall on either side of a bin's edge are blended
-//!   as two layers: darker arcs, the more of them the more bins there are, fainter where edges are staggered.
-//! - Two layers in one bin are one layer: the one that is drawn first, the farther, is seen.
-//! - A group that does not cover a layer leaves holes in it, see [`crate::index::grouping`] for the
+//!   as two layers. The picture shows darker arcs: more of them with more bins, and fainter ones
+//!   with staggered edges.
+//! - Two layers in one bin are one layer: you see the layer that is drawn first, the farther one.
+//! - A group that does not cover a layer leaves holes in it. See [`crate::index::grouping`] for the
 //!   extensions that close them, and [`Holes`].
 //! - Overlapping surfels are ordered by their centres, see [`crate::index::order`].
 //!
-//! The truth that it is held against is [`super::peeling`].
+//! [`super::peeling`] is the truth that the method is compared with.
 //!
 //! The definition is over any [`Exact`] number; `fast` gives the same bits for `f32`.
 //!

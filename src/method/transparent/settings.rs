@@ -1,4 +1,4 @@
-//! What is computed.
+//! The settings of the method.
 
 use crate::composite::bins::DepthBins;
 use crate::error::Result;
@@ -8,7 +8,7 @@ use crate::number::Real;
 use crate::setting::{Field, Fields, Slot, Visit, Words};
 use crate::splat::SplatSettings;
 
-/// What is computed; everything here may change the picture.
+/// The settings of the method; each of them may change the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Footprints, epsilon, culling.
@@ -17,27 +17,27 @@ pub struct Settings {
     pub bins: BinCount,
     /// Where the bins of each group begin.
     pub bin_edges: BinEdges,
-    /// What a group that has nothing at a pixel gives to the average.
+    /// What a group without a fragment at a pixel contributes to the average.
     pub holes: Holes,
 }
 
 /// Where the depth bins of each group begin.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum BinEdges {
-    /// `Decided:` those of group k of K are moved towards the eye by k/K of a bin.
+    /// `Decided:` the bins of group k of K are moved towards the eye by k/K of a bin.
     #[default]
     Staggered,
-    /// At the nearest depth in all groups, as \[ZP06, eq. 6\] has it.
+    /// At the nearest depth in all groups, as in \[ZP06, eq. 6\].
     Common,
 }
 
-/// What a group that has no fragment at a pixel gives to the average.
+/// What a group without a fragment at a pixel contributes to the average.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Holes {
     /// `Decided:` nothing: the average is over the other groups.
     #[default]
     Skipped,
-    /// The background, as averaging all images does to the letter \[ZP06, Algorithm 2\].
+    /// The background, as in averaging all images to the letter \[ZP06, Algorithm 2\].
     Background,
 }
 
@@ -76,16 +76,16 @@ impl Words for Holes {
 }
 
 impl Settings {
-    /// Whether the numbers are in range.
+    /// Checks that the numbers are in range.
     ///
     /// # Errors
-    /// [`crate::Error::Invalid`] if one is not.
+    /// [`crate::Error::Invalid`] if a number is not.
     pub fn check(&self) -> Result<()> {
         self.splats.check()?;
         self.bins.check()
     }
 
-    /// The bins of each of the groups of a picture.
+    /// The bins of each group of a picture.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] as [`BinCount::resolve`].
@@ -95,7 +95,7 @@ impl Settings {
         let bins = DepthBins::new(&self.bins.resolve(surfels, job.camera, epsilon)?);
         Ok((0..groups)
             .map(|group| match self.bin_edges {
-                // Group 0 is not moved: no sum that would be rounded.
+                // Group 0 is not moved, so that its bins need no sum that would be rounded.
                 BinEdges::Staggered if group > 0 => bins.moved(group as f32 / groups as f32),
                 _ => bins,
             })

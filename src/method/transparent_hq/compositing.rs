@@ -1,4 +1,4 @@
-//! Pass 3 of Algorithm 3: the nearest layer before the others, and what is refracted through it.
+//! Pass 3 of Algorithm 3: the nearest layer before the others, and the light refracted through it.
 
 use super::Settings;
 use super::nearest::FrontLayer;
@@ -11,7 +11,7 @@ use crate::scene::{Environment, Scene};
 use crate::shade::optics::{self, Behind, NearestLayer};
 use crate::splat::View;
 
-/// What each pixel shows before the environment.
+/// The colour and opacity of each pixel before the environment.
 pub(super) fn compositing<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -28,7 +28,7 @@ pub(super) fn compositing<R: Exact>(
     })
 }
 
-/// What is seen through the nearest layer.
+/// Composites what is seen through the nearest layer.
 pub(crate) struct Through<'a, R: Real> {
     scene: &'a Scene,
     settings: &'a Settings,
@@ -57,6 +57,7 @@ impl<'a, R: Real> Through<'a, R> {
         others: &GroupAverage<R>,
     ) -> Blend<R> {
         let there = near.depth.is_finite();
+        // In balls the layer may be there and may be missing; then both results are joined below.
         if !there.possibly() {
             return others.blend;
         }
@@ -93,14 +94,14 @@ impl<'a, R: Real> Through<'a, R> {
     }
 }
 
-/// l of \[ZP06, section 5.2.3\]: 1 + the sum of the other opacities over that of the nearest
-/// layer; 0 where that is 0.
+/// l of \[ZP06, section 5.2.3\]: 1 + the sum of the other layers' opacities over the opacity of the
+/// nearest layer; 0 where the opacity of the nearest layer is 0.
 pub(crate) fn count_by_opacity<R: Real>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
     let alpha = near.opacity;
     R::select(alpha.gt(R::ZERO), R::ONE + optics::layers(others.opacity, alpha), R::ZERO)
 }
 
-/// The count of layers: that of the others, and one where there is a nearest one.
+/// The count of layers: the count of the other layers, plus one where there is a nearest layer.
 pub(crate) fn count<R: Real>(near: &FrontLayer<R>, others: &GroupAverage<R>) -> R {
     R::select(near.depth.is_finite(), others.layers + R::ONE, others.layers)
 }

@@ -1,4 +1,4 @@
-//! Every decision at one pixel, with its operands.
+//! Explain every decision at one pixel, with its operands.
 
 use super::Settings;
 use super::compositing::Through;
@@ -17,27 +17,27 @@ use crate::number::Exact;
 use crate::scene::Environment;
 use std::fmt;
 
-/// What happened at one pixel.
+/// The replay of one pixel.
 #[derive(Clone, Debug)]
 pub struct HighQualityReplay<R> {
     /// Pass 1: the nearest layer.
     pub nearest: GroupsReplay<R>,
     /// Average opacity of the nearest layer.
     pub alpha: R,
-    /// Its colour, shaded.
+    /// Colour of the nearest layer, shaded.
     pub color: [R; 3],
-    /// The end of its band: fragments up to this depth are masked.
+    /// The end of the layer's band: fragments up to this depth are masked.
     pub band: R,
     /// Pass 2: the other layers.
     pub others: TransparentReplay<R>,
-    /// Pass 3: what the pixel shows before the environment.
+    /// Pass 3: the pixel before the environment.
     pub shown: Blend<R>,
 }
 
 /// Replays the three passes at one pixel.
 ///
 /// # Errors
-/// [`crate::Error::Usage`] if the pixel is outside the picture; else as a picture.
+/// [`crate::Error::Usage`] if the pixel is outside the picture; else the errors of a picture.
 pub fn explain<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,

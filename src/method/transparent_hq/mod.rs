@@ -1,33 +1,34 @@
-//! Transparency behind a nearest layer in high quality, with reflection and refraction \[ZP06,
+//! Draw transparency behind a nearest layer in high quality, with reflection and refraction \[ZP06,
 //! Algorithm 3\].
 //!
-//! 1. **Nearest layer.** The geometry and the compositing pass of [`mod@super::single_pass`], with
-//!    opacity as one more weighted attribute. `Decided:` each surfel in its own group alone and
-//!    with its own radius: a surfel that an extension added elsewhere would count twice in a
-//!    weighted sum. Deferred shading gives `C_F`, the average opacity is alpha. The stencil is 1
-//!    where the layer is.
-//! 2. **Other layers.** Algorithm 2 without the fragments of the nearest layer and what is before
-//!    it: those with t <= Z + epsilon, Z the depth of pass 1. Where pass 1 left nothing, Z is +inf
-//!    and all are dropped: enlarged surfels do not stick out of the silhouette. Its average is
-//!    `C_O`.
+//! 1. **Nearest layer.** Run the geometry and the compositing pass of [`mod@super::single_pass`],
+//!    with opacity as one more weighted attribute. `Decided:` each surfel is drawn in its own group
+//!    alone and with its own radius, because a surfel that an extension added elsewhere would count
+//!    twice in a weighted sum. Deferred shading gives `C_F`; the average opacity is alpha. The
+//!    stencil is 1 where the layer is.
+//! 2. **Other layers.** Run Algorithm 2 without the fragments of the nearest layer and the
+//!    fragments before it. These are the fragments with t <= Z + epsilon, where Z is the depth of
+//!    pass 1. Where pass 1 left nothing, Z is +inf and all fragments are dropped, so that enlarged
+//!    surfels do not stick out of the silhouette. The average is `C_O`.
 //! 3. **Compositing.** I = alpha `C_F` + (1 - alpha) `C_O`, and so for the opacity, with 1 for
 //!    `C_F`.
 //!
-//! With [`Settings::refraction`] and an environment, that sum is the one of
-//! [`crate::shade::optics`]. The environment is otherwise as in [`mod@super::transparent`].
+//! With [`Settings::refraction`] and an environment, [`crate::shade::optics`] defines that sum. The
+//! environment is otherwise as in [`mod@super::transparent`].
 //!
-//! # Counts of layers
+//! # Two counts of layers
 //!
 //! Two planes count layers. They are different numbers.
 //!
-//! - `layers`, in every picture: the average count of pass 2, plus 1 where pass 1 left a layer, that
-//!   is, where Z is finite. Where pass 1 left nothing, pass 2 left nothing either: the count is 0.
-//!   The average is that of [`mod@super::transparent`]: a sum over the groups, divided once, of how
-//!   many fragments each group blended. So the count is no integer in general. The depth test of
-//!   the bins makes the layers, and the opacities play no part.
+//! - `layers`, in every picture: the average count of pass 2, plus 1 where pass 1 left a layer,
+//!   that is, where Z is finite. Where pass 1 left nothing, pass 2 left nothing either: the count
+//!   is 0. The average count is defined in [`mod@super::transparent`]: a sum over the groups,
+//!   divided once, of how many fragments each group blended. So the count is no integer in general.
+//!   The depth test of the bins makes the layers, and the opacities play no part.
 //! - `l`, with the planes of the stages: l of section 5.2.3, by opacity. With alpha the average
-//!   opacity of pass 1 and S the average sum of opacities of pass 2, l = 1 + S / alpha where alpha >
-//!   0, else 0. An opaque fragment has set the sum of its group to 0. The plane is the same with
+//!   opacity of pass 1 and S the average sum of opacities of pass 2, l = 1 + S / alpha where
+//!   alpha > 0, else 0. An opaque fragment has set the sum of its group to 0. The plane is the same
+//!   with and without refraction, and with one and with many layers that bend.
 //!   and without refraction, and with one and with many layers that bend.
 //!
 //! The setting `bends` says how many layers refraction counts
@@ -37,16 +38,18 @@
 //! [`refract`](crate::shade::optics::refract) and of
 //! [`absorption`](crate::shade::optics::absorption); `layers` is the exponent of nothing.
 //!
-//! `Departs:` section 5.2.3 interpolates the position too, "if necessary". Here the position that
-//! Phong lighting takes is that of the nearest fragment: on the ray of the pixel, at the depth Z of
-//! pass 1. Reflection and refraction need none, as the environment is infinitely far away.
+//! `Departs:` section 5.2.3 interpolates the position too, "if necessary". Here Phong lighting
+//! takes the position of the nearest fragment: on the ray of the pixel, at the depth Z of pass 1.
+//! Reflection and refraction need no position, because the environment is infinitely far away.
 //!
-//! # What it gets wrong
+//! # What the method gets wrong
 //!
-//! All that [`mod@super::transparent`] does, and: a surfel that its group enlarges can be drawn
-//! behind itself, where the nearest layer clamps its depth to its own radius (see
-//! [`mod@crate::splat::project`]) and epsilon < (scale - 1) r, and, as depths of another radius
-//! round otherwise, anywhere with an epsilon of 0.
+//! The method shares all errors of [`mod@super::transparent`], and has one of its own: a surfel
+//! that its group enlarges can be drawn behind itself.
+//!
+//! - This happens where the nearest layer clamps its depth to its own radius (see
+//!   [`mod@crate::splat::project`]) and epsilon < (scale - 1) r.
+//! - With an epsilon of 0 it can happen anywhere, because depths of another radius round otherwise.
 //!
 //! The definition is over any [`Exact`] number; `fast` gives the same bits for `f32`.
 //!

@@ -39,7 +39,7 @@ pub(crate) struct FrontLayer<R> {
     pub(crate) mask: u8,
 }
 
-/// How the nearest layer is drawn.
+/// The settings of the single pass that draws the nearest layer.
 pub(crate) fn single_pass(settings: &Settings) -> single_pass::Settings {
     single_pass::Settings { splats: settings.layers.splats, depth: settings.nearest }
 }
@@ -56,7 +56,7 @@ pub(super) fn nearest<R: Exact>(
     })
 }
 
-/// What shades the nearest layer.
+/// Shades the nearest layer.
 pub(super) struct Shading<R> {
     shader: Shader<R>,
     /// The colour of surfels that have none.
@@ -85,8 +85,8 @@ impl<R: Exact> Shading<R> {
 }
 
 impl<R: Exact> FrontLayer<R> {
-    /// Whether the layer is strictly before a fragment at depth `t`, which then belongs to the other
-    /// layers: the stencil test passes, and the fragment is beyond the visible band.
+    /// Whether the layer is strictly before a fragment at depth `t`. The fragment then belongs to
+    /// the other layers: the stencil test passes, and the fragment is beyond the visible band.
     pub(super) fn is_before(&self, t: R, epsilon: R) -> bool {
         BEHIND.test(self.mask) && !decide::visible(t, decide::limit(self.depth, epsilon))
     }

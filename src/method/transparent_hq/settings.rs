@@ -1,4 +1,4 @@
-//! What is computed.
+//! The settings of the method.
 
 use crate::error::Result;
 use crate::method::single_pass::{BinCount, DepthTest};
@@ -6,15 +6,15 @@ use crate::method::transparent;
 use crate::setting::{Field, Fields, Slot, Visit};
 use crate::shade::optics::{BendingLayers, Refraction};
 
-/// What is computed; everything here may change the picture.
+/// The settings of the method; each of them may change the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// How the other layers are blended; its footprints, epsilon and culling are those of the
-    /// nearest layer too.
+    /// How the other layers are blended; the nearest layer has the same footprints, epsilon and
+    /// culling.
     pub layers: transparent::Settings,
     /// Which fragment of a group the nearest layer keeps.
     pub nearest: DepthTest,
-    /// How light is bent at the nearest layer; needs an environment to be seen.
+    /// How light is bent at the nearest layer; you see refraction only with an environment.
     pub refraction: Option<Refraction>,
 }
 
@@ -33,6 +33,7 @@ impl Fields for Settings {
     fn fields(&mut self, each: &mut Visit<'_>) {
         self.layers.fields(each);
         each(self.nearest.field());
+        // Both layers share one number of bins.
         if let DepthTest::Voronoi(bins) = &mut self.nearest {
             *bins = self.layers.bins;
         }
@@ -50,10 +51,10 @@ impl Fields for Settings {
 }
 
 impl Settings {
-    /// Whether the numbers are in range.
+    /// Checks that the numbers are in range.
     ///
     /// # Errors
-    /// [`crate::Error::Invalid`] if one is not.
+    /// [`crate::Error::Invalid`] if a number is not.
     pub fn check(&self) -> Result<()> {
         self.layers.check()?;
         if let DepthTest::Voronoi(bins) = &self.nearest {
