@@ -1,4 +1,4 @@
-//! Every decision of every pass at one pixel, with its operands.
+//! Explain every decision of every pass at one pixel, with its operands.
 
 use super::Settings;
 use super::filter::{Level, color};
@@ -16,12 +16,13 @@ use crate::splat::{Splat, SplatSettings, View};
 use glam::Vec3;
 use std::fmt;
 
-/// What happened at one pixel.
+/// The replay of one pixel.
 #[derive(Clone, Debug)]
 pub struct DeferredReplay<R> {
     /// Column and row.
     pub pixel: (u32, u32),
-    /// How many surfels the high level leaves, how many of them have a flag that is set, and how many were selected.
+    /// Counts of surfels: how many the high level leaves, how many of these have a flag that is
+    /// set, and how many were selected.
     pub counts: [u64; 3],
     /// The depth of the nearest polygon, if there is one.
     pub polygon: Option<R>,
@@ -33,44 +34,44 @@ pub struct DeferredReplay<R> {
     pub epsilon: R,
     /// Pass 2: the surfels whose centre is in the pixel: name, depth, and the tests.
     pub centres: Vec<Centre<R>>,
-    /// Pass 3.
+    /// Pass 3: the splats that reach the pixel, as in `before`.
     pub fresh: Vec<(String, Touch<R>)>,
     /// The depth that pass 3 leaves.
     pub nearest: R,
     /// Pass 4: the splats of B(i) that reach the pixel; each gives its weight, if it is visible.
     pub sums: Vec<(String, Touch<R>)>,
-    /// The colours of these, if surfels have prefiltered ones.
+    /// The colours of these splats, if the surfels have prefiltered colours.
     pub colors: Vec<Filtered>,
 }
 
-/// What a surfel of pass 4 is drawn in.
+/// The prefiltered colour of a surfel in pass 4.
 #[derive(Clone, Debug)]
 pub struct Filtered {
-    /// Which.
+    /// The name of the surfel.
     pub name: String,
-    /// Its level, see [`mod@super::filter`], and the last one.
+    /// The surfel's level, see [`mod@super::filter`], and the last level.
     pub level: [f64; 2],
-    /// The colours of the levels below and above, once if they are one.
+    /// The colours of the levels below and above; one colour if both are the same level.
     pub between: Vec<Vec3>,
-    /// What it is drawn in.
+    /// The colour in which the surfel is drawn.
     pub color: Vec3,
 }
 
 /// A surfel whose centre is in the pixel.
 #[derive(Clone, Debug)]
 pub struct Centre<R> {
-    /// Which.
+    /// The name of the surfel.
     pub name: String,
     /// The test against the depth of pass 1.
     pub visible: Decision<R>,
-    /// Whether it is the one that is kept.
+    /// Whether the pixel keeps this surfel.
     pub kept: bool,
 }
 
 /// Replays all passes at one pixel.
 ///
 /// # Errors
-/// [`crate::Error::Usage`] if the pixel is outside the picture; else as the picture.
+/// [`crate::Error::Usage`] if the pixel is outside the picture; else the errors of a picture.
 pub fn explain<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -130,7 +131,7 @@ pub fn explain<R: Exact>(
     })
 }
 
-/// The colours of surfels of a part, by name; none without prefiltered ones.
+/// The colours of a part's surfels, by name; none if they have no prefiltered colours.
 fn colors(job: &Job<'_>, whole: &Whole<'_>, part: &Part, names: &[&String]) -> Vec<Filtered> {
     let surfels = whole.surfels(part.ids(), job.exec);
     let Some(mipmap) = surfels.mipmap() else { return Vec::new() };

@@ -1,11 +1,11 @@
-//! Prefiltered colours: what pass 4 draws a surfel in \[GBP04, 4.4\].
+//! Prefilter colours against aliasing: the colour in which pass 4 draws a surfel \[GBP04, 4.4\].
 //!
-//! Where several surfels lie in a pixel one is selected, and the colours of the others are lost. A
-//! surfel with a [mipmap](crate::scene::Mipmap) is drawn in the colour that the surface has on the
-//! average over about as much as a pixel covers. The colour is a function of the surfel in its place
-//! and of the camera, found before anything is drawn, in f64 from the `f32` numbers of both, and
-//! rounded to `f32` once: it is an input of pass 4 and of the others no concern, and the same for every
-//! number type.
+//! If several surfels lie in a pixel, one is selected, and the colours of the others are lost. A
+//! surfel with a [mipmap](crate::scene::Mipmap) is drawn in the average colour of the surface over
+//! about the area of a pixel. The colour is a function of the surfel in its place and of the
+//! camera. It is found before anything is drawn, in f64 from the `f32` numbers of both, and rounded
+//! to `f32` once. So the colour is an input of pass 4, the other passes ignore it, and it is the
+//! same for every number type.
 //!
 //! **Level.** With area as [`mod@crate::splat::project`] has it with k = 1, in f64,
 //!
@@ -14,14 +14,17 @@
 //!   level = j + (x / 2^j - 1)        2^j the greatest power of two <= x, j from 0
 //! ```
 //!
-//! area is what the square on the surfel's radius covers on the screen, in px^2: the determinant of the
-//! Jacobian from the surfel's plane to the screen, times r r; of an ellipse it is that of the
-//! parallelogram on its half axes. So x is sqrt(2) times the side of a pixel in radii, if a pixel were a
-//! square there. Where x < 1 the level is 0, and where it is L or more, L; where area is 0 it is L. Where
-//! area is NaN, or t = -p.z is not > 0, it is 0: no pass draws that.
+//! area is the area in px^2 that the square on the surfel's radius covers on the screen: the
+//! determinant of the Jacobian from the surfel's plane to the screen, times r r. For an ellipse,
+//! the parallelogram on its half axes takes the place of the square. So x is sqrt(2) times the side
+//! of a pixel in radii, if a pixel were a square there.
 //!
-//! **Colour.** With `c_0` the surfel's own colour, `c_1` to `c_L` the prefiltered ones and j < L, per
-//! component
+//! - If x < 1, the level is 0.
+//! - If x is L or more, the level is L; also if area is 0.
+//! - If area is NaN, or t = -p.z is not > 0, the level is 0, because no pass draws the surfel.
+//!
+//! **Colour.** `c_0` is the surfel's own colour, `c_1` to `c_L` are the prefiltered colours, and
+//! j < L. For each component
 //!
 //! ```text
 //!   c = c_j + (c_(j+1) - c_j) (level - j)        c_L at the level L
@@ -31,9 +34,9 @@
 //!
 //! # Decided
 //!
-//! - \[GBP04\] takes the coefficient "from the Jacobian matrix" and does not say how. Here it is the
-//!   determinant. By measurement (the sphere of the bench `deferred`): flicker and error against `ewa` of
-//!   all surfels, at one surfel a pixel and at four,
+//! - The coefficient is the determinant. \[GBP04\] takes the coefficient "from the Jacobian matrix"
+//!   and does not say how. The measurement behind the choice (the sphere of the bench `deferred`)
+//!   is flicker and error against `ewa` of all surfels, at one surfel a pixel and at four:
 //!
 //!   | x | flicker | error | flicker | error |
 //!   |---|---|---|---|---|
@@ -45,14 +48,14 @@
 //!   | sqrt(2) times that | 0.065 | 0.077 | 0.125 | 0.151 |
 //!   | least length of a pixel | 0.123 | 0.091 | 0.199 | 0.178 |
 //!
-//!   With less there is aliasing left, with more the picture is blurred: at a quarter of a surfel a pixel
+//!   A smaller x leaves aliasing, a larger one blurs the picture. At a quarter of a surfel a pixel,
 //!   the greatest length of trilinear filtering, times sqrt(2), has half as much error again as no
 //!   mipmaps.
-//! - The 2: the colour of level k is a mean of variance R R / 8 along each axis, R = 2^k r. At x = 2^k that
-//!   is 1/4 px^2, the variance of the default low-pass filter.
-//! - Between two powers of two the coefficient is linear in x, not in its logarithm, from which it
-//!   differs by less than 0.087: so there is no function here whose bits depend on a library.
-//! - An object with a colour of its own has that colour, and so has what belongs to it.
+//! - The 2: the colour of level k is a mean of variance R R / 8 along each axis, R = 2^k r. At x =
+//!   2^k this variance is 1/4 px^2, the variance of the default low-pass filter.
+//! - Between two powers of two the coefficient is linear in x, not in the logarithm of x. The two
+//!   differ by less than 0.087. So no function is needed here whose bits depend on a library.
+//! - An object with its own colour has that colour, and so has everything that belongs to it.
 //!
 //! Source: \[GBP04, 4.4\], after Pfister et al. 2000 (*Surfels*).
 
@@ -62,7 +65,7 @@ use crate::splat::batch::disc;
 use crate::splat::{Disc, Kernel, Projector, View};
 use glam::Vec3;
 
-/// Surfels in the colours in which a camera sees them; as they are if they have no prefiltered ones.
+/// Recolours surfels as a camera sees them; surfels without prefiltered colours stay as they are.
 pub(super) fn filtered(surfels: Surfels, camera: &Camera, exec: &Exec) -> Surfels {
     if surfels.mipmap().is_none() {
         return surfels;
@@ -73,12 +76,12 @@ pub(super) fn filtered(surfels: Surfels, camera: &Camera, exec: &Exec) -> Surfel
     surfels.recolored(colors)
 }
 
-/// Where between two colours of a surfel.
+/// A position between two colours of a surfel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Level {
     /// j, the whole part.
     pub below: usize,
-    /// How much there is of the next, 0 to 1; 0 at the last.
+    /// The share of the next level, 0 to 1; 0 at the last.
     pub part: f64,
 }
 
@@ -90,7 +93,7 @@ impl Level {
         Self::at(pixel(view, &disc(surfels, i)), levels)
     }
 
-    /// The level of x, of 0 to `levels`.
+    /// The level of x, between 0 and `levels`.
     fn at(x: f64, levels: usize) -> Self {
         let (mut below, mut rest) = (0, x);
         while below < levels && rest >= 2.0 {
@@ -108,7 +111,7 @@ impl Level {
     }
 }
 
-/// x of a surfel; +inf edge-on, NaN of what is not in front.
+/// x of a surfel; +inf edge-on, NaN if the surfel is not in front.
 fn pixel(view: &View<f64>, disc: &Disc<f64>) -> f64 {
     if !(view.point(disc.position).z < 0.0) {
         return f64::NAN;

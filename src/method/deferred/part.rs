@@ -1,4 +1,5 @@
-//! All surfels of a scene by their ids, and some of them as a scene that the passes of `ewa` draw.
+//! Hold all surfels of a scene by their ids, and make some of them a scene that the passes of `ewa`
+//! draw.
 
 use super::Settings;
 use super::filter::filtered;
@@ -15,11 +16,12 @@ use crate::scene::{Boxes, Primitives, Scene, Similarity, Surfels};
 use glam::Vec3;
 use std::borrow::Cow;
 
-/// The surfels of a scene: those of its objects, or of a scene without objects its own, as one.
+/// The surfels of a scene: the surfels of its objects, or the surfels of a scene without objects,
+/// as one object.
 pub(crate) struct Whole<'a> {
     scene: &'a Scene,
     ids: Cow<'a, Ids>,
-    /// Of a scene without objects, if somebody made them.
+    /// The boxes of a scene without objects, if the session made them.
     boxes: Option<&'a Boxes>,
     /// Whether each object is left out of the frame; empty: none is.
     left_out: Vec<bool>,
@@ -29,7 +31,7 @@ impl<'a> Whole<'a> {
     pub(crate) fn new(scene: &'a Scene) -> Self {
         let alone = || {
             let counts = [scene.surfels.len() as u32];
-            // Fewer than 2^32 - 1, which is what 32 bits hold.
+            // A scene has fewer than 2^32 - 1 surfels, so that 32 bits are enough.
             Ids::with_split(Split::Single(32), &counts).unwrap_or_else(Ids::none)
         };
         let ids = match &scene.objects {
@@ -39,12 +41,13 @@ impl<'a> Whole<'a> {
         Self { scene, ids, boxes: None, left_out: Vec::new() }
     }
 
-    /// With what the session made of the scene.
+    /// The surfels of a job, with the boxes that the session made of the scene.
     pub(super) fn of(job: &Job<'a>) -> Self {
         Self { boxes: job.index.boxes.as_ref(), ..Self::new(job.scene) }
     }
 
-    /// Without the objects of which the frame before selected few surfels, see [`Settings::share`].
+    /// Leaves out the objects of which the frame before selected few surfels, see
+    /// [`Settings::share`].
     pub(crate) fn after(mut self, before: &Seen, settings: &Settings) -> Self {
         let share = f64::from(settings.share);
         if share > 0.0 {
@@ -75,7 +78,7 @@ impl<'a> Whole<'a> {
         }
     }
 
-    /// A surfel in words.
+    /// The name of a surfel in words.
     pub(super) fn name(&self, id: u64) -> String {
         match (&self.scene.objects, self.ids.find(id)) {
             (Some(objects), Some((object, surfel))) => {
@@ -99,13 +102,14 @@ impl<'a> Whole<'a> {
     /// As [`Objects::primitives`](crate::scene::Objects::primitives) and [`join`].
     pub(super) fn polygons(&self) -> Result<Cow<'_, Primitives>> {
         match &self.scene.objects {
+            // Geometries without primitives are not read for this.
             Some(objects) if !objects.have_primitives() => Ok(Cow::Owned(Primitives::default())),
             Some(objects) => Ok(Cow::Owned(join(objects.primitives()?, objects.fill())?)),
             None => Ok(Cow::Borrowed(&self.scene.primitives)),
         }
     }
 
-    /// All surfels in so many shares of about one size, in ascending ids.
+    /// All surfels in `count` shares of about one size, in ascending ids.
     pub(super) fn shares(&self, count: usize) -> Vec<Vec<Range<'_>>> {
         let total = self.ids.total();
         let ends: Vec<u64> = (1..=count as u64).map(|i| total * i / count as u64).collect();
@@ -113,6 +117,7 @@ impl<'a> Whole<'a> {
         let mut done = 0;
         for &object in self.ids.order() {
             let of_object = u64::from(self.ids.count(object));
+            // Its ids still count, so that the ends of the shares stay where they are.
             if self.leaves_out(object) {
                 done += of_object;
                 continue;
@@ -181,13 +186,13 @@ impl<'a> Whole<'a> {
         Part { scene: Scene::unlit(&self.scene.name, surfels), ids }
     }
 
-    /// The surfels of ascending ids as a scene, unlit and before nothing.
+    /// The surfels of ascending ids as a scene without light and environment.
     pub(crate) fn part(&self, ids: Vec<u64>, exec: &Exec) -> Part {
         let scene = Scene::unlit(&self.scene.name, self.surfels(&ids, exec));
         Part { scene, ids }
     }
 
-    /// The surfels of ranges in ascending ids, as far as they are drawn, for depth alone.
+    /// The drawn surfels of ranges in ascending ids, with the attributes that depth needs alone.
     pub(super) fn shapes(&self, mut ranges: Vec<(u32, std::ops::Range<u32>)>, exec: &Exec) -> Part {
         ranges.retain(|(object, _)| !self.leaves_out(*object));
         let mut ids = Vec::new();
@@ -206,11 +211,11 @@ impl<'a> Whole<'a> {
 /// Neighbouring surfels of one object.
 pub(super) struct Range<'a> {
     of: &'a Surfels,
-    /// Where the object is; none: the surfels are in their places.
+    /// The place of the object; none: the surfels are in their places.
     place: Option<&'a Similarity>,
-    /// Those that are drawn, if not all are.
+    /// The surfels that are drawn, if not all are.
     drawn: Option<&'a Mask>,
-    /// Around them, in their own coordinates.
+    /// The boxes around the surfels, in the surfels' own coordinates.
     boxes: Option<&'a Boxes>,
     /// The id of the surfel 0.
     first: u64,
@@ -218,7 +223,7 @@ pub(super) struct Range<'a> {
 }
 
 impl<'a> Range<'a> {
-    /// The parts of which no query says that they are hidden.
+    /// The parts that no query reports hidden.
     pub(super) fn parts(&self, queries: &Queries<'_>) -> Vec<Self> {
         let whole = || Self { surfels: self.surfels.clone(), ..*self };
         let Some(boxes) = self.boxes else { return vec![whole()] };
@@ -247,7 +252,8 @@ impl Range<'_> {
         self.place.map_or((position, normal), |place| place.surfel(position, normal))
     }
 
-    /// The positions of [`LANES`] surfels from the `first` on; beyond the last those of the last.
+    /// The positions of [`LANES`] surfels from `first` on; beyond the last surfel, the position of
+    /// the last.
     #[inline(always)]
     pub(super) fn positions(&self, first: usize) -> [Vec3; LANES] {
         let all = &self.of.position()[..self.surfels.end];
@@ -282,7 +288,7 @@ pub(crate) struct Part {
 }
 
 impl Part {
-    /// The job of drawing them alone.
+    /// The job that draws these surfels alone.
     pub(crate) fn job<'j>(&'j self, whole: &Job<'j>) -> Job<'j> {
         Job { scene: &self.scene, ..*whole }
     }
@@ -291,12 +297,13 @@ impl Part {
         &self.scene.surfels
     }
 
-    /// Their ids, ascending.
+    /// The ids of the surfels, ascending.
     pub(crate) fn ids(&self) -> &[u64] {
         &self.ids
     }
 
-    /// The id of the surfel of an index; [`super::visibility::NONE`] of that of none.
+    /// The id of the surfel with this index; [`super::visibility::NONE`] if there is no such
+    /// surfel.
     pub(crate) fn id(&self, index: u32) -> u64 {
         self.ids.get(index as usize).copied().unwrap_or(super::visibility::NONE)
     }

@@ -1,25 +1,28 @@
-//! Polygons beside the surfels \[GBP04, Fig. 7\]: into the depth before pass 1, and into the colour after
-//! pass 5.
+//! Draw polygons beside the surfels \[GBP04, Fig. 7\]: into the depth before pass 1, and into the
+//! colour after pass 5.
 //!
-//! Triangles are drawn as by [`crate::method::projection`], with the corners snapped to 1/256 px and the
-//! culling of the surfels; of objects they are in their places, in the order of the scene. A pixel keeps the
-//! nearest. Its nearness is that of its depth, and the depth of the passes and of the picture is again that of
-//! its nearness, as of a splat.
+//! [`crate::method::projection`] draws the triangles, with the corners snapped to 1/256 px and the
+//! culling of the surfels. Triangles of objects are drawn in their places, in the order of the
+//! scene. A pixel keeps the nearest triangle. The pixel's nearness is computed from the triangle's
+//! depth. The depth of the passes and of the picture is computed from that nearness again, as for a
+//! splat.
 //!
-//! - Pass 1 draws into this depth; of equally near fragments that of a surfel wins. A polygon has no id.
+//! - Pass 1 draws into this depth. If a surfel's and a polygon's fragment are equally near, the
+//!   surfel's wins. A polygon has no id.
 //! - Passes 2, 3 and 4 test against the depth of both.
-//! - `Decided:` a pixel shows the splats where they have weight and the nearest fragment is a surfel's, else
-//!   the polygon, with the weight 1. Where additive splats were just drawn over polygons, those within epsilon
-//!   behind a polygon would shine through. Without pass 3 the splats' nearest fragment is that
-//!   of B(i), if it is nearer than the depth of pass 1.
+//! - `Decided:` a pixel shows the splats where they have weight and the nearest fragment is a
+//!   surfel's, else the polygon, with the weight 1. If additive splats were just drawn over
+//!   polygons, splats within epsilon behind a polygon would shine through. Without pass 3, the
+//!   nearest fragment of the splats is the nearest fragment of B(i), if it is nearer than the depth
+//!   of pass 1.
 //!
-//! A pixel that shows a polygon has its depth, its normal in world space and its colour, and no id; the planes
-//! of `attributes` keep the sums of splats that are not shown.
+//! A pixel that shows a polygon has the polygon's depth, its normal in world space and its colour,
+//! and no id. The planes of `attributes` keep the sums of splats that are not shown.
 //!
-//! Polygons without colours get that of the material if no polygon has one, else
-//! [`Objects::fill`](crate::scene::Objects::fill). Where polygons alone have colours, surfels of objects get
-//! `fill`, those of a scene without objects that of the material. The colour of an object is also that of its
-//! polygons.
+//! Polygons without colours get the material's colour if no polygon has a colour, else
+//! [`Objects::fill`](crate::scene::Objects::fill). If polygons alone have colours, surfels of
+//! objects get `fill`, and surfels of a scene without objects get the material's colour. The colour
+//! of an object is also the colour of its polygons.
 
 use super::part::Whole;
 use super::visibility::{Nearest, POLYGON};
@@ -34,8 +37,8 @@ use crate::number::Exact;
 use crate::scene::{Scene, Surfels};
 use crate::splat::View;
 
-/// The polygons as a scene of their own, with the colour of those without one where surfels have some; none
-/// if there are none.
+/// The polygons as a scene of their own, and, if surfels have colours, the colour of polygons
+/// without one; none if there are no polygons.
 ///
 /// # Errors
 /// As [`Whole::polygons`].
@@ -53,12 +56,12 @@ pub(crate) fn alone(job: &Job<'_>, whole: &Whole<'_>) -> Result<Option<(Scene, O
 pub(super) struct Polygons<R> {
     samples: Plane<PixelSample<R>>,
     view: View<R>,
-    /// The colour of polygons without one, where surfels have some.
+    /// The colour of polygons without one, if surfels have colours.
     paint: Option<[R; 3]>,
 }
 
 impl<R: Exact> Polygons<R> {
-    /// Those of a scene; none if it has none.
+    /// Draws the polygons of a scene; none if it has none.
     ///
     /// # Errors
     /// As [`projection::project`] and [`Whole::polygons`].
@@ -85,7 +88,7 @@ impl<R: Exact> Polygons<R> {
         Nearest { nearness, depth, id: POLYGON }
     }
 
-    /// What a pixel shows.
+    /// The surface that a pixel shows.
     pub(super) fn surface(&self, x: u32, y: u32) -> SurfacePixel<R> {
         let sample = self.samples.at(x, y);
         if sample.kind == SampleKind::Empty {

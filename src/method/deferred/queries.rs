@@ -1,15 +1,16 @@
-//! Occlusion queries of boxes against the depth of pass 1 \[GBP04, 7.1\].
+//! Ask which boxes are hidden: occlusion queries of boxes against the depth of pass 1 \[GBP04,
+//! 7.1\].
 //!
-//! A query asks of which pixels the square may hold the centre of a surfel in a box, and in how many of
-//! these the nearest depth of the box passes the test of pass 2. Where none does, no surfel of the box is
-//! selected, and pass 2 need not look at them.
+//! A query looks at the pixels whose square may hold the centre of a surfel in a box. It counts in
+//! how many of these pixels the nearest depth of the box passes the test of pass 2. If the count is
+//! 0, no surfel of the box is selected, and pass 2 skips them.
 //!
-//! The pixels are the rectangle around the corners of the box on the screen; a box that reaches the near
-//! plane has the whole picture, and the depth of the near plane. All is computed in f64 and widened by
-//! more than what the positions, their places and the projection lose in `f32`: by 2^-20 of the greatest
-//! coordinate, in world units, and by 1/4 px. `Decided:` \[GBP04\] draws the box itself; a surfel is drawn
-//! into the pixel of its centre even where the box does not cover the centre of that pixel, so that the
-//! faces of the box alone would lose surfels at its rim.
+//! The pixels are the rectangle around the corners of the box on the screen. A box that reaches the
+//! near plane has the whole picture, and the depth of the near plane. Everything is computed in f64
+//! and widened by more than the positions, their places and the projection lose in `f32`: by 2^-20
+//! of the greatest coordinate, in world units, and by 1/4 px. `Decided:` \[GBP04\] draws the box
+//! itself. Here that would lose surfels at the rim of the box, because a surfel is drawn into the
+//! pixel of its centre even where the faces of the box do not cover the centre of that pixel.
 
 use crate::frame::Rect;
 use crate::number::Vector3;
@@ -22,11 +23,11 @@ use glam::{DVec3, Vec3};
 pub struct Limits {
     /// Width of the picture in pixels.
     pub width: u32,
-    /// Row by row.
+    /// The depths, row by row.
     pub values: Vec<f32>,
 }
 
-/// What boxes are asked about.
+/// Occlusion queries against one picture.
 #[derive(Clone, Debug)]
 pub struct Queries<'a> {
     view: View<f64>,
@@ -41,7 +42,7 @@ impl<'a> Queries<'a> {
         Self { view: View::new(camera), size: camera.size(), limits }
     }
 
-    /// How many pixels pass, of a box in coordinates that are moved to a place.
+    /// How many pixels pass for a box; the box is in coordinates that `place` moves.
     #[must_use]
     pub fn count(&self, corners: [Vec3; 2], place: Option<&Similarity>) -> u64 {
         self.passing(corners, place).count() as u64
@@ -64,7 +65,8 @@ impl<'a> Queries<'a> {
         (rect.y0..rect.y1).flat_map(row).filter(move |&&limit| nearest <= f64::from(limit))
     }
 
-    /// The pixels that a box may reach, and its nearest depth; none if it is not in the picture.
+    /// The pixels that a box may reach, and its nearest depth; none if the box is not in the
+    /// picture.
     fn reach(&self, [low, high]: [Vec3; 2], place: Option<&Similarity>) -> Option<(Rect, f64)> {
         let (mut largest, mut seen) = (0.0_f64, [DVec3::ZERO; 8]);
         for (corner, seen) in seen.iter_mut().enumerate() {
@@ -89,6 +91,7 @@ impl<'a> Queries<'a> {
         if !(farthest > self.view.near) {
             return None;
         }
+        // A box that reaches the near plane has no corners to project.
         if !(nearest > self.view.near) {
             return Some((Rect { x0: 0, y0: 0, x1: width, y1: height }, self.view.near));
         }
@@ -107,12 +110,12 @@ impl<'a> Queries<'a> {
     }
 }
 
-/// The greater of two numbers that are no NaN.
+/// The greater of two numbers; neither is NaN.
 fn greater(a: f64, b: f64) -> f64 {
     if b > a { b } else { a }
 }
 
-/// From where to where something reaches, in pixels.
+/// An interval in pixels.
 #[derive(Clone, Copy)]
 struct Span(f64, f64);
 
@@ -123,12 +126,12 @@ impl Span {
         *self = Self(-greater(-self.0, slack - at), greater(self.1, at + slack));
     }
 
-    /// The first pixel and the one after the last, of so many.
+    /// The first pixel and the one after the last, in a row or column of `count` pixels.
     fn pixels(self, count: u32) -> Option<[u32; 2]> {
         if self.1 < 0.0 || self.0 >= f64::from(count) {
             return None;
         }
-        // Conversions saturate.
+        // Conversions saturate, so that infinite ends are safe.
         Some([self.0 as u32, count.min((self.1 as u32).saturating_add(1))])
     }
 }
@@ -143,7 +146,8 @@ mod tests {
     use proptest::prelude::*;
 
     proptest! {
-        /// A point that is drawn at a pixel where it passes is in no box that is said to be hidden.
+        /// A point that is drawn at a pixel where it passes is in no box that a query reports
+        /// hidden.
         #[test]
         fn no_point_that_passes_is_in_a_hidden_box(
             low in prop::array::uniform3(-2.0..2.0_f32), size in prop::array::uniform3(0.0..1.5_f32),

@@ -1,25 +1,26 @@
-//! What is computed.
+//! The settings of the method.
 
 use crate::error::{Error, Result};
 use crate::setting::{Field, Fields, Slot, Visit};
 use crate::splat::SplatSettings;
 
-/// What is computed; everything here may change the picture.
+/// The settings of the method; each of them may change the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
     /// Footprints, epsilon and culling of all passes.
     pub splats: SplatSettings,
     /// m: how many consecutive surfels of an object share a flag \[GBP04, 4.3\]. In [1, 4096].
     pub flags: u32,
-    /// Whether the surfels that the last frame did not see are drawn into the depth before EWA
-    /// splatting: pass 3.
+    /// Whether pass 3 runs: it draws the surfels that the last frame did not see into the depth
+    /// before EWA splatting.
     pub second: bool,
-    /// An object of which the last frame selected some surfels, but at most this share of those that the
-    /// high level leaves now, is left out of the frame \[GBP04, 7\]. In [0, 1]; 0 leaves none out.
+    /// An object is left out of the frame if the last frame selected some of its surfels, but at
+    /// most this share of the surfels that the high level leaves now \[GBP04, 7\]. In [0, 1]; 0
+    /// leaves none out.
     pub share: f32,
 }
 
-/// The most surfels that share a flag.
+/// The maximum number of surfels that share a flag.
 const MOST: u32 = 4096;
 
 impl Default for Settings {
@@ -30,7 +31,7 @@ impl Default for Settings {
 }
 
 impl Settings {
-    /// Whether the numbers are in range.
+    /// Checks that the numbers are in range.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`SplatSettings::check`], or if m or the share is out of range.

@@ -67,7 +67,7 @@ fn margins_of<R: Exact>(
 #[derive(Clone, Copy, Debug)]
 struct Operands {
     q: Ball,
-    /// What q is compared with.
+    /// The limit that q is compared with.
     cutoff: Ball,
     t: Ball,
     /// The greatest visible depth of the pixel.

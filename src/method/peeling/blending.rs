@@ -1,4 +1,4 @@
-//! Blending of the layers, from front to back.
+//! Blend the layers, from front to back.
 
 use super::layers::PeeledLayer;
 use crate::composite::under::Under;
@@ -8,7 +8,7 @@ use crate::method::picture::before_environment;
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 
-/// The layers before, and the next one under them.
+/// Blends the next layer under the layers before.
 pub(super) fn under<R: Exact>(before: Under<R>, layer: &PeeledLayer<R>) -> Under<R> {
     before.under(layer.alpha, layer.color)
 }

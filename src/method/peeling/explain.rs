@@ -1,4 +1,4 @@
-//! Every decision at one pixel, with its operands.
+//! Explain every decision at one pixel, with its operands.
 
 use super::Settings;
 use super::layers::{PeeledLayer, PeeledPixel, Peeling};
@@ -12,7 +12,7 @@ use crate::method::ewa::explain::{TwoPasses, two_passes};
 use crate::number::Exact;
 use std::fmt;
 
-/// What happened at one pixel.
+/// The replay of one pixel.
 #[derive(Clone, Debug)]
 pub struct PeelingReplay<R> {
     /// Column and row.
@@ -23,9 +23,9 @@ pub struct PeelingReplay<R> {
     pub epsilon: R,
     /// The layers, from the front.
     pub layers: Vec<LayerAt<R>>,
-    /// The splats whose bounds hold the pixel, if it has no layer.
+    /// The splats whose bounds hold the pixel, if the pixel has no layer.
     pub touches: Vec<Touch<R>>,
-    /// The layers, blended.
+    /// The blend of the layers.
     pub blend: Under<R>,
 }
 
@@ -34,10 +34,10 @@ pub struct PeelingReplay<R> {
 pub struct LayerAt<R> {
     /// Visibility splatting: the splats whose bounds hold the pixel, in ascending surfel index.
     pub touches: Vec<Touch<R>>,
-    /// Attribute splatting: those of them that are inside and not yet peeled; each gives its weight,
-    /// if it is in the layer.
+    /// Attribute splatting: the splats of `touches` that are inside and not yet peeled; each gives
+    /// its weight, if it is in the layer.
     pub visible: Vec<Touch<R>>,
-    /// What the layer is.
+    /// The layer.
     pub layer: PeeledLayer<R>,
 }
 
@@ -89,7 +89,8 @@ impl<R: Exact> fmt::Display for PeelingReplay<R> {
                 "\nlayer {number}, visibility splatting: inside if q <= {}",
                 n(self.limit)
             )?;
-            // What is outside, or already peeled, has been said with the layers before.
+            // A fragment that is outside, or already peeled, has been printed with the layers
+            // before.
             let mut left = touches.iter().filter(|touch| number == 1 || touch.gives.is_some());
             left.try_for_each(|touch| writeln!(f, "  {touch}"))?;
             writeln!(

@@ -1,4 +1,5 @@
-//! The layers of a tile, one after the other: each by the two passes of [`crate::method::ewa`].
+//! Peel the layers of a tile, one after the other, each by the two passes of
+//! [`crate::method::ewa`].
 
 use super::Settings;
 use super::blending::under;
@@ -27,7 +28,7 @@ pub(super) struct Peeling<'a, R: Exact> {
     shader: Shader<R>,
     /// The colour of surfels that have none.
     own: [R; 3],
-    /// How sums, layers and what is blended are stored, and depths.
+    /// The formats that store sums, layers, the blend and depths.
     buffers: Buffers,
     key: DepthKey,
 }
@@ -35,7 +36,7 @@ pub(super) struct Peeling<'a, R: Exact> {
 /// One layer at one pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PeeledLayer<R> {
-    /// `t_j`, the depth of its nearest fragment; +inf where there is none.
+    /// `t_j`, the depth of the layer's nearest fragment; +inf where there is none.
     pub depth: R,
     /// The surfel of that fragment; [`NO_ID`] where there is none.
     pub id: u32,
@@ -47,32 +48,32 @@ pub struct PeeledLayer<R> {
     pub color: [R; 3],
 }
 
-/// A pixel and the layers it has so far.
+/// A pixel and its layers so far.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct PeeledPixel<R> {
-    /// The layers, blended.
+    /// The blend of the layers.
     pub(super) blend: Under<R>,
     /// Depth of the first layer; +inf where there is none.
     pub(super) depth: R,
     /// Surfel of the nearest fragment; [`NO_ID`] where there is none.
     pub(super) id: u32,
-    /// How many layers.
+    /// The count of layers.
     pub(super) layers: u32,
-    /// `limit_j`: fragments up to this depth are in the layers, or were passed by.
+    /// `limit_j`: fragments up to this depth are in the layers, or were skipped.
     pub(super) limit: R,
 }
 
 /// The pixels of a tile, row by row.
 pub(super) struct PeeledTile<R> {
     pub(super) pixels: Vec<PeeledPixel<R>>,
-    /// The first of the layers, as many as are kept.
+    /// The first `keep` layers.
     pub(super) kept: Vec<Vec<PeeledLayer<R>>>,
     /// How long the layers and their blending took.
     pub(super) times: [Duration; 2],
 }
 
 impl<'a, R: Exact> Peeling<'a, R> {
-    /// Projection.
+    /// Projects the splats.
     pub(super) fn project(job: &Job<'a>, settings: &Settings) -> Self {
         let scene = job.scene;
         let shader = Shader::new(View::new(job.camera), &scene.lights, scene.material);
@@ -103,11 +104,14 @@ impl<'a, R: Exact> Peeling<'a, R> {
             }
             times[1] += peeled.elapsed();
         }
+        // Later stages read a plane for every kept layer, so the missing ones are filled with empty
+        // layers.
         kept.resize_with(keep, || vec![PeeledLayer::NONE; rect.pixels()]);
         PeeledTile { pixels, kept, times }
     }
 
-    /// The layer of the fragments strictly beyond the limit of each pixel; none if no pixel has one.
+    /// The layer of the fragments strictly beyond the limit of each pixel; none if no pixel has
+    /// such a fragment.
     pub(super) fn layer(
         &self,
         splats: &TileSplats<'_, R>,
@@ -125,7 +129,7 @@ impl<'a, R: Exact> Peeling<'a, R> {
         Some(found.map(|(at, (nearest, sums))| self.resolve(nearest, sums, at)).collect())
     }
 
-    /// Normalization and shading at a column and row.
+    /// Normalizes and shades a layer at a column and row.
     pub(super) fn resolve(
         &self,
         nearest: &Foremost<R>,
@@ -151,13 +155,13 @@ impl<R: Exact> PeeledLayer<R> {
 }
 
 impl<R: Exact> PeeledPixel<R> {
-    /// No layer yet, and every fragment beyond the last.
+    /// No layer yet; every fragment is beyond the limit.
     pub(super) fn new() -> Self {
         let (depth, limit) = (R::INFINITY, -R::INFINITY);
         Self { blend: Under::CLEAR, depth, id: NO_ID, layers: 0, limit }
     }
 
-    /// Blends the next layer under those before, if the pixel has one.
+    /// Blends the next layer under the layers before, if the pixel has one.
     pub(super) fn add(&mut self, layer: &PeeledLayer<R>, epsilon: R) {
         if layer.id == NO_ID {
             return;

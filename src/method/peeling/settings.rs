@@ -1,16 +1,16 @@
-//! What is computed.
+//! The settings of the method.
 
 use crate::error::{Error, Result};
 use crate::setting::{Field, Fields, Slot, Visit};
 use crate::splat::SplatSettings;
 
-/// What is computed; everything here may change the picture.
+/// The settings of the method; each of them may change the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Settings {
-    /// Footprints, the epsilon of each layer, and culling: off by default, as the far side of a
-    /// transparent object is seen.
+    /// Footprints, the epsilon of each layer, and culling. Culling is off by default, because you
+    /// see the far side of a transparent object.
     pub splats: SplatSettings,
-    /// The most layers of a pixel: 1 to [`MAX_LAYERS`].
+    /// The maximum number of layers of a pixel: 1 to [`MAX_LAYERS`].
     pub layers: u32,
 }
 
@@ -33,7 +33,7 @@ impl Fields for Settings {
 }
 
 impl Settings {
-    /// Whether the numbers are in range.
+    /// Checks that the numbers are in range.
     ///
     /// # Errors
     /// [`Error::Invalid`] as [`SplatSettings::check`], and if the number of layers is out of range.
