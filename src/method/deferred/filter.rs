@@ -20,7 +20,7 @@
 //! of a pixel in radii, if a pixel were a square there.
 //!
 //! - If x < 1, the level is 0.
-//! - If x is L or more, the level is L; also if area is 0.
+//! - If the formula gives L or more, the level is L; also if area is 0.
 //! - If area is NaN, or t = -p.z is not > 0, the level is 0, because no pass draws the surfel.
 //!
 //! **Colour.** `c_0` is the surfel's own colour, `c_1` to `c_L` are the prefiltered colours, and

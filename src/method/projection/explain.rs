@@ -1,4 +1,4 @@
-//! Who is drawn into one pixel by the projection, and who stays.
+//! Explain which primitives are drawn into one pixel by the projection, and which one stays.
 
 use super::{SampleKind, SceneProjector, primitives};
 use crate::frame::Rect;
@@ -9,16 +9,16 @@ use crate::splat::Fate;
 use std::fmt;
 use std::ops::Range;
 
-/// What happened at one pixel.
+/// The replay of one pixel.
 #[derive(Clone, Debug)]
 pub(crate) struct PixelProjection<R> {
-    /// In ascending order of their ids.
+    /// The primitives that reach the pixel, in ascending order of their ids.
     contenders: Vec<Contender<R>>,
     /// The id that the pixel keeps, and its depth.
     pub(crate) kept: Option<(u32, R)>,
 }
 
-/// A primitive that the pixel is asked to show.
+/// A primitive that reaches the pixel.
 #[derive(Clone, Copy, Debug)]
 struct Contender<R> {
     kind: SampleKind,
@@ -28,7 +28,7 @@ struct Contender<R> {
     back: Option<R>,
 }
 
-/// Asks every primitive of a scene.
+/// Replays every primitive of a scene at one pixel.
 pub(crate) fn replay<R: Exact>(
     job: &Job<'_>,
     cull: bool,
@@ -59,7 +59,7 @@ pub(crate) fn replay<R: Exact>(
     PixelProjection { contenders, kept }
 }
 
-/// The depth that a pixel has.
+/// The depth of the pixel.
 fn depth_of<R: Exact>(kept: Option<(u32, R)>) -> R {
     kept.map_or(R::INFINITY, |(_, depth)| depth)
 }
@@ -102,8 +102,8 @@ fn pieces<R: Exact>(
     });
 }
 
-/// The primitives of a scene that cover a pixel, each by its id and its depth there, in the
-/// order of their ids.
+/// The primitives of a scene that cover a pixel, each with its id and its depth there, in the order
+/// of their ids.
 pub(crate) fn beside<R: Exact>(
     job: &Job<'_>,
     cull: bool,
@@ -148,13 +148,13 @@ impl<R: Exact> fmt::Display for PixelProjection<R> {
     }
 }
 
-/// A comparison with its operands, and how many ulp they are apart.
+/// A comparison with its operands, and their distance in ulp.
 pub(crate) fn compared<R: Exact>(a: R, sign: &str, b: R) -> String {
     format!("{} {sign} {}  ({} ulp)", a.to_f64(), b.to_f64(), a.ulps_to(b))
 }
 
-/// How a form that an ellipse does not hold compares with the ellipse's square; an ellipse that is
-/// edge-on or a point holds nothing.
+/// The sign between the form and the ellipse's square where the ellipse does not hold the form; an
+/// ellipse that is edge-on or a point holds nothing.
 pub(crate) fn outside<R: Exact>(form: R, square: R) -> &'static str {
     if form > square { ">" } else { "in no ellipse of" }
 }

@@ -1,10 +1,10 @@
-//! Triangles, ribbons and tubes as pixels \[MKC08, sections 4.1, 4.2 and 5.1\].
+//! Draw triangles, ribbons and tubes as pixels \[MKC08, sections 4.1, 4.2 and 5.1\].
 //!
-//! A primitive has two or three corners; those of a piece of it are clipped, see
-//! [`crate::splat::clip`], placed as the centre of a surfel is, see [`super`], and snapped to fixed
-//! point, see [`crate::frame::raster`], which says exactly what pixels a piece covers. A clipped
-//! triangle is drawn as the fan of its first corner. `Decided:` with culling a triangle whose
-//! corners run clockwise on the screen is dropped; without, its normals are reversed.
+//! A primitive has two or three corners. The corners of a piece of a primitive are clipped, see
+//! [`crate::splat::clip`], placed like the centre of a surfel, see [`super`], and snapped to fixed
+//! point. [`crate::frame::raster`] says exactly which pixels a piece covers. A clipped triangle is
+//! drawn as the fan of its first corner. `Decided:` with culling a triangle whose corners run
+//! clockwise on the screen is dropped; without, its normals are reversed.
 //!
 //! **Perspective-correct weights.** At a pixel the corners i of a piece have exact barycentric
 //! weights `w_i` >= 0 out of w (of a line: den - num and num out of den); each is rounded to the
@@ -17,20 +17,20 @@
 //!   attribute = (c_0 a_0 + c_1 a_1) + c_2 a_2                       two corners: without the third
 //! ```
 //!
-//! for the position p in view space, the radius, the colour, and the direction, which is then
-//! turned to view space, see [`crate::splat::View::direction`], and divided by its length,
-//! `sqrt((x x + y y) + z z)`, component by component (of length 0: the null vector). Where other parts
-//! of a scene have colours, one without has the material's. Of two visits of a pixel by one
-//! primitive at equal depth the first stays. The depth is t = -p.z, rho as for surfels; the centre
-//! is that of the pixel.
+//! The formulas give the position p in view space, the radius, the colour and the direction. The
+//! direction is then turned to view space, see [`crate::splat::View::direction`], and divided by
+//! its length, `sqrt((x x + y y) + z z)`, component by component (of length 0: the null vector). If
+//! other parts of a scene have colours, a primitive without one has the material's. If one
+//! primitive visits a pixel twice at equal depth, the first visit stays. The depth is t = -p.z, and
+//! rho is computed as for surfels; the centre is the centre of the pixel.
 //!
-//! **Triangles** have the radius of their vertices, 0 if nobody gave them one, so that they are not
-//! expanded; where a mesh becomes points its boundary has radii (section 5.2).
-//! **Ribbons** have two sides: where the back is seen (g > 0 at p) the normal is reversed.
-//! **Tubes** have the direction to the camera as normal, -p / |p| (orthographic: (0, 0, 1)), and
-//! keep their tangent. `Decided:` a tangent has no sign, so those of the two corners may be
-//! opposite, and what lies between them pass through 0: where `a_0 . a_1` < 0, `-a_1` takes the
-//! place of `a_1`; in world space, so that the camera has no part in it.
+//! - **Triangles** have the radius of their vertices. Without a given radius it is 0, so that they
+//!   are not expanded; where a mesh becomes points, its boundary has radii (section 5.2).
+//! - **Ribbons** have two sides: where the back is seen (g > 0 at p) the normal is reversed.
+//! - **Tubes** have the direction to the camera as normal, -p / |p| (orthographic: (0, 0, 1)), and
+//!   keep their tangent. `Decided:` if `a_0 . a_1` < 0, `-a_1` takes the place of `a_1`. A tangent
+//!   has no sign, so the tangents of the two corners may be opposite, and the tangents between them
+//!   would pass through 0. The comparison is in world space, so that the camera has no part in it.
 
 use super::surfels::{PlacedPoint, PointProjector};
 use super::{PixelSample, SampleKind, SceneProjector};
@@ -48,13 +48,13 @@ pub(crate) struct Piece<R> {
     pub(crate) bounds: Rect,
     pub(crate) kind: SampleKind,
     pub(crate) id: u32,
-    /// The primitive in its list.
+    /// The index of the primitive in its list.
     index: usize,
     back: bool,
     raster: Raster,
     /// m of each corner of the piece.
     m: [R; 3],
-    /// W: for each corner of the piece the weights of the corners of the primitive.
+    /// W: for each corner of the piece, the weights of the primitive's corners.
     weights: [[R; 3]; 3],
     /// The corners of the primitive in view space.
     p: [Vector3<R>; 3],
@@ -142,7 +142,8 @@ pub(crate) fn triangle_piece<R: Real>(
     let [x1, y1] = projector.size;
     let bounds = Triangle::around(&projector.snap, places);
     let bounds = bounds.intersection(&Rect { x0: 0, y0: 0, x1, y1 });
-    // Before edges are made: small triangles often have no centre of a pixel in their bounds.
+    // Checked before edges are made, because small triangles often have no centre of a pixel in
+    // their bounds.
     if bounds.is_empty() {
         return None;
     }
@@ -150,7 +151,7 @@ pub(crate) fn triangle_piece<R: Real>(
     triangle_within(projector, (id, index), (raster, bounds), ends, weights, p)
 }
 
-/// The same as it is drawn in some pixels.
+/// As [`triangle_piece`], drawn in some pixels only.
 pub(crate) fn triangle_within<R: Real>(
     projector: &SceneProjector<'_, R>,
     (id, index): (u32, usize),
@@ -236,13 +237,13 @@ impl<R: Real> Piece<R> {
         self.with(x, y, c)
     }
 
-    /// A pixel with these weights of the corners of the primitive.
+    /// A pixel with these weights of the primitive's corners.
     pub(crate) fn with(&self, x: u32, y: u32, c: [R; 3]) -> PiecePixel<R> {
         let p = (self.p[0] * c[0] + self.p[1] * c[1]) + self.p[2] * c[2];
         PiecePixel { x, y, c, p }
     }
 
-    /// What a pixel keeps of the piece.
+    /// The sample that a pixel keeps of the piece.
     pub(crate) fn sample(
         &self,
         projector: &SceneProjector<'_, R>,
@@ -293,7 +294,7 @@ fn attributes<R: Real, const N: usize>(
 ) -> (Vector3<R>, R, Option<[R; 3]>) {
     let Vertices { direction, radius, color, .. } = of.vertices();
     let corners = of.corners()[index];
-    // The third weight of a line is 0, and its third corner any of the others.
+    // The third weight of a line is 0, so that any corner can stand for its third.
     let corner = |k: usize| corners[k.min(N - 1)] as usize;
     let sum =
         |a: &dyn Fn(usize) -> R| (c[0] * a(corner(0)) + c[1] * a(corner(1))) + c[2] * a(corner(2));
@@ -323,7 +324,7 @@ mod tests {
         Indexed::new(vertices, vec![[0, 1]]).unwrap().0
     }
 
-    /// The tangents of the pixels of a tube, seen by a camera whose axes are those of the world.
+    /// The tangents of a tube's pixels, seen by a camera whose axes are the world's axes.
     fn tangents(direction: [Vec3; 2]) -> Vec<Vector3<f64>> {
         let primitives = Primitives { tubes: segment(direction), ..Primitives::default() };
         let scene = Scene { primitives, ..crate::method::tests::scene(Surfels::none()) };
@@ -356,7 +357,8 @@ mod tests {
             tangents([-first, second]),
             "the first keeps its sign"
         );
-        // At right angles neither is turned, and each is that of its corner's side.
+        // At right angles neither tangent is turned, and each pixel's tangent lies on its corner's
+        // side.
         for sign in [1.0, -1.0] {
             let found = tangents([Vec3::X, Vec3::Y * sign]);
             assert!(found.iter().all(|t| t.x >= 0.0 && t.y * f64::from(sign) >= 0.0), "{found:?}");

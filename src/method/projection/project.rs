@@ -1,4 +1,4 @@
-//! The definition: every primitive in its order, tile by tile.
+//! The definition: draw every primitive in its order, tile by tile.
 
 use super::primitives;
 use super::{PixelSample, Projected, SceneProjector};
@@ -11,7 +11,7 @@ use crate::number::{Exact, Vector3};
 use crate::splat::{Fate, Tally};
 use std::ops::Range;
 
-/// What is drawn as one thing.
+/// An item that is drawn as a whole.
 enum DrawnItem<R> {
     /// A surfel: its pixel and its sample.
     Pixel([u32; 2], PixelSample<R>),
@@ -28,7 +28,7 @@ impl<R: Exact> DrawnItem<R> {
     }
 }
 
-/// Projects a scene; `snap` is for triangles and lines.
+/// Projects a scene; `snap` applies to triangles and lines.
 ///
 /// # Errors
 /// [`Error::Invalid`] if there are more primitives than ids.
@@ -36,7 +36,7 @@ pub(crate) fn project<R: Exact>(job: &Job<'_>, cull: bool, snap: Snap) -> Result
     from(job, (cull, snap), 0)
 }
 
-/// The same of what there is beside the surfels: ids are those of the whole scene.
+/// Projects everything beside the surfels; the ids are those of the whole scene.
 ///
 /// # Errors
 /// As [`project`].
@@ -44,7 +44,7 @@ pub(crate) fn beside<R: Exact>(job: &Job<'_>, cull: bool, snap: Snap) -> Result<
     from(job, (cull, snap), job.scene.surfels.len())
 }
 
-/// Projects what has an id from the first on.
+/// Projects everything whose id is `first` or higher.
 fn from<R: Exact>(job: &Job<'_>, (cull, snap): (bool, Snap), first: usize) -> Result<Projected<R>> {
     let Job { scene, camera, .. } = *job;
     let (width, height) = (camera.width, camera.height);
@@ -60,7 +60,7 @@ fn from<R: Exact>(job: &Job<'_>, (cull, snap): (bool, Snap), first: usize) -> Re
     Ok(projected)
 }
 
-/// Draws the primitives of a range of ids over what is there, which has lower ids.
+/// Draws the primitives of a range of ids over samples that have lower ids.
 fn draw<R: Exact>(
     projector: &SceneProjector<'_, R>,
     job: &Job<'_>,
@@ -107,7 +107,7 @@ fn draw<R: Exact>(
     });
 }
 
-/// One surfel as a pixel, if it is seen.
+/// Draws one surfel as a pixel, if it is seen.
 fn surfel<R: Exact>(
     projector: &SceneProjector<'_, R>,
     i: usize,

@@ -1,30 +1,30 @@
-//! One surfel as one pixel, see the page of [`super`].
+//! Draw one surfel as one pixel, see the page of [`super`].
 
 use super::{PixelSample, SampleKind};
 use crate::number::{Exact, Real, Vector2, Vector3};
 use crate::splat::{Fate, Reasons, View, ellipse};
 
-/// What the projection of a picture's surfels shares.
+/// The shared numbers of a picture's surfels.
 #[derive(Clone, Copy, Debug)]
 pub struct PointProjector<R> {
     /// The camera.
     pub view: View<R>,
     /// f = sqrt(fx fy): pixels per world unit at depth 1.
     pub focal: R,
-    /// Whether what is seen from behind is dropped.
+    /// Whether surfels seen from behind are dropped.
     pub cull: bool,
 }
 
-/// A point of the scene before the camera.
+/// A point of the scene, placed before the camera.
 #[derive(Clone, Copy, Debug)]
 pub struct PlacedPoint<R> {
-    /// In view space.
+    /// Position in view space.
     pub p: Vector3<R>,
     /// Depth.
     pub t: R,
     /// 1/t, or 1.
     pub m: R,
-    /// In the picture.
+    /// Position in the picture.
     pub center: Vector2<R>,
 }
 
@@ -37,8 +37,8 @@ impl<R: Real> PlacedPoint<R> {
 }
 
 impl<R: Exact> PointProjector<R> {
-    /// [`PointProjector::reasons`] as a fate, without a branch, so that a loop over it vectorizes: where a
-    /// surfel is, g, fate.
+    /// [`PointProjector::reasons`] as a fate, without a branch, so that a loop over it vectorizes.
+    /// Returns the placed surfel, g and the fate.
     #[inline(always)]
     #[must_use]
     pub fn fate(&self, position: Vector3<R>, n: Vector3<R>) -> (PlacedPoint<R>, R, Fate) {
@@ -61,7 +61,7 @@ impl<R: Real> PointProjector<R> {
         if self.view.perspective { R::ONE / t } else { R::ONE }
     }
 
-    /// Where a point in view space is.
+    /// Places a point in view space.
     #[inline(always)]
     #[must_use]
     pub fn place(&self, p: Vector3<R>) -> PlacedPoint<R> {
@@ -72,7 +72,7 @@ impl<R: Real> PointProjector<R> {
         PlacedPoint { p, t, m, center }
     }
 
-    /// How a surface turns: < 0 if its front is seen.
+    /// g, how a surface is turned: < 0 if its front is seen.
     #[inline(always)]
     #[must_use]
     pub fn facing(&self, placed: &PlacedPoint<R>, n: Vector3<R>) -> R {
@@ -83,7 +83,8 @@ impl<R: Real> PointProjector<R> {
         }
     }
 
-    /// Where a surfel is, g, and the reasons not to draw it; `n` is the normal in view space.
+    /// Places a surfel, and returns g and the reasons not to draw it; `n` is the normal in view
+    /// space.
     #[inline(always)]
     #[must_use]
     pub fn reasons(&self, position: Vector3<R>, n: Vector3<R>) -> (PlacedPoint<R>, R, Reasons<R>) {
@@ -102,7 +103,7 @@ impl<R: Real> PointProjector<R> {
         (placed, g, reasons)
     }
 
-    /// The sample of a surfel at a place; n in view space, g as [`PointProjector::facing`].
+    /// The sample of a placed surfel; n is in view space, g as in [`PointProjector::facing`].
     #[inline(always)]
     #[must_use]
     pub fn sample(

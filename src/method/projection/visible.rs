@@ -1,6 +1,6 @@
-//! Which triangle is nearest in each pixel, and nothing else of it: what [`super::project`] finds among
-//! triangles, without making a [`Piece`] of each. Vertices are placed once, and of a mesh finer than the pixels
-//! most triangles cover no pixel's centre.
+//! Find only the nearest triangle of each pixel, without making a [`Piece`] of each triangle: the
+//! result of [`super::project`] for triangles. Vertices are placed once, because most triangles of
+//! a mesh finer than the pixels cover no pixel's centre.
 
 use super::primitives::{Piece, pieces, placed};
 use super::{PixelSample, SceneProjector};
@@ -11,15 +11,16 @@ use crate::number::{Exact, Vector3};
 use crate::scene::{Camera, Scene};
 use std::ops::Range;
 
-/// The most shares that triangles are drawn in: each takes a picture, 8 bytes a pixel in `f32`.
+/// The maximum number of shares that triangles are drawn in: each share takes a picture, 8 bytes a
+/// pixel in `f32`.
 pub(crate) const SHARES: usize = 8;
 
-/// The triangles of a scene that has nothing else, before a camera, both sides of them.
+/// The triangles of a scene that has nothing else, before a camera; both sides are seen.
 pub(crate) struct VisibleTriangles<'a, R: Exact> {
     projector: SceneProjector<'a, R>,
 }
 
-/// Depth and id of what is nearest; +inf and [`NO_ID`] where nothing is.
+/// Depth and id of the nearest triangle; +inf and [`NO_ID`] where there is none.
 pub(crate) type Foremost<R> = (R, u32);
 
 /// A vertex that is not clipped: its place in fixed point, m, and its position in view space.
@@ -34,7 +35,7 @@ impl<'a, R: Exact> VisibleTriangles<'a, R> {
         Self { projector: SceneProjector::new(scene, camera, false, snap) }
     }
 
-    /// What is nearest in each pixel, row by row: as [`super::project`] has it.
+    /// The nearest triangle of each pixel, row by row, as in [`super::project`].
     pub(crate) fn foremost(&self, exec: &Exec) -> Vec<Foremost<R>> {
         let [width, height] = self.projector.size;
         let pixels = width as usize * height as usize;
@@ -50,7 +51,7 @@ impl<'a, R: Exact> VisibleTriangles<'a, R> {
         let first = pictures.remove(0);
         let mut joined = Vec::new();
         exec.extend(&mut joined, pixels, |i| {
-            // Ids of a later share are higher.
+            // Ids of a later share are higher, so the earlier share wins a tie.
             let nearer = |kept: Foremost<R>, later: &Vec<Foremost<R>>| {
                 if decide::before(later[i].0, kept.0) { later[i] } else { kept }
             };
@@ -59,11 +60,11 @@ impl<'a, R: Exact> VisibleTriangles<'a, R> {
         joined
     }
 
-    /// What [`super::project`] keeps of a triangle at a pixel, and the weights c of the corners there, see
-    /// [`super::primitives`]; none if the triangle does not cover it.
+    /// The sample that [`super::project`] keeps of a triangle at a pixel, and the weights c of the
+    /// corners there, see [`super::primitives`]; none if the triangle does not cover the pixel.
     pub(crate) fn sample(&self, id: u32, pixel: (u32, u32)) -> Option<(PixelSample<R>, [R; 3])> {
         let (mut nearest, mut found) = (R::INFINITY, None);
-        // Corners that are moved to the grid can turn a piece of a clipped triangle over another one.
+        // Snapping the corners can turn a piece of a clipped triangle over another piece.
         pieces(&self.projector, id as usize, |piece: Piece<R>| {
             piece.for_each(&Rect::pixel(pixel), |at| {
                 if found.is_none() || decide::before(-at.p.z, nearest) {
@@ -89,7 +90,7 @@ impl<'a, R: Exact> VisibleTriangles<'a, R> {
         vertices
     }
 
-    /// Draws triangles over what is there, which has lower ids.
+    /// Draws triangles over samples that have lower ids.
     fn draw(
         &self,
         triangles: Range<usize>,
@@ -110,6 +111,7 @@ impl<'a, R: Exact> VisibleTriangles<'a, R> {
             let [Some(a), Some(b), Some(c)] =
                 corners.map(|corner| vertices[corner as usize].as_ref())
             else {
+                // A triangle with a clipped corner takes the general way, piece by piece.
                 pieces(projector, id, |piece| {
                     piece.for_each(&whole, |at| keep(at.x, at.y, id as u32, -at.p.z));
                 });
@@ -123,7 +125,7 @@ impl<'a, R: Exact> VisibleTriangles<'a, R> {
             let Some(triangle) = Triangle::new(&projector.snap, places) else { continue };
             let area = R::from_i64(triangle.area());
             triangle.for_each(&around, |x, y, w| {
-                // As for a piece that is the whole triangle, whose c is b.
+                // As for a piece that is the whole triangle: its c is b.
                 let q = [(w[0], a), (w[1], b), (w[2], c)];
                 let q = q.map(|(w, vertex)| R::from_i64(w) / area * vertex.m);
                 let sum = (q[0] + q[1]) + q[2];
@@ -144,7 +146,7 @@ mod tests {
     use glam::{DVec3, Vec3};
     use proptest::prelude::*;
 
-    /// Triangles of which some reach behind the camera, beside the picture and far out.
+    /// Triangles; some reach behind the camera, beside the picture and far out.
     fn scene(corners: &[[f32; 3]], middle: [f32; 3], spread: f32) -> Scene {
         let at = |p: &[f32; 3]| Vec3::from_array(middle) + Vec3::from_array(*p) * spread;
         let n = corners.len();

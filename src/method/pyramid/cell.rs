@@ -1,4 +1,4 @@
-//! The record of a level.
+//! The cell that a level stores for each of its pixels.
 
 use crate::composite::mean::Mean;
 use crate::method::projection::{PixelSample, SampleKind};
@@ -8,15 +8,16 @@ use crate::splat::Ellipse;
 /// A pixel of a level; view space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Cell<R> {
-    /// What it is.
+    /// The kind of primitive.
     pub kind: SampleKind,
-    /// Where its interval of depth begins; world units.
+    /// The front of the cell's interval of depth, in world units.
     pub front: R,
-    /// Where it ends.
+    /// The back of the interval.
     pub back: R,
-    /// Radius of its ellipse in pixels of level 0.
+    /// Radius of the cell's ellipse in pixels of level 0.
     pub extent: R,
-    /// From the centre of the cell to that of the ellipse, in pixels of level 0, x right, y down.
+    /// From the centre of the cell to the centre of the ellipse, in pixels of level 0, x right, y
+    /// down.
     pub displacement: Vector2<R>,
     /// Normal, of any length.
     pub normal: Vector3<R>,
@@ -27,7 +28,7 @@ pub struct Cell<R> {
 }
 
 impl<R> Cell<R> {
-    /// Each number in another arithmetic.
+    /// Converts each number to another arithmetic.
     #[must_use]
     pub fn map<S>(self, f: impl Fn(R) -> S) -> Cell<S> {
         Cell {
@@ -44,7 +45,7 @@ impl<R> Cell<R> {
 }
 
 impl<R: Real> Cell<R> {
-    /// Nothing: kind [`SampleKind::Empty`], front +inf, back -inf, all else 0.
+    /// An empty cell: kind [`SampleKind::Empty`], front +inf, back -inf, all else 0.
     #[must_use]
     pub fn empty() -> Self {
         let none = Vector3::ZERO;
@@ -78,14 +79,14 @@ impl<R: Real> Cell<R> {
         }
     }
 
-    /// Whether there is something.
+    /// Whether the cell is not empty.
     #[must_use]
     pub fn is_valid(&self) -> bool {
         self.kind != SampleKind::Empty
     }
 
-    /// Which of four cells are valid and hold the centre of a new cell, whose offsets from that
-    /// centre are given.
+    /// Which of four cells are valid and hold the centre of a new cell; `offsets` are measured from
+    /// that centre.
     pub fn inside(cells: &[Self; 4], offsets: &[Vector2<R>; 4]) -> [R::Truth; 4] {
         [0, 1, 2, 3].map(|j| {
             let ellipse = Ellipse::new(cells[j].normal, cells[j].extent);
@@ -94,8 +95,8 @@ impl<R: Real> Cell<R> {
         })
     }
 
-    /// The average of the attributes, see [`super::pull`]; `displacements` are those from the new
-    /// cell's centre, and `first` is the foremost, whose kind the new cell has.
+    /// The average of the attributes, see [`super::pull`]. `displacements` are measured from the
+    /// new cell's centre, and `first` is the foremost cell, which gives the new cell its kind.
     pub(super) fn average(
         cells: &[Self; 4],
         displacements: [Vector2<R>; 4],
@@ -128,11 +129,11 @@ impl<R: Real> Cell<R> {
 }
 
 impl<R: Exact> Cell<R> {
-    /// Of four cells those that take part, and which one is foremost.
+    /// Which of four cells take part, and which one is foremost.
     ///
-    /// Candidates are those that are [inside](Cell::inside), see
-    /// [`crate::composite::mean::foremost`]; those that are not tubes if the foremost is one, or
-    /// tubes if it is none, take no part.
+    /// The candidates are the cells that are [inside](Cell::inside), see
+    /// [`crate::composite::mean::foremost`]. If the foremost is a tube, cells that are not tubes
+    /// take no part; if it is none, tubes take no part.
     pub(super) fn foremost(cells: &[Self; 4], inside: [bool; 4]) -> ([bool; 4], usize) {
         let (fronts, backs) = (cells.map(|cell| cell.front), cells.map(|cell| cell.back));
         let (takes, first) = crate::composite::mean::foremost(inside, fronts, backs);

@@ -1,4 +1,4 @@
-//! Every decision behind one pixel, with its operands.
+//! Explain every decision behind one pixel, with its operands.
 
 use super::pull::{self, pull_all, side};
 use super::push::{self, push_all};
@@ -12,16 +12,16 @@ use crate::number::{Exact, Vector2};
 use crate::splat::Ellipse;
 use std::fmt;
 
-/// What happened to the cells over one pixel.
+/// The replay of the cells over one pixel.
 #[derive(Clone, Debug)]
 pub(super) struct PyramidReplay<R> {
     pixel: (u32, u32),
     pub(super) projection: PixelProjection<R>,
-    /// The cells over the pixel, of level 1 and on.
+    /// The cells over the pixel, from level 1 up.
     pub(super) pulled: Vec<Four<R>>,
-    /// The cells over the pixel, of the coarsest level but one and down.
+    /// The cells over the pixel, from the coarsest level but one down.
     pub(super) pushed: Vec<Pushed<R>>,
-    /// What the pixel shows.
+    /// The cell that the pixel shows.
     pub(super) shown: Cell<R>,
 }
 
@@ -34,7 +34,7 @@ pub(super) struct Four<R> {
     offsets: [Vector2<R>; 4],
     takes: [bool; 4],
     first: usize,
-    /// Of those that take part.
+    /// The weights of the cells that take part.
     weights: [R; 4],
     /// The new cell; empty if none takes part.
     pub(super) found: Cell<R>,
@@ -46,19 +46,19 @@ pub(super) struct Pushed<R> {
     level: usize,
     cell: (u32, u32),
     rule: Occlusion,
-    /// As the pull phase left it.
+    /// The cell as the pull phase left it.
     own: Cell<R>,
     parent: Cell<R>,
-    /// What it is computed from, if it is not copied.
+    /// The four cells that the cell is computed from, if it is not copied.
     from: Option<Four<R>>,
-    /// As the push phase leaves it.
+    /// The cell as the push phase leaves it.
     pub(super) left: Cell<R>,
 }
 
 /// Replays all stages at one pixel.
 ///
 /// # Errors
-/// As the projection.
+/// The errors of the projection.
 pub(super) fn explain<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -122,7 +122,7 @@ fn four_of_push<R: Exact>(
 }
 
 impl<R: Exact> Four<R> {
-    /// What became of the cell j, in words.
+    /// The fate of the cell j, in words.
     fn fate(&self, j: usize) -> String {
         let (cell, first) = (&self.cells[j], &self.cells[self.first]);
         if !cell.is_valid() {

@@ -1,4 +1,4 @@
-//! What the picture is shaded from: the planes that the definition and the fast path both leave.
+//! The planes that the picture is shaded from; the definition and the fast path both leave them.
 
 use super::Cell;
 use crate::frame::{Plane, Pool};
@@ -10,26 +10,26 @@ use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
 use crate::splat::View;
 
-/// What is seen, pixel by pixel; vectors in world space.
+/// The visible surface, pixel by pixel; vectors in world space.
 pub(super) struct GBuffer<R> {
-    /// See [`crate::method::projection::SampleKind`].
+    /// The kind of primitive, see [`crate::method::projection::SampleKind`].
     pub(super) kind: Plane<u8>,
     /// 1 where something is seen, else 0.
     pub(super) alpha: Plane<R>,
     /// Depth t; +inf where nothing is seen.
     pub(super) depth: Plane<R>,
-    /// Unit normals, if there is light or they were asked for.
+    /// Unit normals, if there is light or the caller asked for them.
     pub(super) normal: Option<Plane<[R; 3]>>,
     /// Unit tangents of tubes, the null vector elsewhere; if the scene has tubes.
     pub(super) tangent: Option<Plane<[R; 3]>>,
-    /// Colours, if `colored`; else anything.
+    /// Colours, if `colored`; else any values.
     pub(super) color: Plane<[R; 3]>,
     /// Whether the scene has colours.
     pub(super) colored: bool,
 }
 
 impl GBuffer<f32> {
-    /// What a scene needs, in memory that is used again: the values are any.
+    /// The planes that a scene needs, in memory that is used again; their values are arbitrary.
     pub(super) fn new(scene: &Scene, camera: &Camera, pool: &mut Pool) -> Self {
         let (size, has) = (camera.size(), Has::of(scene));
         Self {
@@ -59,7 +59,7 @@ impl<R: Exact> GBuffer<R> {
         }
     }
 
-    /// The same with the shaded colours, before the environment of the scene, if it has one.
+    /// The planes with shaded colours, before the environment of the scene, if it has one.
     pub(super) fn shaded(mut self, job: &Job<'_>) -> Self {
         let Job { scene, camera, exec, .. } = *job;
         let shader = Shader::new(View::new(camera), &scene.lights, scene.material);

@@ -1,27 +1,31 @@
-//! The pull phase \[MKC08, section 3.2\]: four cells to one of the next coarser level.
+//! Pull: average four cells into one of the next coarser level \[MKC08, section 3.2\].
 //!
-//! The four finer cells of (X, Y) are j = 0 .. 3 at (2X + j mod 2, 2Y + j div 2); those that do not
-//! exist are empty. With H the side of a finer cell in pixels, a power of two, its ellipse lies
-//! from the new cell's centre at
+//! The four finer cells of (X, Y) are j = 0 .. 3 at (2X + j mod 2, 2Y + j div 2); cells that do not
+//! exist are empty. H is the side of a finer cell in pixels, a power of two. The finer cell's
+//! ellipse lies from the new cell's centre at
 //!
 //! ```text
 //!   v_j = displacement_j + (-+H/2, -+H/2)      - for the left column and the upper row, + for the others
 //! ```
 //!
-//! and the new cell's centre is inside it if the ellipse holds the offset `v_j`. Of the valid cells
-//! for which that is so the foremost and those whose intervals overlap with its own are averaged
-//! ([`crate::composite::mean`], weights 1): normal, tangent, radius, colour and `v_j`, which is the
-//! new displacement. `Decided:` a tangent is an axis, whose sign means nothing: each whose dot
-//! product with that of the foremost is < 0 is turned first. So tubes whose tangents have other
-//! signs have the same picture, bit for bit, unless two meet at right angles. The interval is the
-//! hull: the least front and the greatest back. If there is no such cell the new one is empty.
+//! The new cell's centre is inside the ellipse if the ellipse holds the offset `v_j`. Take the
+//! valid cells whose ellipse holds it. The foremost of them and the cells whose intervals overlap
+//! with its interval are averaged ([`crate::composite::mean`], weights 1): normal, tangent, radius,
+//! colour and `v_j`, which is the new displacement. The interval is the hull: the least front and
+//! the greatest back. If there is no such cell, the new cell is empty.
+//!
+//! `Decided:` a tangent is an axis, whose sign means nothing. So each tangent whose dot product
+//! with the foremost tangent is < 0 is turned first. Tubes whose tangents have other signs then
+//! have the same picture, bit for bit, unless two tangents meet at right angles.
 //!
 //! `v_j` is exact: multiples of 1/2 below 2^17, as long as a cell is passed on alone.
 //!
-//! Not symmetric: of several foremost cells the end of the first counts, in the order of j. And in
-//! a level of odd width or height the last column or row is halved alone, so that a mirrored scene
-//! has a mirrored picture, along an axis, only if that side is a power of two and not the shorter
-//! one.
+//! The phase is not symmetric, for two reasons:
+//!
+//! - If several cells are foremost, the end of the first counts, in the order of j.
+//! - In a level of odd width or height the last column or row is halved alone. So a mirrored scene
+//!   has a mirrored picture, along an axis, only if that side is a power of two and not the shorter
+//!   one.
 
 use super::Cell;
 use crate::composite::mean::Mean;
@@ -34,7 +38,7 @@ pub(crate) fn side<R: Real>(level: usize) -> R {
     R::from_f32((1_u32 << level) as f32)
 }
 
-/// All levels from the projected scene, the finest first.
+/// Pulls all levels from the projected scene, the finest first.
 #[must_use]
 pub fn pull_all<R: Exact>(samples: &Plane<PixelSample<R>>, exec: &Exec) -> Vec<Plane<Cell<R>>> {
     let mut fine = samples.map(Cell::new);
@@ -47,7 +51,7 @@ pub fn pull_all<R: Exact>(samples: &Plane<PixelSample<R>>, exec: &Exec) -> Vec<P
     levels
 }
 
-/// The next coarser level; `side` is that of the finer cells in pixels.
+/// Pulls the next coarser level; `side` is the side of the finer cells in pixels.
 #[must_use]
 pub fn pull<R: Exact>(fine: &Plane<Cell<R>>, side: R, exec: &Exec) -> Plane<Cell<R>> {
     let (width, height) = (fine.width().div_ceil(2), fine.height().div_ceil(2));
@@ -77,8 +81,8 @@ fn one<R: Exact>(finer: &[Cell<R>; 4], side: R) -> Cell<R> {
     if takes[first] { merge(finer, &offsets, takes, first) } else { Cell::empty() }
 }
 
-/// `v_j`: from the new cell's centre to those of the finer ellipses, in pixels; `side` is that of
-/// the finer cells.
+/// `v_j`: from the new cell's centre to the centres of the finer ellipses, in pixels; `side` is the
+/// side of the finer cells.
 pub fn offsets<R: Real>(finer: &[Cell<R>; 4], side: R) -> [Vector2<R>; 4] {
     let half = side * R::from_f32(0.5);
     [0, 1, 2, 3].map(|j| {
@@ -89,8 +93,8 @@ pub fn offsets<R: Real>(finer: &[Cell<R>; 4], side: R) -> [Vector2<R>; 4] {
     })
 }
 
-/// The new cell, if of four cells at these [`offsets`] those in `takes` take part and `first` is
-/// the foremost of them.
+/// The new cell from four cells at these [`offsets`], if the cells in `takes` take part and `first`
+/// is the foremost of them.
 pub fn merge<R: Real>(
     finer: &[Cell<R>; 4],
     offsets: &[Vector2<R>; 4],

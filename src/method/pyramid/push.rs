@@ -1,30 +1,31 @@
-//! The push phase \[MKC08, section 3.3\]: empty and occluded cells from four of the next coarser
-//! level.
+//! Push: fill empty and occluded cells from four cells of the next coarser level \[MKC08, section
+//! 3.3\].
 //!
 //! The parent of the cell (x, y) is (x div 2, y div 2) of the coarser level as the push phase left
-//! it. A valid cell is occluded as [`Occlusion`] says if its parent is valid. A cell that is valid
-//! and not occluded is copied; so is every cell of the coarsest level.
+//! it. If the parent is valid, [`Occlusion`] says whether a valid cell is occluded. A cell that is
+//! valid and not occluded is copied; so is every cell of the coarsest level.
 //!
-//! Any other cell is interpolated from four: the parent j = 0, its neighbour in x j = 1, that in y
-//! j = 2, that in both j = 3, each on the side of the parent that the cell is on: x div 2 - 1 for
-//! even x, x div 2 + 1 for odd x, and so for y. Those that do not exist are empty. With H the side
-//! of the finer cell in pixels, the ellipse of cell j lies from the finer cell's centre at `v_j` =
-//! `displacement_j` + (its centre - the finer centre):
+//! Any other cell is interpolated from four cells: the parent j = 0, its neighbour in x j = 1, its
+//! neighbour in y j = 2, its neighbour in both j = 3. Each neighbour is on the side of the parent
+//! that the cell is on: x div 2 - 1 for even x, x div 2 + 1 for odd x, and so for y. Cells that do
+//! not exist are empty. H is the side of the finer cell in pixels. The ellipse of cell j lies from
+//! the finer cell's centre at `v_j` = `displacement_j` + (its centre - the finer centre):
 //!
 //! ```text
 //!   in x:   parent     +H/2 for even x, -H/2 for odd x
 //!           neighbour  -3H/2 for even x, +3H/2 for odd x              and so in y
 //! ```
 //!
-//! Of the valid ones whose ellipse holds the offset `v_j`, the foremost and those whose intervals
-//! overlap with its own are averaged ([`crate::composite::mean`], tangents turned as in the pull):
-//! front, back, normal, tangent, radius, colour and `v_j`, with weight 1 or
-//! `exp(-2 (form_j / square_j))`, see [`Weights`]. `Decided:` "analogously to the pull phase" (section 3.3) means the test of depth too: without it
-//! front and back surface run into each other at every silhouette.
+//! Take the valid cells whose ellipse holds the offset `v_j`. The foremost of them and the cells
+//! whose intervals overlap with its interval are averaged ([`crate::composite::mean`], tangents
+//! turned as in the pull): front, back, normal, tangent, radius, colour and `v_j`, with weight 1 or
+//! `exp(-2 (form_j / square_j))`, see [`Weights`]. `Decided:` "analogously to the pull phase"
+//! (section 3.3) means the test of depth too, because without it front and back surface run into
+//! each other at every silhouette.
 //!
-//! If there is no such cell: an empty cell stays empty, and an occluded one is copied. `Departs:`
-//! by the words of the paper the second becomes empty; but what does not cover a cell does not hide
-//! it, and there would be a hole beside every silhouette.
+//! If there is no such cell, an empty cell stays empty, and an occluded cell is copied. `Departs:`
+//! by the words of the paper the occluded cell becomes empty. But a surface that does not cover a
+//! cell does not hide it, and there would be a hole beside every silhouette.
 
 use super::pull::side;
 use super::{Cell, Occlusion, Settings, Weights};
@@ -34,7 +35,7 @@ use crate::frame::{Exec, Plane};
 use crate::number::{Exact, Real, Vector2};
 use crate::splat::Ellipse;
 
-/// All levels from those of the pull phase, the finest first.
+/// Pushes all levels, from the levels of the pull phase, the finest first.
 #[must_use]
 pub fn push_all<R: Exact>(
     pulled: &[Plane<Cell<R>>],
@@ -50,8 +51,8 @@ pub fn push_all<R: Exact>(
     pushed
 }
 
-/// The finer level, as [`super::pull`] left it, from the coarser one; `side` is that of the finer
-/// cells in pixels.
+/// Pushes the finer level, as [`super::pull`] left it, from the coarser level; `side` is the side
+/// of the finer cells in pixels.
 #[must_use]
 pub fn push<R: Exact>(
     fine: &Plane<Cell<R>>,
@@ -77,7 +78,7 @@ pub fn push<R: Exact>(
     pushed
 }
 
-/// The parent of a cell and the three neighbours.
+/// The parent of a cell and the parent's three neighbours.
 pub(crate) fn four<R: Real>(coarse: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
     let exists = |x: i64, y: i64| {
         (0..i64::from(coarse.width())).contains(&x) && (0..i64::from(coarse.height())).contains(&y)
@@ -101,7 +102,8 @@ pub fn occluded<R: Real>(cell: &Cell<R>, parent: &Cell<R>, rule: Occlusion) -> R
         & decide::occluded(cell.front, interval, rule == Occlusion::Outside)
 }
 
-/// A cell from its parent and the three neighbours, if any holds its centre; see the module page.
+/// A cell from its parent and the three neighbours, if one of their ellipses holds the cell's
+/// centre; see the module page.
 fn one<R: Exact>(
     coarser: &[Cell<R>; 4],
     even: (bool, bool),
@@ -113,8 +115,9 @@ fn one<R: Exact>(
     takes[first].then(|| merge(coarser, &offsets, weights, takes, first))
 }
 
-/// `v_j`: from the finer cell's centre to those of the coarser ellipses, in pixels; whether the
-/// column and the row of the finer cell are even, and the side of finer cells.
+/// `v_j`: from the finer cell's centre to the centres of the coarser ellipses, in pixels. The
+/// arguments say whether the column and the row of the finer cell are even, and the side of finer
+/// cells.
 pub fn offsets<R: Real>(
     coarser: &[Cell<R>; 4],
     (even_x, even_y): (bool, bool),
@@ -142,8 +145,8 @@ pub(super) fn weight<R: Real>(cell: &Cell<R>, offset: Vector2<R>, weights: Weigh
     }
 }
 
-/// The new cell, if of four cells at these [`offsets`] those in `takes` take part and `first` is the
-/// foremost of them.
+/// The new cell from four cells at these [`offsets`], if the cells in `takes` take part and `first`
+/// is the foremost of them.
 pub fn merge<R: Real>(
     coarser: &[Cell<R>; 4],
     offsets: &[Vector2<R>; 4],

@@ -1,11 +1,11 @@
-//! What may change the picture.
+//! The settings of the method.
 
 use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::setting::{Field, Fields, Slot, Visit, Words};
 use crate::splat::culling;
 
-/// How the cells that a pixel is interpolated from are weighted \[MKC08, section 3.3, Fig. 4\].
+/// The weights of the cells that a pixel is interpolated from \[MKC08, section 3.3, Fig. 4\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Weights {
     /// 1 inside the ellipse.
@@ -16,20 +16,20 @@ pub enum Weights {
     Gaussian,
 }
 
-/// When a cell that has something counts as occluded, by the interval [front, back] of its parent,
+/// When a cell that is not empty counts as occluded, by the interval [front, back] of its parent,
 /// the cell of the next coarser level that it is part of.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub enum Occlusion {
     /// front > parent's back. `Departs:` by the words of the paper a cell in *front* of its
-    /// parent's interval is "occluded" too, so that a triangle or a thin ribbon, which takes no
-    /// part in the coarser level, is overwritten by the surface behind it, against section 5.1.
+    /// parent's interval is "occluded" too. Then the surface behind would overwrite a triangle or a
+    /// thin ribbon, which takes no part in the coarser level, against section 5.1.
     #[default]
     Behind,
     /// front > parent's back, or front < parent's front: the words of \[MKC08, section 3.3\].
     Outside,
 }
 
-/// What is computed; everything here may change the picture.
+/// The settings of the method; each of them may change the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// See [`Weights`].
@@ -80,7 +80,7 @@ impl Words for Occlusion {
 }
 
 impl Settings {
-    /// Whether the numbers are in range.
+    /// Checks that the numbers are in range.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] as [`Snap::new`].
