@@ -1,7 +1,8 @@
-//! The size of surfels from the time of the last frame \[BJFM19, 4.3\].
+//! Control the size of surfels by the time of the last frame \[BJFM19, 4.3\].
 //!
-//! "A simple reactive algorithm that increases or decreases the surfel size based on the frame-time of the last
-//! rendered frame". With the size s of that frame, its time t and the time T that is wanted, in f64:
+//! The paper's rule is "a simple reactive algorithm that increases or decreases the surfel size
+//! based on the frame-time of the last rendered frame". With the size s of that frame, its time t
+//! and the target time T, in f64:
 //!
 //! ```text
 //!   deviation = t / T
@@ -9,21 +10,22 @@
 //!               (s 3 + s deviation) / 4              otherwise, at least `least`, at most `most`
 //! ```
 //!
-//! rounded to f32. A size out of \[least, most\] is brought into it first.
+//! The result is rounded to f32. A size out of \[least, most\] is clamped into it first.
 //!
-//! `Decided:` `s_old` of the paper is the size of the last frame: its formula has one number, and its sentence speaks of a
-//! moving average over three frames.
+//! `Decided:` `s_old` of the paper is the size of the last frame. Its formula has one number, but
+//! its sentence speaks of a moving average over three frames.
 //!
-//! Where a frame takes b / s^2, as where every surfel takes as long, the size settles: near the size that is
-//! wanted the error halves from frame to frame. From a size much too small it overshoots, in one
-//! frame, from s = x s' to (3 x + 1 / x) / 4 of the size s' that is wanted: the first frame after a
-//! load step of n, where x = n^(-1/2). A time that is known d frames late makes it swing:
-//! `e(i + 1) = e(i) - e(i - d) / 2` dies out for d up to 2, and grows for d from 3 on, until \[least, most\] ends it.
+//! If a frame takes b / s^2, because every surfel takes the same time, the size settles: near the
+//! target size the error halves from frame to frame. From a size much too small it overshoots, in
+//! one frame, from s = x s' to (3 x + 1 / x) / 4 of the target size s'. That is the first frame
+//! after a load step of n, where x = n^(-1/2). If a time is known d frames late, the size swings:
+//! `e(i + 1) = e(i) - e(i - d) / 2` dies out for d up to 2, and grows for d from 3 on, until
+//! \[least, most\] ends it.
 
 use crate::error::{Error, Result};
 use crate::number::Real;
 
-/// How the size follows the time of frames.
+/// Sets the size of surfels by the time of frames.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Controller {
     /// T: the time that a frame should take, greater than 0, in any unit.
@@ -35,7 +37,7 @@ pub struct Controller {
 }
 
 impl Controller {
-    /// That of the paper, for a time.
+    /// The paper's controller, for a target time.
     ///
     /// # Errors
     /// [`Error::Invalid`] if the time is not greater than 0, or not finite.
@@ -46,8 +48,8 @@ impl Controller {
         Err(Error::Invalid(format!("a frame time of {target}; give one greater than 0")))
     }
 
-    /// The size of the next frame, after one of a size that took a time in the unit of the target. A time that
-    /// is NaN or less than 0 leaves the size as it is.
+    /// The size of the next frame, after a frame of this size that took this time, in the unit of
+    /// the target. A time that is NaN or less than 0 leaves the size as it is.
     #[must_use]
     pub fn next(&self, size: f32, time: f64) -> f32 {
         let [least, most] = self.sizes;
@@ -69,7 +71,8 @@ mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    /// The sizes of frames whose surfels take `cost / s^2`; their times are known so many frames late.
+    /// The sizes of frames whose surfels take `cost / s^2`; each frame's time is known `late`
+    /// frames late.
     fn frames(from: f32, cost: f64, late: usize, count: usize) -> Vec<f32> {
         let controller = Controller::new(1.0).unwrap();
         let mut sizes = vec![from; late + 1];
@@ -91,7 +94,7 @@ mod tests {
             let at_an_end = (last == 8.0 && deviation > 1.1) || (last == 1.0 && deviation < 0.9);
             prop_assert!(settled || at_an_end, "{last} {deviation}");
             prop_assert_eq!(sizes[sizes.len() - 2], sizes[sizes.len() - 1], "and stays");
-            // Never past the size that is wanted but by the first frame.
+            // No frame but the first passes the target size.
             let wanted = cost.sqrt();
             prop_assert!(sizes[1..].iter().all(|&s| f64::from(s) >= 0.866 * wanted || s == 8.0));
         }
@@ -137,7 +140,7 @@ mod tests {
         }
     }
 
-    /// Times that are known late: the swing after a load step of 2 dies out, up to two frames.
+    /// If times are known late, the swing after a load step of 2 dies out, up to two frames.
     #[test]
     fn late_times_make_sizes_swing() {
         let swing = |late: usize| {

@@ -1,4 +1,4 @@
-//! The nearest disc of each pixel, see the page of [`super`].
+//! Find the nearest disc of each pixel, see the page of [`super`].
 
 use super::squares::{Disc, Squares};
 use crate::composite::decide;
@@ -10,7 +10,7 @@ use crate::method::tiled::Tiled;
 use crate::number::{Exact, Real};
 use crate::splat::View;
 
-/// Where the ray of a pixel meets the plane of a disc.
+/// The point where the ray of a pixel meets the plane of a disc.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DiscFragment<R> {
     /// Depth.
@@ -62,14 +62,14 @@ impl<R: Real> Disc<R> {
     }
 }
 
-/// What a pixel keeps.
+/// The fragment that a pixel keeps.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Kept<R> {
-    /// Its depth; +inf where there is none.
+    /// Depth of the fragment; +inf where there is none.
     pub(crate) depth: R,
-    /// [`NO_ID`] where there is none.
+    /// Surfel of the fragment; [`NO_ID`] where there is none.
     pub(crate) surfel: u32,
-    /// 0 where there is none.
+    /// Squared distance from the disc's centre; 0 where there is none.
     pub(crate) offset: R,
     back: bool,
 }
@@ -100,7 +100,7 @@ pub(crate) fn nearest<R: Exact>(job: &Job<'_>, squares: &Squares<R>) -> Tiled<Ke
     })
 }
 
-/// What a pixel shows of what it keeps, in a scene with colours or without.
+/// The surface that a pixel shows for its kept fragment, in a scene with colours or without.
 pub(crate) fn shown<R: Exact>(job: &Job<'_>, kept: &Kept<R>, colored: bool) -> SurfacePixel<R> {
     if kept.surfel == NO_ID {
         return SurfacePixel::EMPTY;

@@ -1,4 +1,4 @@
-//! Every decision at one pixel, with its operands.
+//! Explain every decision at one pixel, with its operands.
 
 use super::Settings;
 use super::discs::ray;
@@ -12,14 +12,14 @@ use crate::number::Exact;
 use crate::splat::{Fate, View};
 use std::fmt;
 
-/// What happened at one pixel.
+/// The replay of one pixel.
 #[derive(Clone, Debug)]
 pub struct BlueReplay<R> {
     /// Column and row.
     pub pixel: (u32, u32),
     /// The surfels whose squares hold the pixel, ascending, then the triangles that cover it.
     pub touches: Vec<BlueTouch<R>>,
-    /// Which of them stays; none of an empty pixel.
+    /// The fragment that stays; none if the pixel is empty.
     pub kept: Option<BlueTouch<R>>,
     /// Depth of the near plane.
     near: R,
@@ -31,28 +31,29 @@ pub struct BlueReplay<R> {
 pub struct BlueTouch<R> {
     /// The surfel, or the triangle by its id.
     pub id: u32,
-    /// Its depth.
+    /// Depth of the fragment.
     pub t: R,
-    /// The squared distance from the centre of the disc, and the square of its radius; none of a triangle.
+    /// The squared distance from the centre of the disc, and the square of its radius; none for a
+    /// triangle.
     pub offset: Option<[R; 2]>,
-    /// What becomes of it.
+    /// The fate of the fragment.
     pub end: BlueEnd<R>,
 }
 
-/// What becomes of a fragment.
+/// The fate of a fragment.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum BlueEnd<R> {
     /// The back of its surfel is seen, g >= 0.
     Dropped(R),
-    /// Its plane is edge-on, or depth or offset is not finite.
+    /// The plane is edge-on, or depth or offset is not finite.
     EdgeOn,
-    /// It is not beyond the near plane.
+    /// The fragment is not beyond the near plane.
     Near,
-    /// It is outside the rim of its disc.
+    /// The fragment is outside the rim of its disc.
     Discarded,
-    /// It is not nearer than what the pixel has: this depth.
+    /// The fragment is not nearer than the pixel's depth, which this holds.
     Loses(R),
-    /// It is nearer than what the pixel has.
+    /// The fragment is nearer than the pixel's depth, which this holds.
     Nearest(R),
 }
 
@@ -74,7 +75,7 @@ pub fn explain<R: Exact>(
         range.filter_map(|i| touch(&projector, &view, i, pixel)).collect::<Vec<_>>()
     });
     let mut touches = found.concat();
-    // Which of them stays is asked below.
+    // The loop below decides which fragment stays, so that all begin as losers.
     let triangle = |(id, t)| BlueTouch { id, t, offset: None, end: BlueEnd::Loses(t) };
     let triangles = beside(job, settings.cull, Snap::default(), pixel);
     touches.extend(triangles.into_iter().map(triangle));
@@ -92,7 +93,8 @@ pub fn explain<R: Exact>(
     Ok(BlueReplay { pixel, touches, kept, near: view.near, surfels: count })
 }
 
-/// A surfel, if its square holds the pixel; one that stays is said to lose.
+/// The fragment of a surfel, if its square holds the pixel; a fragment that stays is marked as
+/// losing here.
 fn touch<R: Exact>(
     projector: &SquareProjector<'_, R>,
     view: &View<R>,

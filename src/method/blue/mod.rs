@@ -1,18 +1,19 @@
-//! Surfels as oriented discs in squares on the screen \[BJFM19, 4.2\].
+//! Draw surfels as oriented discs in squares on the screen \[BJFM19, 4.2\].
 //!
-//! Each surfel is a point primitive: a square of so many pixels around its centre. In each pixel of the
-//! square the ray meets the surfel's plane; where it does so farther from the centre than the radius, the
-//! fragment is discarded. What is left of the square is an opaque disc, an ellipse on the screen. The nearest
-//! fragment of a pixel stays. Nothing is averaged and nothing is filtered.
+//! Each surfel is a point primitive: a square with a side in pixels around its centre. In each
+//! pixel of the square the ray meets the surfel's plane. If it meets the plane farther from the
+//! centre than the radius, the fragment is discarded. The rest of the square is an opaque disc, an
+//! ellipse on the screen. The nearest fragment of a pixel stays. Nothing is averaged and nothing is
+//! filtered.
 //!
-//! Which surfels are drawn, how large they are and how large their squares are, is not chosen here: that is
-//! the prefix of an order, and its side \[BJFM19, 4.1\]: [`crate::scene::objects::detail`]. How the size of
-//! discs follows the time of frames is [`controller`].
+//! The method does not choose which surfels are drawn, how large they are and how large their
+//! squares are. [`crate::scene::objects::detail`] chooses them: the prefix of an order, and its
+//! side \[BJFM19, 4.1\]. [`controller`] makes the size of discs follow the time of frames.
 //!
 //! # The square
 //!
-//! With p the centre and n the normal in view space, r the radius, t = -p.z, m = 1/t and (a, b) = (p.x m, p.y
-//! m) (orthographic: m = 1 and (a, b) = (p.x, p.y)):
+//! With p the centre and n the normal in view space, r the radius, t = -p.z, m = 1/t and (a, b) =
+//! (p.x m, p.y m) (orthographic: m = 1 and (a, b) = (p.x, p.y)):
 //!
 //! ```text
 //!   centre  X = cx + fx a                  Y = cy - fy b
@@ -23,22 +24,30 @@
 //!   pixel (x, y) is in the square if       X - h <= x + 1/2 < X + h and Y - h <= y + 1/2 < Y + h
 //! ```
 //!
-//! `Decided:` the upper ends are not part of the square, so that squares that touch share no pixels; nor is
-//! the rim of a disc there, where it passes through the centre of a pixel.
-//! `Decided:` without a side a point primitive is as large as its disc when that faces the camera, and at
-//! least one pixel, so that it holds one centre of a pixel. The square cuts what reaches beyond it: a disc
-//! that faces the eye at an angle of theta off the axis of a perspective camera is 1 / cos theta as long, and
-//! a tilted one is longer on its near side.
+//! `Decided:` the upper ends are not part of the square, so that squares that touch share no
+//! pixels. So the rim of a disc is not drawn there either, where it passes through the centre of a
+//! pixel.
 //!
-//! Fates, in this order: `Behind` unless t > near; `Degenerate` if X, Y, t or g is not finite; with culling
-//! `BackFacing` if g >= 0; `Outside` if no pixel of the picture is in the square; else it is drawn.
-//! `Departs:` GL drops a point whose centre is outside the view, with all of its square. Here it is drawn as
-//! far as its square reaches into the picture, so that no border of large points is lost. But for the near
-//! plane: a surfel whose centre is not beyond it is lost.
+//! `Decided:` without a side, a point primitive is as large as its disc when the disc faces the
+//! camera, and at least one pixel, so that it holds one centre of a pixel. The square cuts any part
+//! of the disc that reaches beyond it. A disc that faces the eye at an angle of theta off the axis
+//! of a perspective camera is 1 / cos theta as long, and a tilted one is longer on its near side.
+//!
+//! Fates, in this order:
+//!
+//! 1. `Behind` unless t > near;
+//! 2. `Degenerate` if X, Y, t or g is not finite;
+//! 3. with culling, `BackFacing` if g >= 0;
+//! 4. `Outside` if no pixel of the picture is in the square;
+//! 5. else the surfel is drawn.
+//!
+//! `Departs:` GL drops a point whose centre is outside the view, with all of its square. Here the
+//! part of the square that reaches into the picture is drawn, so that no border of large points is
+//! lost. The near plane is an exception: a surfel whose centre is not beyond it is lost.
 //!
 //! # The disc
 //!
-//! Of each pixel in the square:
+//! For each pixel in the square:
 //!
 //! ```text
 //!   ray          a = ((x + 1/2) - cx) / fx       b = -(((y + 1/2) - cy) / fy)
@@ -50,31 +59,35 @@
 //!   it stays if  t > near, o <= r r, and t and o are finite
 //! ```
 //!
-//! (d.z points away from the camera, unlike p.z: its sign does not matter.) The rim is part of the disc. A
-//! plane that the ray meets edge-on has no fragment: the quotient is infinite or NaN. `Decided:` an elliptical
-//! surfel counts as the disc of its radius, and opacity is ignored: the paper knows opaque discs only.
+//! (d.z points away from the camera, unlike p.z: its sign does not matter.) The rim is part of the
+//! disc. A plane that the ray meets edge-on has no fragment: the quotient is infinite or NaN.
+//! `Decided:` an elliptical surfel counts as the disc of its radius, and opacity is ignored,
+//! because the paper knows opaque discs only.
 //!
 //! # The pixel
 //!
-//! Of the fragments that stay a pixel keeps the least t, ties: the lower surfel index. It has that depth, the
-//! weight 1, the surfel's normal in world space, reversed if g > 0, and its colour; a surfel without one has
-//! that of the material where triangles have colours. Then **deferred shading**, see [`crate::shade`]; of
-//! opaque discs it is the same as in the fragment shader.
+//! A pixel keeps the least t of the fragments that stay, ties: the lower surfel index. It has that
+//! depth, the weight 1, the surfel's normal in world space, reversed if g > 0, and the surfel's
+//! colour. A surfel without a colour has the material's if triangles have colours. Then comes
+//! **deferred shading**, see [`crate::shade`]; for opaque discs it equals shading in the fragment
+//! shader.
 //!
-//! **Triangles** beside the surfels, the original geometry of \[BJFM19, 4\], are drawn as by
-//! [`mod@super::projection`], with the same culling and the corners snapped to 1/256 px, into the same depth: a
-//! triangle takes a pixel if it is strictly nearer than the disc there. Its id is its index, counted on after
-//! the surfels. Its normal is turned to world space and divided by its length.
+//! **Triangles** beside the surfels are the original geometry of \[BJFM19, 4\].
+//! [`mod@super::projection`] draws them, with the same culling and the corners snapped to 1/256 px,
+//! into the same depth. A triangle takes a pixel if it is strictly nearer than the disc there. Its
+//! id is its index, counted on after the surfels. Its normal is turned to world space and divided
+//! by its length.
 //!
 //! # What to expect
 //!
-//! - A disc narrower than a pixel is seen only where it holds a pixel's centre. Surfels whose radii are not
-//!   chosen for the view leave holes when they are seen from afar, which a larger square does not close.
+//! - A disc narrower than a pixel is seen only where it holds a pixel's centre. Surfels whose radii
+//!   are not chosen for the view leave holes when you see them from afar, and a larger square does
+//!   not close these holes.
 //! - A pixel shows one surfel. Dense surfels flicker as the view moves.
 //! - Discs of neighbours cut each other, so that borders between colours are arcs.
 //!
-//! The definition is over any [`Exact`] number; `fast` gives the same bits for `f32`. What each stage leaves:
-//! [`mod@super::planes`].
+//! The definition is over any [`Exact`] number; `fast` gives the same bits for `f32`. What each
+//! stage leaves: [`mod@super::planes`].
 //!
 //! [`Exact`]: crate::number::Exact
 //!
@@ -106,7 +119,7 @@ impl Algorithm for Settings {
                                    surfels [BJFM19]";
     const STAGES: &'static [Stage] = planes::STAGES;
     const DRAWS_POLYGONS: bool = true;
-    // 52 of the picture, and the samples of triangles, if there are any.
+    // 52 for the picture, and the samples of triangles, if there are any.
     const FAST_BYTES_A_PIXEL: Option<u64> = Some(160);
     type Memory = ();
 

@@ -1,4 +1,4 @@
-//! Both stages in one call: from a scene to named planes; and one stage on somebody's planes.
+//! Run both stages in one call, from a scene to named planes; or one stage on a client's planes.
 
 use super::discs::{Kept, nearest, shown};
 use super::polygons::Polygons;
@@ -29,7 +29,7 @@ pub(super) fn define<R: Exact>(
     Ok(finish(target, left, tally, clock, job))
 }
 
-/// One stage on somebody's planes.
+/// Runs one stage on a client's planes.
 pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -60,7 +60,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     Ok(finish(target, Vec::new(), tally, clock, job))
 }
 
-/// What the stage of the discs leaves.
+/// The output of the discs stage.
 struct Drawn<R> {
     target: Framebuffer<R>,
     kept: Tiled<Kept<R>>,

@@ -1,4 +1,4 @@
-//! Triangles beside the discs, see the page of [`super`].
+//! Draw triangles beside the discs, see the page of [`super`].
 
 use super::Settings;
 use crate::composite::decide;
@@ -17,7 +17,7 @@ pub(super) struct Polygons<R> {
 }
 
 impl<R: Exact> Polygons<R> {
-    /// Those of a scene; none if it has none.
+    /// Draws the triangles of a scene; none if it has none.
     ///
     /// # Errors
     /// As [`projection::beside`].
@@ -29,7 +29,7 @@ impl<R: Exact> Polygons<R> {
         Ok(Some(Self { samples: drawn.samples, view: View::new(job.camera) }))
     }
 
-    /// Puts triangles into the pixels of which they are nearer than what is there.
+    /// Puts triangles into the pixels where they are nearer than the disc.
     pub(super) fn over(&self, target: &mut Framebuffer<R>, job: &Job<'_>) {
         let Framebuffer { depth, id, weight, normal, color, .. } = target;
         let rows = depth.rows_mut().zip(id.rows_mut()).zip(weight.rows_mut());

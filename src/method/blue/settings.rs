@@ -1,9 +1,9 @@
-//! What is computed.
+//! The settings of the method.
 
 use crate::setting::{Fields, Visit};
 use crate::splat::culling;
 
-/// What is computed; everything here may change the picture.
+/// The settings of the method; each of them may change the picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// Whether surfels and triangles seen from behind are dropped.
@@ -11,7 +11,7 @@ pub struct Settings {
 }
 
 impl Default for Settings {
-    /// Seen from the front, as by the other methods of opaque surfaces.
+    /// Culling is on, as in the other methods of opaque surfaces.
     fn default() -> Self {
         Self { cull: true }
     }

@@ -1,4 +1,4 @@
-//! Surfels as squares on the screen, see the page of [`super`].
+//! Place surfels as squares on the screen, see the page of [`super`].
 
 use crate::frame::{Bins, Grid, Rect};
 use crate::method::Job;
@@ -22,7 +22,7 @@ pub(crate) struct Disc<R> {
     pub(crate) limit: R,
 }
 
-/// Where a square begins and ends, in pixels: columns and rows.
+/// The ends of a square, in pixels: columns and rows.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Edges<R> {
     pub(crate) x: [R; 2],
@@ -32,26 +32,26 @@ pub(crate) struct Edges<R> {
 /// A surfel that is drawn.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Square<R> {
-    /// Its pixels in the picture.
+    /// The square's pixels in the picture.
     pub(crate) bounds: Rect,
     pub(crate) surfel: u32,
-    /// Whether its back is seen.
+    /// Whether the back of the surfel is seen.
     pub(crate) back: bool,
     pub(crate) disc: Disc<R>,
 }
 
-/// A surfel before it is known whether it is drawn.
+/// A surfel that is placed; its fate is not known yet.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct PlacedSquare<R: Real> {
     pub(crate) edges: Edges<R>,
     pub(crate) disc: Disc<R>,
-    /// How the surfel turns: < 0 if its front is seen.
+    /// g, how the surfel is turned: < 0 if its front is seen.
     pub(crate) g: R,
-    /// Why it is not drawn; whether it is outside is for its edges to say.
+    /// The reasons not to draw it, except `outside`, which follows from the edges.
     pub(crate) reasons: Reasons<R>,
 }
 
-/// What the squares of a picture share.
+/// The shared numbers of a picture's squares.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SquareProjector<'a, R> {
     pub(crate) surfels: &'a Surfels,
@@ -66,7 +66,7 @@ impl<'a, R: Real> SquareProjector<'a, R> {
         Self { surfels: &scene.surfels, sides: scene.sides.as_ref(), points }
     }
 
-    /// A surfel on the screen.
+    /// Places a surfel on the screen.
     pub(crate) fn place(&self, i: usize) -> PlacedSquare<R> {
         let side = R::from_f32(self.side(i));
         let [position, normal] =
@@ -74,13 +74,13 @@ impl<'a, R: Real> SquareProjector<'a, R> {
         self.square(position, normal, R::from_f32(self.surfels.radius()[i]), side)
     }
 
-    /// The side of a surfel; 0 of one without.
+    /// The side of a surfel; 0 for a surfel without one.
     #[inline(always)]
     pub(crate) fn side(&self, i: usize) -> f32 {
         self.sides.and_then(|sides| sides.side(i as u32)).unwrap_or(0.0)
     }
 
-    /// The same of these numbers; the side is 0 of a surfel without one.
+    /// Places a surfel with these numbers; the side is 0 for a surfel without one.
     #[inline(always)]
     pub(crate) fn square(
         &self,
@@ -106,7 +106,8 @@ impl<'a, R: Real> SquareProjector<'a, R> {
 }
 
 impl<R: Exact> PlacedSquare<R> {
-    /// Its pixels in a picture, and what becomes of it; bounds of what is not drawn mean nothing.
+    /// The square's pixels in a picture, and its fate; the bounds of a surfel that is not drawn
+    /// mean nothing.
     #[inline(always)]
     pub(crate) fn fate(&self, view: &View<R>) -> (Rect, Fate) {
         let Edges { x, y } = &self.edges;
@@ -118,7 +119,7 @@ impl<R: Exact> PlacedSquare<R> {
 }
 
 impl<R: Exact> SquareProjector<'_, R> {
-    /// A surfel as it is drawn, if it is.
+    /// A surfel as a square, if it is drawn.
     fn drawn(&self, i: usize, tally: &mut Tally) -> Option<Square<R>> {
         let placed = self.place(i);
         let (bounds, fate) = placed.fate(&self.points.view);
@@ -129,7 +130,8 @@ impl<R: Exact> SquareProjector<'_, R> {
     }
 }
 
-/// How many centres of columns or rows of a picture of this size are before a coordinate, exactly.
+/// Counts exactly how many centres of columns or rows, in a picture of this size, lie before a
+/// coordinate.
 #[inline(always)]
 fn before<R: Exact>(coordinate: R, size: R) -> u32 {
     let held = coordinate.clamped(R::ZERO, size);
@@ -145,7 +147,7 @@ pub(crate) struct Squares<R> {
 }
 
 impl<R: Exact> Squares<R> {
-    /// Every surfel that is drawn.
+    /// The squares of every surfel that is drawn.
     pub(crate) fn new(job: &Job<'_>, cull: bool) -> Self {
         let projector = SquareProjector::new(job, cull);
         Self::of((job, &job.grid()), |range, squares| {
@@ -155,7 +157,7 @@ impl<R: Exact> Squares<R> {
         })
     }
 
-    /// The same, where `project` makes the squares of a range of surfels.
+    /// As [`Squares::new`]; `project` makes the squares of a range of surfels.
     pub(crate) fn of(
         (job, grid): (&Job<'_>, &Grid),
         project: impl Fn(Range<usize>, &mut Vec<Square<R>>) -> Tally + Sync + Send,

@@ -1,4 +1,4 @@
-//! The record of a level.
+//! The centre of an ellipse that a level stores for each of its cells.
 
 use crate::frame::NO_ID;
 use crate::method::projection::{PixelSample, SampleKind};
@@ -7,7 +7,7 @@ use crate::number::{Real, Vector2, Vector3};
 /// The centre of an ellipse in a cell of a level; view space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Center<R> {
-    /// The surfel, of several that were merged the foremost; [`NO_ID`] in an empty cell.
+    /// The surfel; if several were merged, the foremost; [`NO_ID`] in an empty cell.
     pub id: u32,
     /// Depth t in world units; +inf in an empty cell.
     pub depth: R,
@@ -15,7 +15,7 @@ pub struct Center<R> {
     pub radius: R,
     /// Radius rho in pixels.
     pub extent: R,
-    /// Where it is in the picture, in pixels.
+    /// Position in the picture, in pixels.
     pub center: Vector2<R>,
     /// Normal, of any length.
     pub normal: Vector3<R>,
@@ -24,7 +24,7 @@ pub struct Center<R> {
 }
 
 impl<R> Center<R> {
-    /// Each number in another arithmetic.
+    /// Converts each number to another arithmetic.
     #[must_use]
     pub fn map<S>(self, f: impl Fn(R) -> S) -> Center<S> {
         Center {
@@ -40,7 +40,7 @@ impl<R> Center<R> {
 }
 
 impl<R: Real> Center<R> {
-    /// An empty cell: all but depth and id is 0.
+    /// An empty cell: all numbers but depth and id are 0.
     #[must_use]
     pub fn empty() -> Self {
         Self {

@@ -1,4 +1,4 @@
-//! Every decision behind one pixel, with its operands.
+//! Explain every decision behind one pixel, with its operands.
 
 use super::normalization::normalize;
 use super::propagation::{self, propagate};
@@ -13,12 +13,12 @@ use crate::method::projection::{self, Has};
 use crate::number::Exact;
 use std::fmt;
 
-/// What happened to one pixel and to the cells over it.
+/// The replay of one pixel and of the cells over it.
 #[derive(Clone, Debug)]
 pub(super) struct TemplateReplay<R> {
     pixel: (u32, u32),
     pub(super) projection: PixelProjection<R>,
-    /// The cells over the pixel, of level 1 and on.
+    /// The cells over the pixel, from level 1 up.
     pub(super) merged: Vec<Merged<R>>,
     /// The centres in the templates around the pixel, in the order of the gathering.
     asked: Vec<CenterAnswer<R>>,
@@ -37,13 +37,13 @@ pub(super) struct Merged<R> {
     /// The largest radius that stays at the finer level.
     reach: R,
     moving: [bool; 4],
-    /// Which are near the foremost of those that move, if one does.
+    /// Which centres are near the foremost centre that moves, if one moves.
     near: [bool; 4],
     first: Option<usize>,
     pub(super) found: Center<R>,
 }
 
-/// A centre, and what the pixel makes of it.
+/// A centre, and the pixel's decisions on it.
 #[derive(Clone, Copy, Debug)]
 struct CenterAnswer<R> {
     level: usize,
@@ -51,11 +51,12 @@ struct CenterAnswer<R> {
     center: Center<R>,
     form: R,
     square: R,
-    /// Whether it is held: by its ellipse, or since it was projected to this pixel.
+    /// Whether the pixel is held: by the centre's ellipse, or because the centre was projected to
+    /// this pixel.
     holds: bool,
     own: bool,
-    /// What the pixel had gathered before, and the ternary test against it.
-    /// What it weighs there.
+    /// The weight of the centre, what the pixel had gathered before, and the ternary test against
+    /// it.
     weight: R,
     before: Gathered<R>,
     test: Placement,
@@ -64,7 +65,7 @@ struct CenterAnswer<R> {
 /// Replays all stages at one pixel.
 ///
 /// # Errors
-/// As the projection.
+/// The errors of the projection.
 pub(super) fn explain<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -123,7 +124,7 @@ impl<R: Exact> Merged<R> {
         Self { level, cell, finer, reach, moving, near, first, found }
     }
 
-    /// What became of the centre j, in words.
+    /// The fate of the centre j, in words.
     fn fate(&self, j: usize) -> String {
         let center = &self.finer[j];
         if !center.is_valid() {

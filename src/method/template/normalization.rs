@@ -1,4 +1,4 @@
-//! Normalization \[MOC08, section 3.2\]: sums divided by the sum of weights.
+//! Normalize \[MOC08, section 3.2\]: divide the sums by the sum of weights.
 
 use super::reconstruction::Gathered;
 use crate::composite::sum;
@@ -8,7 +8,7 @@ use crate::number::{Exact, Real, Vector3};
 use crate::scene::Camera;
 use crate::splat::View;
 
-/// What the picture is shaded from; with the normals if they are wanted.
+/// The surface that the picture is shaded from; with normals if `normals` says so.
 pub(super) fn normalize<R: Exact>(
     gathered: &Plane<Gathered<R>>,
     camera: &Camera,

@@ -1,20 +1,23 @@
-//! Propagation and merging \[MOC08, section 3.1\].
+//! Propagate centres to the level that fits their radius, and merge those that meet \[MOC08,
+//! section 3.1\].
 //!
 //! A centre **stays** at level l if rho <= [`Settings::reach`] of l, or if l is the top level; else
-//! it moves on. Cell (X, Y) of the next level gets the moving ones of the finer cells j = 0 .. 3 at
-//! (2X + j mod 2, 2Y + j div 2). One that moves alone is copied, bit for bit. Of several the foremost is the one of the
-//! least depth, ties to the lower j, and with it all for which
+//! it moves on. Cell (X, Y) of the next level receives the moving centres of the finer cells j = 0
+//! .. 3 at (2X + j mod 2, 2Y + j div 2). A centre that moves alone is copied, bit for bit. If
+//! several move, the foremost is the one of the least depth, ties to the lower j. The foremost is
+//! averaged with all moving centres for which
 //!
 //! ```text
 //!   t_j - t_front <= r_j + r_front
 //! ```
 //!
-//! are averaged ([`crate::composite::mean`], weights 1): place, normal, rho, r, t and colour; the
-//! id is that of the foremost. The others are lost. `Departs:` section 3.1 says "its depth is less
-//! than the foremost depth minus the sum of their radii", which no depth behind the foremost can
-//! be; meant is the distance.
+//! The average ([`crate::composite::mean`], weights 1) covers place, normal, rho, r, t and colour;
+//! the id is the id of the foremost. The other centres are lost. `Departs:` section 3.1 says "its
+//! depth is less than the foremost depth minus the sum of their radii". No depth behind the
+//! foremost can be so; the paper means the distance.
 //!
-//! An average of radii that all are greater than the reach of a level is greater too, so that a
+//! If all radii are greater than the reach of a level, their average is greater too. So a centre
+//! never stays at a level that it should have left.
 //! centre never stays at a level that it should have left.
 
 use super::{Center, Settings};
@@ -24,7 +27,8 @@ use crate::frame::{Exec, Plane};
 use crate::method::projection::PixelSample;
 use crate::number::{Exact, Real, Vector2, Vector3};
 
-/// The level from which every cell is found: the first whose sides are at most h + 1.
+/// The top level, whose cells every pixel searches whole: the first level whose sides are at most
+/// h + 1.
 #[must_use]
 pub fn top(settings: &Settings, sizes: &[[u32; 2]]) -> usize {
     let most = settings.half() + 1;
@@ -33,7 +37,8 @@ pub fn top(settings: &Settings, sizes: &[[u32; 2]]) -> usize {
     found.unwrap_or(sizes.len() - 1)
 }
 
-/// All levels up to the top; a level holds what arrived there, both what stays and what moves on.
+/// All levels up to the top. A level holds the centres that arrived there, both those that stay and
+/// those that move on.
 #[must_use]
 pub fn propagate<R: Exact>(
     samples: &Plane<PixelSample<R>>,
@@ -49,12 +54,12 @@ pub fn propagate<R: Exact>(
     levels
 }
 
-/// Whether a centre of a level that is not the top moves on.
+/// Whether a centre moves on; the level is not the top.
 pub fn moves<R: Real>(center: &Center<R>, reach: R) -> R::Truth {
     R::Truth::from(center.is_valid()) & decide::moves(center.extent, reach)
 }
 
-/// The next level, from what does not stay within `reach`.
+/// The next level, from the centres that do not stay within `reach`.
 pub(super) fn coarser<R: Exact>(
     fine: &Plane<Center<R>>,
     reach: R,
@@ -81,7 +86,7 @@ pub(crate) fn four<R: Real>(fine: &Plane<Center<R>>, x: u32, y: u32) -> [Center<
     })
 }
 
-/// One centre from those that move, see the module page.
+/// One centre from the centres that move, see the module page.
 fn merged<R: Exact>(finer: &[Center<R>; 4], moving: [bool; 4]) -> Center<R> {
     let Some(first) = foremost(finer, moving) else { return Center::empty() };
     let near = near(finer, first);
@@ -99,14 +104,14 @@ pub(super) fn foremost<R: Exact>(finer: &[Center<R>; 4], moving: [bool; 4]) -> O
     first
 }
 
-/// Which of four centres are near enough to be merged with the foremost.
+/// Which of four centres are near enough to the foremost to be merged with it.
 pub fn near<R: Real>(finer: &[Center<R>; 4], first: usize) -> [R::Truth; 4] {
     let front = &finer[first];
     finer.map(|c| decide::meets([c.depth, c.radius], [front.depth, front.radius]))
 }
 
-/// The new centre, if of four centres those in `takes` take part and `first` is the foremost of
-/// them.
+/// The new centre from four centres, if the centres in `takes` take part and `first` is the
+/// foremost of them.
 pub fn merge<R: Real>(finer: &[Center<R>; 4], takes: [bool; 4], first: usize) -> Center<R> {
     let mean = Mean::plain(takes);
     let number = |of: fn(&Center<R>) -> R| mean.of([0, 1, 2, 3].map(|j| of(&finer[j])));

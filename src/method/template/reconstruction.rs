@@ -1,21 +1,20 @@
-//! Reconstruction \[MOC08, section 3.2\]: the definition, a gather.
+//! Reconstruct the picture \[MOC08, section 3.2\]: the definition, a gather.
 //!
 //! Each pixel (x, y) visits, level by level from 0 to the top, the cells of the template around its
 //! own cell (x div 2^l, y div 2^l): row by row from h above to h below, in a row from h left to h
 //! right. `Decided:` this order; the paper has one shader pass a level and does not say which comes
-//! first. Of the centres that stay at the level it considers those whose ellipse
-//! ([`crate::splat::ellipse`]) holds the pixel's centre (x + 1/2, y + 1/2): with the offset from
-//! the place to there,
-//!
+//! first. The pixel considers the centres that stay at the level and whose ellipse
+//! ([`crate::splat::ellipse`]) holds the pixel's centre (x + 1/2, y + 1/2). With the offset from
+//! the place of the centre to the pixel's centre:
 //! ```text
 //!   form <= square        d = sqrt(form / square)        w = 1 - d, at least 2^-24
 //! ```
 //!
 //! or, with [`Falloff::Gaussian`], w = exp(-2 (form / square)).
 //!
-//! `Decided:` the pixel that a centre staying at level 0 was projected to is held by it too, with w
-//! = 2^-24 if its ellipse does not hold it. A disc smaller than a pixel can miss every pixel's
-//! centre: without this rule a dense model, on which \[MOC08, Table 1\] reports, would be full of
+//! `Decided:` a centre that stays at level 0 also holds the pixel that it was projected to, with
+//! w = 2^-24 if its ellipse does not hold it. A disc smaller than a pixel can miss every pixel's
+//! centre. Without this rule a dense model, such as those in \[MOC08, Table 1\], would be full of
 //! holes, and no point of it drawn.
 //!
 //! The pixel knows the front: depth `t_f`, radius `r_f` and id of the nearest centre blended so
@@ -27,16 +26,16 @@
 //!   else                        blended: added to the sums; the front if t < t_f
 //! ```
 //!
-//! The result depends on the order: of three centres, each within the sum of radii of the next in
-//! depth, all are blended if the front comes nearer by and by, and two if the nearest comes first. So
-//! a mirrored scene gives another picture (bench `reconstruction`, `mirror`): in six scenes
-//! of 512 x 512 pixels 3.5 to 11 per mille of those of a 5 x 5 template show a normal that is more than a degree off, at
-//! worst by 60 degrees.
+//! The result depends on the order. Take three centres, each within the sum of radii of the next in
+//! depth. All three are blended if the front comes nearer by and by, but only two if the nearest
+//! comes first. So a mirrored scene gives another picture. The bench `reconstruction`, `mirror`,
+//! measures how much: in six scenes of 512 x 512 pixels, 3.5 to 11 per mille of the pixels of a 5 x
+//! 5 template show a normal that is more than a degree off, at worst by 60 degrees.
 //!
-//! Sums of w, w t, w normal and w colour. `Decided:` the test is against the nearest centre, as in
-//! the propagation; the paper's words leave open what depth a blended pixel has. `Decided:` the
-//! least weight, so that the rim, d = 1, is painted with a defined colour; no `f32` below 1 is
-//! closer to it, so nothing else changes.
+//! The sums are of w, w t, w normal and w colour. `Decided:` the test is against the nearest
+//! centre, as in the propagation, because the paper's words leave open what depth a blended pixel
+//! has. `Decided:` the least weight, so that the rim, d = 1, is painted with a defined colour; no
+//! `f32` below 1 is closer to it, so nothing else changes.
 
 use super::{Center, Falloff, Settings, propagation};
 use crate::composite::decide::Ternary;
@@ -45,14 +44,14 @@ use crate::frame::{Exec, NO_ID, Plane};
 use crate::number::{Exact, Real, Truth};
 use crate::splat::Ellipse;
 
-/// What a pixel has gathered.
+/// The centres that a pixel has gathered.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Gathered<R> {
     /// The nearest centre blended, [`NO_ID`] if there is none.
     pub id: u32,
-    /// Its depth; +inf if there is none.
+    /// Depth of that centre; +inf if there is none.
     pub depth: R,
-    /// Its radius in world units.
+    /// Radius of that centre in world units.
     pub radius: R,
     /// Sum of the weights.
     pub weight: R,
@@ -67,7 +66,7 @@ pub struct Gathered<R> {
 }
 
 impl<R: Real> Gathered<R> {
-    /// Nothing.
+    /// No centre.
     #[must_use]
     pub fn empty() -> Self {
         Self {
@@ -82,19 +81,19 @@ impl<R: Real> Gathered<R> {
         }
     }
 
-    /// The ternary test of the module page; the first centre is before nothing.
+    /// The ternary test of the module page; the first centre is always before.
     pub(crate) fn ternary(&self, center: &Center<R>) -> Ternary<R::Truth> {
         let test = decide::ternary([center.depth, center.radius], [self.depth, self.radius]);
         let first = R::Truth::from(self.id == NO_ID);
         Ternary { before: test.before | first, behind: test.behind & !first }
     }
 
-    /// Whether a centre that is added becomes the front.
+    /// Whether a centre becomes the front when it is added.
     pub(crate) fn nearer(&self, center: &Center<R>) -> R::Truth {
         decide::before(center.depth, self.depth)
     }
 
-    /// The sums with a centre added, which becomes the front if it is `nearer`.
+    /// The sums with a centre added; the centre becomes the front if `nearer`.
     #[must_use]
     pub(crate) fn with(self, center: &Center<R>, weight: R, nearer: bool) -> Self {
         let front = if nearer {
@@ -117,7 +116,7 @@ impl<R: Real> Gathered<R> {
 }
 
 impl<R: Exact> Gathered<R> {
-    /// Where a centre lies against the front.
+    /// The position of a centre relative to the front.
     pub(super) fn test(&self, center: &Center<R>) -> Placement {
         let test = self.ternary(center);
         if test.before {
@@ -129,7 +128,7 @@ impl<R: Exact> Gathered<R> {
         }
     }
 
-    /// A centre whose ellipse holds the pixel, with its weight.
+    /// Adds a centre whose ellipse holds the pixel, with its weight.
     pub(super) fn add(&mut self, center: &Center<R>, weight: R) {
         match self.test(center) {
             Placement::Before => *self = Self::empty(),
@@ -140,7 +139,7 @@ impl<R: Exact> Gathered<R> {
     }
 }
 
-/// Where a centre lies against the front of a pixel.
+/// The position of a centre relative to the front of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Placement {
     /// The sums start anew.
@@ -151,7 +150,7 @@ pub(super) enum Placement {
     Blended,
 }
 
-/// The weight of a form, see the module page; also for one that is outside or NaN.
+/// The weight of a form, see the module page; also defined for a form that is outside or NaN.
 #[inline(always)]
 pub(crate) fn weight<R: Real>(falloff: Falloff, form: R, square: R) -> R {
     let (ratio, least) = (form / square, R::from_f32(LEAST));
@@ -190,24 +189,26 @@ pub fn gather<R: Exact>(
     gathered
 }
 
-/// A centre that a pixel asks.
+/// A centre that a pixel visits.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct CenterQuery<'a, R: Real> {
     pub(crate) center: &'a Center<R>,
     pub(super) level: usize,
     pub(super) cell: (u32, u32),
-    /// The form at the pixel's centre, and what it is compared with.
+    /// The form at the pixel's centre, and the square that it is compared with.
     pub(crate) form: R,
     pub(crate) square: R,
     /// Whether the centre stays at the level.
     pub(crate) stays: R::Truth,
     /// Whether the ellipse holds the pixel's centre.
     pub(crate) holds: R::Truth,
-    /// Whether the centre was projected to the pixel, which it is held by if it stays at level 0.
+    /// Whether the centre was projected to the pixel; if it stays at level 0, it then holds the
+    /// pixel.
     pub(crate) own: bool,
 }
 
-/// Calls `visit` for every centre that stays in the templates around a pixel, or may, in their order.
+/// Calls `visit` for every centre that stays, or may stay, in the templates around a pixel, in the
+/// order of the module page.
 pub(crate) fn each_query<'a, R: Real>(
     levels: &'a [Plane<Center<R>>],
     settings: &Settings,
@@ -219,7 +220,7 @@ pub(crate) fn each_query<'a, R: Real>(
     }
 }
 
-/// The template of one level around a pixel.
+/// Visits the template of one level around a pixel.
 fn search<'a, R: Real>(
     levels: &'a [Plane<Center<R>>],
     level: usize,
