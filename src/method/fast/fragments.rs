@@ -1,4 +1,4 @@
-//! The fragments of one splat: what all of its passes do at the pixels of one block.
+//! Compute the fragments of one splat: the work of all its passes at the pixels of one block.
 
 use super::tile::{BlockGrid, Record, SIDE};
 use crate::frame::Rect;
@@ -6,8 +6,8 @@ use crate::number::Real;
 use crate::number::lanes::{LANES, Lanes, each};
 use crate::splat::{Footprint, Shared};
 
-/// Calls `draw` for each block of a tile that a splat may touch: with the place of the block in the
-/// list of the tile, and with q and nearness of the splat at its pixels.
+/// Calls `draw` for each block of a tile that a splat may touch. `draw` receives the place of the
+/// block in the list of the tile, and q and nearness of the splat at the block's pixels.
 #[inline(always)]
 pub(crate) fn each_block<const RAY_CAST: bool>(
     splat: &Record,
@@ -22,8 +22,8 @@ pub(crate) fn each_block<const RAY_CAST: bool>(
     });
 }
 
-/// Calls `visit` for each block of a tile that a splat may touch: with the place of the block in
-/// the list of the tile, and with column and row of its first pixel.
+/// Calls `visit` for each block of a tile that a splat may touch. `visit` receives the place of the
+/// block in the list of the tile, and column and row of its first pixel.
 #[inline(always)]
 pub(super) fn each_place<const RAY_CAST: bool, A>(
     splat: &Record<A>,
@@ -62,7 +62,8 @@ pub(crate) fn fragments<const RAY_CAST: bool>(
 
 /// The blocks of one row that a splat may touch: first column and column after the last.
 ///
-/// Splats of few columns keep their bounds. A wide one has its [`span`] in these rows of pixels.
+/// Splats of few columns keep their bounds. A wide splat is cut to its [`span`] in these rows of
+/// pixels.
 #[inline(always)]
 fn columns<const RAY_CAST: bool>(
     f: &Footprint<f32>,
@@ -79,7 +80,7 @@ fn columns<const RAY_CAST: bool>(
     let first = (origin + left - 0.5) * (1.0 / SIDE as f32);
     let last = (origin + right - 0.5) * (1.0 / SIDE as f32) + 1.0;
     let (start, end) = (blocks.x0 as f32, blocks.x1 as f32);
-    // Comparisons that NaN fails: such a row keeps its bounds.
+    // Comparisons that NaN fails, so that such a row keeps its bounds.
     let first = if first > start { first.at_most(end) } else { start };
     let last = if last < end { last.at_least(0.0) } else { end };
     (first.to_pixel(), last.to_pixel())
@@ -88,7 +89,7 @@ fn columns<const RAY_CAST: bool>(
 /// The columns, as offsets from the centre, that an ellipse may reach in a band of pixel rows.
 ///
 /// In the band, |v| is at least `v`, so |u| is at most sqrt(limit - v v), and dx lies within that
-/// over ux about -(uy/ux) dy. Widened for rounding, as the bounds are.
+/// over ux about -(uy/ux) dy. The interval is widened for rounding, like the bounds.
 #[inline(always)]
 fn span(f: &Footprint<f32>, row: u32, rows: u32, limit: f32) -> [f32; 2] {
     let top = row as f32 + 0.5 - f.center.y;
@@ -123,11 +124,11 @@ pub(super) fn touches<A>(record: &Record<A>, tile: &Rect, shared: &Shared<f32>) 
     }
     let [left, right] = span(&record.footprint, tile.y0, tile.y1 - tile.y0, shared.limit);
     let [first, last] = [tile.x0, tile.x1 - 1].map(|x| x as f32 + 0.5 - record.footprint.center.x);
-    // Comparisons that NaN fails: such a splat keeps its bounds.
+    // Comparisons that NaN fails, so that such a splat keeps its bounds.
     !((left > last) | (right < first))
 }
 
-/// Columns of blocks from which on the rows of a splat are cut to its ellipse.
+/// The number of block columns from which on the rows of a splat are cut to its ellipse.
 const WIDE: u32 = 6;
 
 /// The nearness of the fragments that are inside; NaN, which fails every comparison, for the

@@ -1,16 +1,16 @@
-//! The splats of a tile, group by group.
+//! Sort the splats of a tile by group.
 
 use super::tile::Record;
 use crate::scene::Groups;
 
-/// The group that each splat has of its own. In a loop that does nothing else: the groups are far away,
-/// and a short loop waits for many at once.
+/// The own group of each splat. The loop does nothing else, because the groups are far away in
+/// memory, and a short loop waits for many at once.
 pub(crate) fn own(splats: &[Record], groups: &Groups) -> Vec<u8> {
     splats.iter().map(|splat| groups.own()[splat.surfel as usize]).collect()
 }
 
-/// The indices of a list of groups, sorted by group and then ascending, and where each group that
-/// occurs ends.
+/// The indices of a list of groups, sorted by group and then ascending, and the end of each group
+/// that occurs.
 pub(crate) fn sorted(groups: &[u8], count: usize) -> (Vec<u32>, Vec<usize>) {
     let mut next = vec![0; count];
     for &group in groups {

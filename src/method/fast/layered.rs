@@ -1,21 +1,21 @@
-//! Pictures of transparent layers: the planes that they have, and the blocks of a tile.
+//! Hold pictures of transparent layers: their planes, and the blocks of a tile.
 
 use super::store::{clear_plane, store_plane};
 use crate::frame::{Exec, Grid, NO_ID, Plane, Pool, TileMut};
 use crate::number::lanes::{LANES, Lanes, components};
 
-/// What the layers of the pixels of a block come to.
+/// The blended layers of a block's pixels.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct LayeredBlock {
-    /// Over black.
+    /// The colour over black.
     pub(crate) color: [Lanes; 3],
     pub(crate) alpha: Lanes,
     /// Depth of the nearest fragment; +inf where there is none.
     pub(crate) depth: Lanes,
-    /// Its surfel; [`NO_ID`] where there is none.
+    /// Surfel of that fragment; [`NO_ID`] where there is none.
     pub(crate) id: [u32; LANES],
-    /// How many layers.
+    /// The count of layers.
     pub(crate) layers: Lanes,
 }
 
@@ -39,7 +39,7 @@ pub(crate) struct LayeredPlanes<L> {
     pub(crate) layers: Plane<L>,
 }
 
-/// One tile of them, writable.
+/// One tile of the planes, writable.
 pub(crate) struct LayeredTile<'a, L> {
     color: TileMut<'a, [f32; 3]>,
     alpha: TileMut<'a, f32>,
@@ -49,7 +49,7 @@ pub(crate) struct LayeredTile<'a, L> {
 }
 
 impl<L: Send> LayeredPlanes<L> {
-    /// Planes in memory that is used again: the values are any.
+    /// Planes in memory that is used again; their values are arbitrary.
     pub(crate) fn new(size: [u32; 2], layers: Plane<L>, pool: &mut Pool) -> Self {
         Self {
             color: pool.triple(size),

@@ -1,5 +1,5 @@
-//! The splats of each block of a tile: for passes that finish a block before the next one, so that
-//! all they keep of its pixels stays in the nearest cache.
+//! List the splats of each block of a tile. Some passes finish a block before the next one, so that
+//! everything they keep of its pixels stays in the nearest cache.
 
 use super::fragments::each_place;
 use super::tile::{BlockGrid, Record};
@@ -7,9 +7,9 @@ use crate::splat::Shared;
 
 /// The splats that may touch each block of a tile.
 pub(crate) struct BlockLists {
-    /// Block by block.
+    /// The lists, block by block.
     splats: Vec<u32>,
-    /// Where the list of each block ends.
+    /// The end of each block's list.
     ends: Vec<u32>,
 }
 
@@ -24,7 +24,7 @@ impl BlockLists {
     }
 
     fn of<const RAY_CAST: bool, A>(splats: &[Record<A>], grid: &BlockGrid, limit: f32) -> Self {
-        // Where the splats are, one after the other: a tile has at most 16 x 16 blocks.
+        // The places of the splats, one after the other: a tile has at most 16 x 16 blocks.
         let mut places: Vec<u8> = Vec::with_capacity(4 * splats.len());
         let mut place_ends = Vec::with_capacity(splats.len());
         let mut counts = vec![0_u32; grid.len()];
@@ -49,7 +49,7 @@ impl BlockLists {
             }
             start = end;
         }
-        // What follows the last of a block is the first of the next.
+        // The end of a block's list is the start of the next block's list.
         Self { splats: listed, ends: next }
     }
 

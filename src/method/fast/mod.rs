@@ -1,5 +1,5 @@
-//! What the fast paths for `f32` share: records of splats, the blocks of a tile, and what is done
-//! with a block whatever the method. The layout: [`crate::method`].
+//! Share code among the fast paths for `f32`: records of splats, the blocks of a tile, and the work
+//! on a block that every method has. [`crate::method`] describes the layout.
 
 pub(super) mod fragments;
 pub(super) mod groups;
@@ -18,7 +18,7 @@ use crate::splat::batch;
 use std::time::{Duration, Instant};
 use tile::{Record, Surface, Tile};
 
-/// Projection and binning.
+/// Projects the splats and sorts them into tiles.
 pub(super) fn prepare(job: &Job<'_>, settings: &SplatSettings) -> Prepared<f32, Record> {
     let surfels = &job.scene.surfels;
     let colors = surfels.color();
@@ -35,7 +35,7 @@ pub(super) fn prepare(job: &Job<'_>, settings: &SplatSettings) -> Prepared<f32, 
     )
 }
 
-/// The times of the stages of a tile; whatever is done between two laps belongs to the second.
+/// The times of the stages of a tile; the work between two laps belongs to the second.
 pub(super) struct Stopwatch<const N: usize> {
     last: Instant,
     times: [Duration; N],
@@ -50,10 +50,10 @@ impl<const N: usize> Stopwatch<N> {
     }
 }
 
-/// Draws every tile of a framebuffer, and gives the stages' shares of the wall time.
+/// Draws every tile of a framebuffer, and returns the stages' shares of the wall time.
 ///
-/// `stages` leaves depths, averages and directions in the blocks of a tile that has splats, and
-/// ends a lap after each stage but the last; the first includes gathering the splats, the last
+/// `stages` leaves depths, averages and directions in the blocks of a tile that has splats. It ends
+/// a lap after each stage but the last. The first lap includes gathering the splats, the last
 /// storing the pixels.
 pub(super) fn draw<const N: usize>(
     job: &Job<'_>,

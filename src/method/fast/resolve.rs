@@ -1,4 +1,4 @@
-//! Passes over the blocks of a tile that every method has, each compiled for every vector width.
+//! Run the passes over a tile's blocks that every method has, compiled for every vector width.
 
 use super::tile::{PixelBlock, Tile};
 use crate::composite::{decide, sum};
@@ -11,7 +11,7 @@ impl Tile {
         limits(&mut self.blocks, shared, epsilon);
     }
 
-    /// Normalization, in place.
+    /// Normalizes in place.
     pub(crate) fn normalize(&mut self, shared: &Shared<f32>) {
         match (self.normal, self.color) {
             (false, false) => normalize::<false, false>(&mut self.blocks, shared),
@@ -36,9 +36,9 @@ vectorized!(
 
 /// The smallest nearness whose depth, rounded, is at most `limit`.
 ///
-/// Under a perspective camera the correctly rounded 1/w never grows with w: it is at most `limit`
-/// from a w on that is 1/(limit + ulp/2). That is less than an ulp below 1/limit, so the answer is
-/// the rounded 1/limit or one of its neighbours. `limit` is > 0; +inf gives 0.
+/// Under a perspective camera the correctly rounded 1/w never grows with w. It is at most `limit`
+/// from the w on that is 1/(limit + ulp/2). That w is less than an ulp below 1/limit, so the answer
+/// is the rounded 1/limit or one of its neighbours. `limit` is > 0; +inf gives 0.
 #[inline(always)]
 pub(crate) fn least_nearness(shared: &Shared<f32>, limit: f32) -> f32 {
     if !shared.perspective {

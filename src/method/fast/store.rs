@@ -1,4 +1,4 @@
-//! From the blocks of a tile to the rows of the framebuffer.
+//! Store the blocks of a tile in the rows of the framebuffer.
 
 use super::tile::{BlockGrid, ROW, Tile};
 use crate::frame::{FramebufferTile, NO_ID, TileMut};
@@ -33,7 +33,7 @@ pub(crate) fn clear_plane<T: Copy>(plane: &mut TileMut<'_, T>, value: T) {
     plane.rows().for_each(|row| row.fill(value));
 }
 
-/// Copies the blocks of a tile into its rows of a plane; `pixel` gives that of a lane.
+/// Copies the blocks of a tile into its rows of a plane; `pixel` returns the value of a lane.
 #[inline(always)]
 pub(crate) fn store_plane<B, T: Copy>(
     blocks: &[B],
@@ -45,7 +45,8 @@ pub(crate) fn store_plane<B, T: Copy>(
         let (blocks, first) = (&blocks[y / ROW * columns..][..columns], y % ROW * ROW);
         let (whole, rest) = row.as_chunks_mut::<ROW>();
         for (block, pixels) in blocks.iter().zip(whole.iter_mut()) {
-            // By name: what makes an array of a closure is not always compiled into the loop.
+            // Written out, because code that makes an array from a closure is not always inlined
+            // into the loop.
             let at = |x| pixel(block, first + x);
             *pixels = [at(0), at(1), at(2), at(3)];
         }

@@ -1,4 +1,4 @@
-//! What a fast path works with: records of splats, and the blocks of a tile.
+//! Hold the data of a fast path: records of splats, and the blocks of a tile.
 
 use super::fragments::touches;
 use crate::frame::{NO_ID, Rect};
@@ -20,7 +20,7 @@ const _: () = assert!(ROW * ROW == LANES, "a lane is a pixel of a block");
 pub(crate) struct PixelBlock {
     /// Nearness of the nearest fragment.
     pub(crate) nearest: Lanes,
-    /// Its surfel.
+    /// Surfel of that fragment.
     pub(crate) id: [u32; LANES],
     /// The least nearness that passes the epsilon-z test.
     pub(crate) least: Lanes,
@@ -29,8 +29,8 @@ pub(crate) struct PixelBlock {
     pub(crate) color: [Lanes; 3],
 }
 
-/// A splat with its attributes, so that a tile finds all it needs in one place: 80 bytes with those
-/// of a surface.
+/// A splat with its attributes, so that a tile finds everything in one place: 80 bytes with the
+/// attributes of a surface.
 #[derive(Clone, Copy)]
 pub(crate) struct Record<A = Surface> {
     pub(crate) footprint: Footprint<f32>,
@@ -40,7 +40,7 @@ pub(crate) struct Record<A = Surface> {
     pub(crate) attributes: A,
 }
 
-/// What is averaged where splats are a surface.
+/// The attributes that are averaged if splats are a surface.
 #[derive(Clone, Copy)]
 pub(crate) struct Surface {
     /// The normal of the side that is seen.
@@ -79,7 +79,7 @@ impl<A> Record<A> {
         Rect { x0, y0, x1: u32::from(x1) + 1, y1: u32::from(y1) + 1 }
     }
 
-    /// The blocks of a tile that it may touch: columns and rows, the ends exclusive.
+    /// The blocks of a tile that the splat may touch: columns and rows, the ends exclusive.
     #[inline(always)]
     pub(crate) fn blocks(&self, tile: &Rect) -> Rect {
         let inside = self.bounds().intersection(tile);
@@ -95,7 +95,7 @@ impl<A> Record<A> {
     }
 }
 
-/// Where the blocks of a tile are.
+/// The positions of a tile's blocks.
 #[derive(Clone, Copy)]
 pub(crate) struct BlockGrid {
     /// The pixels of the tile.
@@ -123,7 +123,7 @@ impl BlockGrid {
     }
 }
 
-/// What one tile works with.
+/// The memory of one tile.
 pub(crate) struct Tile {
     pub(crate) splats: Vec<Record>,
     pub(crate) blocks: Vec<PixelBlock>,
@@ -135,20 +135,20 @@ pub(crate) struct Tile {
 }
 
 impl Tile {
-    /// Memory that tiles use one after the other; normals and colours are there if they are wanted.
+    /// Memory that tiles use one after the other; normals and colours exist if they are wanted.
     pub(crate) fn new([normal, color]: [bool; 2]) -> Self {
         let grid = BlockGrid::new(Rect::default());
         Self { splats: Vec::new(), blocks: Vec::new(), grid, normal, color }
     }
 
-    /// Becomes a tile of these pixels: its splats, and its empty blocks; no blocks if there are no
+    /// Starts a tile of these pixels: its splats, and its empty blocks; no blocks if there are no
     /// splats.
     pub(crate) fn gather(&mut self, prepared: &Prepared<f32, Record>, index: usize, rect: Rect) {
         prepared.gather_f32(index, &rect, &mut self.splats);
         self.empty(rect, prepared.shared.empty());
     }
 
-    /// Becomes a tile of these pixels for the splats that it has: its empty blocks, of this nearness.
+    /// Starts a tile of these pixels for its present splats: its empty blocks, of this nearness.
     pub(crate) fn empty(&mut self, rect: Rect, nearness: f32) {
         self.grid = BlockGrid::new(rect);
         let count = if self.splats.is_empty() { 0 } else { self.grid.len() };
@@ -167,8 +167,8 @@ impl Tile {
 }
 
 impl<A: Copy + Send> Prepared<f32, Record<A>> {
-    /// The splats that may touch a tile of these pixels, in the order of the items, in the place of
-    /// what was `gathered` before.
+    /// Gathers the splats that may touch a tile of these pixels, in the order of the items;
+    /// replaces the previous content of `gathered`.
     pub(crate) fn gather_f32(&self, tile: usize, rect: &Rect, gathered: &mut Vec<Record<A>>) {
         self.gather(tile, |splat| touches(splat, rect, &self.shared), gathered);
     }

@@ -6,6 +6,7 @@
 //! first. The pixel considers the centres that stay at the level and whose ellipse
 //! ([`crate::splat::ellipse`]) holds the pixel's centre (x + 1/2, y + 1/2). With the offset from
 //! the place of the centre to the pixel's centre:
+//!
 //! ```text
 //!   form <= square        d = sqrt(form / square)        w = 1 - d, at least 2^-24
 //! ```

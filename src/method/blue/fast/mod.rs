@@ -1,10 +1,11 @@
-//! The fast path for `f32`: the bits of the definition, from another layout.
+//! Draw in `f32`, fast: the bits of the definition, from another layout.
 //!
-//! 1. **[`place`].** 16 surfels at a time become squares, without a branch a surfel.
-//! 2. **[`tile`].** The squares of a tile are gathered into one list. Each is drawn in windows of 4 x 4 pixels
-//!    from its own first pixel on, one vector of 16 lanes a quantity, so that a small square is one window. A
-//!    lane is a pixel, and the lanes beyond the square keep what they have. A pixel keeps its depth and the
-//!    place of its disc in the list; what else it shows is read once, at the end.
+//! 1. **[`place`].** 16 surfels at a time become squares, without a branch for each surfel.
+//! 2. **[`tile`].** The squares of a tile are gathered into one list. Each square is drawn in
+//!    windows of 4 x 4 pixels from its own first pixel on, one vector of 16 lanes a quantity, so
+//!    that a small square is one window. A lane is a pixel, and the lanes beyond the square keep
+//!    their values. A pixel keeps its depth and the place of its disc in the list; its other values
+//!    are read once, at the end.
 
 mod place;
 #[cfg(test)]
@@ -18,10 +19,11 @@ use crate::method::Job;
 use crate::splat::{Tally, View};
 use tile::TileOfDiscs;
 
-/// Draws the discs of a scene into a framebuffer, every pixel of it, and tells what became of the surfels.
+/// Draws the discs of a scene into a framebuffer, every pixel of it, and counts the fates of the
+/// surfels.
 ///
 /// # Panics
-/// If the framebuffer has not the size of the camera's picture.
+/// If the framebuffer does not have the size of the camera's picture.
 pub(super) fn render(job: &Job<'_>, settings: &Settings, target: &mut Framebuffer<f32>) -> Tally {
     assert_eq!([target.width, target.height], job.camera.size(), "framebuffer size");
     let projector = SquareProjector::new(job, settings.cull);

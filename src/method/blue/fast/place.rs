@@ -1,4 +1,4 @@
-//! Surfels as squares, [`LANES`] at a time.
+//! Place surfels as squares, [`LANES`] at a time.
 
 use crate::frame::Rect;
 use crate::method::blue::squares::{Disc, Square, SquareProjector};
@@ -48,7 +48,7 @@ impl Block {
     }
 }
 
-/// The squares of a range of surfels that are drawn, and what becomes of all.
+/// Appends the squares of a range of surfels that are drawn, and counts the fates of all.
 pub(super) fn squares(
     projector: &SquareProjector<'_, f32>,
     range: Range<usize>,
@@ -60,7 +60,7 @@ pub(super) fn squares(
     let (mut input, mut block) = (Input::default(), Block::EMPTY);
     let mut tally = Tally::default();
     for first in range.clone().step_by(LANES) {
-        // Lanes without a surfel have the last one again, and are not counted.
+        // Lanes without a surfel repeat the last surfel, and are not counted.
         let count = (range.end - first).min(LANES);
         for i in 0..LANES {
             let at = first + i.min(count - 1);
@@ -86,13 +86,13 @@ struct Input {
     position: [Vec3; LANES],
     normal: [Vec3; LANES],
     radius: Lanes,
-    /// 0 of a surfel without one.
+    /// 0 for a surfel without one.
     side: Lanes,
 }
 
 vectorized!(
     fn place(projector: &SquareProjector<'_, f32>, input: &Input, block: &mut Block) {
-        // A copy, which nothing that is written can be thought to change.
+        // A copy, so that the compiler knows that no write changes it.
         let projector = &{ *projector };
         let (mut fates, mut bounds) = ([0; LANES], [[0; LANES]; 4]);
         let (mut p, mut n) = ([[0.0; LANES]; 3], [[0.0; LANES]; 3]);

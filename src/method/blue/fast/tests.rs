@@ -1,4 +1,4 @@
-//! Fast is plain, bit for bit.
+//! The fast path equals the definition, bit for bit.
 
 use crate::frame::Exec;
 use crate::method::tests::{cameras, scene, surfels};
@@ -6,8 +6,8 @@ use crate::method::{Method, Session, blue};
 use crate::scene::{Camera, Cloud, Light, Primitives, Scene, Sides, Surfels, Triangles, Vertices};
 use glam::Vec3;
 
-/// The planes of the definition and of the fast path, as text: the shortest decimals tell floats apart, and
-/// the signs of zeros.
+/// The planes of the definition and of the fast path are equal as text. The shortest decimals tell
+/// floats apart, and the signs of zeros.
 fn assert_equal(scene: &Scene, camera: &Camera, cull: bool) -> u64 {
     let method = Method::from(blue::Settings { cull });
     let exec = Exec::sequential();
@@ -23,7 +23,7 @@ fn assert_equal(scene: &Scene, camera: &Camera, cull: bool) -> u64 {
     plain.tally.visible
 }
 
-/// Some with sides, from a part of a pixel on, and some without.
+/// Sides for some surfels, from a part of a pixel on, and none for others.
 fn sides() -> Sides {
     let some = [None, Some(0.5), Some(1.0), None, Some(2.5), Some(4.0), Some(8.0), Some(31.0)];
     let runs = (0..).step_by(7).zip(some.into_iter().cycle().take(40));
@@ -46,7 +46,8 @@ fn pictures_have_the_bits_of_the_definition() {
     assert!(drawn > 5000, "{drawn}");
 }
 
-/// Surfels in front of the camera, behind it, at it and far off, of sizes from nothing to all there is.
+/// Surfels in front of the camera, behind it, at it and far off, of sizes from the smallest to the
+/// largest.
 #[test]
 fn so_have_pictures_of_what_is_huge_tiny_and_near() {
     let numbers = [-3e38_f32, -1e20, -4.0, -0.0, 1e-30, 0.3, 3.99, 4.0, 4.01, 1e6, 3e38];

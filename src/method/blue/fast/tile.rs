@@ -1,4 +1,4 @@
-//! The discs of a tile.
+//! Draw the discs of a tile.
 
 use crate::composite::decide;
 use crate::frame::{FramebufferTile, NO_ID, Rect, TileMut};
@@ -14,13 +14,13 @@ use crate::splat::View;
 const SIDE: usize = 4;
 const _: () = assert!(SIDE * SIDE == LANES, "a lane is a pixel of a window");
 
-/// What one tile works with; the memory is used for many tiles.
+/// The memory of one tile, used for many tiles.
 #[derive(Default)]
 pub(super) struct TileOfDiscs {
     rect: Rect,
     squares: Vec<Square<f32>>,
-    /// Depth of each pixel, and the place of its disc in the list. Rows are longer than those of the tile, and
-    /// there are more of them: a window may begin at any pixel.
+    /// Depth of each pixel, and the place of its disc in the list. Rows and columns are longer than
+    /// the tile's, because a window may begin at any pixel.
     depth: Vec<f32>,
     disc: Vec<u32>,
     /// a of each column and b of each row.
@@ -29,7 +29,7 @@ pub(super) struct TileOfDiscs {
 }
 
 impl TileOfDiscs {
-    /// Becomes a tile of these pixels, with the squares that touch it.
+    /// Starts a tile of these pixels, with the squares that touch it.
     pub(super) fn gather(&mut self, squares: &Squares<f32>, tile: usize, rect: Rect) {
         self.rect = rect;
         self.squares.clear();
@@ -40,7 +40,7 @@ impl TileOfDiscs {
         });
     }
 
-    /// How long a row is.
+    /// The length of a row.
     fn stride(&self) -> usize {
         self.rect.columns() + SIDE - 1
     }
@@ -67,7 +67,7 @@ impl TileOfDiscs {
         }
     }
 
-    /// Writes what the pixels show.
+    /// Writes the surface of each pixel.
     pub(super) fn store(&self, scene: &Scene, pixels: &mut FramebufferTile<'_, f32>) {
         let rect = &self.rect;
         if self.squares.is_empty() {
@@ -94,7 +94,7 @@ impl TileOfDiscs {
         }
     }
 
-    /// Fills the rows of a plane from what the pixels show: `of` a disc, or `none`.
+    /// Fills the rows of a plane: with `of` the pixel's disc, or with `none`.
     #[inline(always)]
     fn fill<T: Copy>(&self, plane: &mut TileMut<'_, T>, none: T, of: impl Fn(&Square<f32>) -> T) {
         for (discs, row) in self.disc.chunks(self.stride()).zip(plane.rows()) {
@@ -105,7 +105,7 @@ impl TileOfDiscs {
     }
 }
 
-/// The same with +0 in the place of -0.
+/// The vector with +0 in the place of -0.
 #[inline(always)]
 fn positive([x, y, z]: [f32; 3]) -> [f32; 3] {
     [x + 0.0, y + 0.0, z + 0.0]

@@ -1,7 +1,8 @@
-//! The fast path for `f32`: the bits of the definition, from another layout, see [`crate::method`].
+//! Draw in `f32`, fast: the bits of the definition, from another layout, see [`crate::method`].
 //!
-//! Passes 3 to 5 are done tile by tile, like the passes of `ewa`. In the blocks of a tile a surfel is
-//! named by its rank among all that passes 1 and 3 draw, which are in the order of their ids.
+//! Passes 3 to 5 are done tile by tile, like the passes of `ewa`. In the blocks of a tile a surfel
+//! has the number of its rank among all surfels that passes 1 and 3 draw, in the order of their
+//! ids.
 
 mod points;
 mod ranks;
@@ -25,8 +26,9 @@ use crate::number::lanes::LANES;
 use crate::splat::{Shared, SplatSettings, Tally};
 use ranks::Ranks;
 
-/// Draws a frame into a framebuffer, every pixel of it, with pass 3; and tells what it saw, what became
-/// of the selected surfels, and the wall times. The fused passes have shares of their common time.
+/// Draws a frame into a framebuffer, every pixel of it, with pass 3. Returns what the frame saw,
+/// the fates of the selected surfels, and the wall times. The fused passes have shares of their
+/// common time.
 pub(super) fn render(
     job: &Job<'_>,
     settings: &Settings,
@@ -84,7 +86,7 @@ pub(super) fn render(
     Ok((now, prepared.tally, laps))
 }
 
-/// What pass 1 leaves: nearness and, of the flagged surfels, the index of the nearest.
+/// The output of pass 1: nearness and, for the flagged surfels, the index of the nearest.
 struct First {
     shared: Shared<f32>,
     target: Framebuffer<f32>,
@@ -150,7 +152,8 @@ impl First {
     }
 }
 
-/// Pass 3 in one tile, which has the number `index`; its splats are those of pass 4 again afterwards.
+/// Runs pass 3 in one tile with the number `index`; afterwards the tile holds the splats of pass 4
+/// again.
 fn more(tile: &mut Tile, fresh: &Prepared<f32, Record>, ranks: &Ranks<'_>, index: usize) {
     let mut splats = Vec::new();
     fresh.gather_f32(index, &tile.grid.rect, &mut splats);
@@ -162,8 +165,8 @@ fn more(tile: &mut Tile, fresh: &Prepared<f32, Record>, ranks: &Ranks<'_>, index
     tile.splats = splats;
 }
 
-/// Puts ids in the place of ranks. Pixels without weight are empty, whatever depth passes 1 and 3 left, and
-/// so are those where a polygon is nearest.
+/// Puts ids in the place of ranks. Pixels without weight are empty, whatever depth passes 1 and 3
+/// left. So are pixels where a polygon is nearest.
 fn name(tile: &mut Tile, ranks: &Ranks<'_>) {
     for block in &mut tile.blocks {
         for lane in 0..LANES {

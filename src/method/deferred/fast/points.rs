@@ -1,10 +1,10 @@
-//! Pass 2: every surfel as a point, against the depth of pass 1.
+//! Pass 2: test every surfel as a point against the depth of pass 1.
 //!
-//! The surfels are divided into as many shares as there are threads, up to [`SHARES`], in the order of
-//! their ids. Each share has a picture of its own, and the pictures are joined: the least depth of a
-//! pixel and, of equal ones, the lowest id is the same however the surfels are divided. Of most surfels
-//! the position says that they are not kept, and of many a box around them; the normals of the others
-//! alone are read and turned.
+//! The surfels are divided into as many shares as there are threads, up to [`SHARES`], in the order
+//! of their ids. Each share has its own picture, and the pictures are joined. The least depth of a
+//! pixel and, if depths are equal, the lowest id are the same however the surfels are divided. For
+//! most surfels the position alone, and for many a box around them, shows that they are not kept.
+//! Only the normals of the others are read and turned.
 
 use super::super::Settings;
 use super::super::indices::Kept;
@@ -18,7 +18,7 @@ use crate::number::lanes::{LANES, Lanes, vectorized};
 use crate::number::{Real, Vector3};
 use crate::splat::View;
 
-/// The most shares: each takes a picture, 16 bytes a pixel.
+/// The maximum number of shares: each takes a picture, 16 bytes a pixel.
 const SHARES: usize = 8;
 
 /// B(i), ascending.
@@ -45,7 +45,7 @@ pub(super) fn selected(
         let pixels = start..limits.values.len().min(start + PIXELS);
         let nearest = pixels.map(|pixel| {
             let kept = pictures.iter().map(|picture| picture[pixel]);
-            // Ids of a later share are higher.
+            // Ids of a later share are higher, so the earlier share wins a tie.
             let nearer = |kept: Kept<f32>, later: Kept<f32>| {
                 if decide::before(later.depth, kept.depth) { later } else { kept }
             };
@@ -58,7 +58,7 @@ pub(super) fn selected(
     ids
 }
 
-/// So many pixels are joined by one job.
+/// How many pixels one job joins.
 const PIXELS: usize = 1 << 14;
 
 /// Draws neighbouring surfels of an object, in ascending order.
@@ -90,7 +90,7 @@ fn draw(points: &PointProjector<f32>, range: &Range<'_>, limits: &Limits, kept: 
     }
 }
 
-/// Where points are in the picture, and their depths.
+/// The positions of points in the picture, and their depths.
 struct Places {
     x: Lanes,
     y: Lanes,
@@ -98,7 +98,8 @@ struct Places {
 }
 
 vectorized!(
-    /// The places of [`LANES`] surfels from the `first` on; beyond the last those of the last.
+    /// The places of [`LANES`] surfels from `first` on; beyond the last surfel, the place of the
+    /// last.
     fn place(points: &PointProjector<f32>, range: &Range<'_>, first: usize) -> Places {
         let positions = range.positions(first);
         let world = range.moved(&positions);

@@ -1,15 +1,15 @@
-//! The ranks of surfels among all that passes 1 and 3 draw, in the order of their ids.
+//! Rank surfels among all that passes 1 and 3 draw, in the order of their ids.
 
 use super::super::visibility::NONE;
 
-/// In the place of the rank of a polygon: higher than that of a surfel.
+/// Stands for a polygon in the place of a rank; higher than the rank of any surfel.
 pub(super) const POLYGON: u32 = crate::frame::NO_ID - 1;
 
-/// Two ascending lists of ids that have none in common, as one.
+/// Two ascending lists of ids without a common id, as one list.
 pub(super) struct Ranks<'a> {
     flagged: &'a [u64],
     fresh: &'a [u64],
-    /// How many flagged ids are less than each fresh one, and the rank of each.
+    /// How many flagged ids are less than each fresh id, and the rank of each fresh id.
     before: Sparse,
     of_fresh: Sparse,
 }
@@ -53,17 +53,17 @@ impl<'a> Ranks<'a> {
     }
 }
 
-/// Ascending numbers, few among those that are asked.
+/// Ascending numbers, few in the range that is queried.
 struct Sparse {
     values: Vec<u32>,
-    /// How many are less than each multiple of [`STEP`].
+    /// How many numbers are less than each multiple of [`STEP`].
     steps: Vec<u32>,
 }
 
 const STEP: usize = 256;
 
 impl Sparse {
-    /// Of numbers of at most `most`.
+    /// Stores numbers of at most `most`.
     fn new(values: Vec<u32>, most: usize) -> Self {
         let mut less = 0;
         let steps = (0..=most / STEP + 2).map(|step| {
@@ -76,7 +76,7 @@ impl Sparse {
         Self { steps: steps.collect(), values }
     }
 
-    /// How many are less.
+    /// How many numbers are less than `value`.
     fn less(&self, value: u32) -> usize {
         let step = value as usize / STEP;
         let [from, to] = [self.steps[step], self.steps[step + 1]].map(|less| less as usize);

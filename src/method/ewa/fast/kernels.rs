@@ -1,4 +1,4 @@
-//! The geometry passes over one tile, each compiled for every vector width.
+//! Run the geometry passes over one tile, compiled for every vector width.
 
 use crate::method::fast::fragments::{add, each_block, inside};
 use crate::method::fast::tile::Tile;
@@ -17,7 +17,7 @@ impl Tile {
         }
     }
 
-    /// Visibility splatting over what another pass has left: of equally near fragments the one of the
+    /// Visibility splatting over the result of another pass; if fragments are equally near, the
     /// lower surfel stays.
     pub(crate) fn visibility_over(&mut self, shared: &Shared<f32>) {
         if shared.ray_cast {
@@ -89,7 +89,8 @@ vectorized!(
     }
 );
 
-/// The weights of the fragments that are inside and visible, 0 for the others; none if all are.
+/// The weights of the fragments that are inside and visible, 0 for the others; none if no fragment
+/// is.
 #[inline(always)]
 fn weights<const FUSED: bool>(
     q: &Lanes,
@@ -103,7 +104,7 @@ fn weights<const FUSED: bool>(
     if !any(&visible) {
         return None;
     }
-    // q of a fragment that counts is in [0, 16]; the others may give any number.
+    // q of a fragment that counts is in [0, 16]; the result for other fragments is arbitrary.
     let weight = each(|i| footprint.amplitude * exp_f32_in_range::<FUSED>(q[i] * -0.5));
     Some(select(&visible, &weight, &[0.0; LANES]))
 }

@@ -1,4 +1,4 @@
-//! The fast path for `f32`: the bits of the definition, from another layout, see [`crate::method`].
+//! Draw in `f32`, fast: the bits of the definition, from another layout, see [`crate::method`].
 
 mod kernels;
 
@@ -10,14 +10,14 @@ use crate::method::picture::{Clock, Laps};
 use crate::splat::Tally;
 
 /// Draws a scene into a framebuffer: both geometry passes and the normalization. The wall times of
-/// the fused passes are shares of their common time; visibility splatting includes the gathering of
-/// each tile's splats.
+/// the fused passes are shares of their common time. Visibility splatting includes gathering each
+/// tile's splats.
 ///
 /// Every pixel of `target` is overwritten, so a framebuffer can be used for many pictures. Its
-/// stencil and margin are not written; the definition has those.
+/// stencil and margin are not written, because only the definition has them.
 ///
 /// # Panics
-/// If the framebuffer has not the size of the camera's picture.
+/// If the framebuffer does not have the size of the camera's picture.
 pub(super) fn render(
     job: &Job<'_>,
     settings: &Settings,
