@@ -1,4 +1,4 @@
-//! The fragments of a block of pixels, compiled for every vector width.
+//! Compute the fragments of a block of pixels, compiled for every vector width.
 
 use crate::method::fast::fragments::{fragments, inside};
 use crate::method::fast::tile::Record;
@@ -10,7 +10,7 @@ use multiversion::target::target_cfg_f;
 /// The fragments that no layer has taken yet.
 #[derive(Default)]
 pub(super) struct Fragments {
-    /// One entry a splat, ascending.
+    /// One entry for each splat, ascending.
     pub(super) left: Vec<FragmentBlock>,
     /// Each entry's splat: its surfel, and its place in the list of the tile.
     pub(super) splats: Vec<[u32; 2]>,
@@ -20,14 +20,15 @@ pub(super) struct Fragments {
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct FragmentBlock {
-    /// NaN, which fails every comparison, where the splat has no fragment, or none any more.
+    /// NaN, which fails every comparison, where the splat has no fragment, or no fragment any more.
     pub(super) nearness: Lanes,
-    /// Any number where there never was a fragment.
+    /// An arbitrary number where there never was a fragment.
     pub(super) weight: Lanes,
 }
 
 impl Fragments {
-    /// Those of these splats of a tile at the pixels of a block, whose first is `corner`.
+    /// Collects the fragments of these splats of a tile at the pixels of a block, whose first pixel
+    /// is `corner`.
     pub(super) fn collect(
         &mut self,
         splats: &[Record],

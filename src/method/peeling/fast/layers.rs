@@ -1,4 +1,4 @@
-//! The layers of a block of pixels, compiled for every vector width: each by the two passes of
+//! Peel the layers of a block of pixels, compiled for every vector width: each by the two passes of
 //! [`crate::method::ewa`] over the fragments that are left.
 
 use super::fragments::{FragmentBlock, Fragments};
@@ -20,15 +20,15 @@ use crate::splat::Shared;
 /// The nearest fragments that are left.
 struct Foremost {
     nearness: Lanes,
-    /// Their surfels; [`NO_ID`] where none is left.
+    /// The surfels of these fragments; [`NO_ID`] where no fragment is left.
     id: [u32; LANES],
 }
 
-/// What a layer is averaged from, in the order of [`Attributes`].
+/// The sums of a layer, in the order of [`Attributes`].
 type Sums = [Lanes; 8];
 
 impl FastPeeling<'_> {
-    /// Peels the layers off the pixels of a block, whose first is `corner`.
+    /// Peels the layers off the pixels of a block, whose first pixel is `corner`.
     pub(super) fn peel(
         &self,
         block: &mut LayeredBlock,
@@ -68,7 +68,7 @@ vectorized!(
 );
 
 vectorized!(
-    /// Attribute splatting; what has been added is not left any more.
+    /// Attribute splatting; a fragment that has been added is no longer left.
     fn sums(
         fragments: &mut Fragments,
         attributes: &[Attributes],
@@ -106,8 +106,8 @@ vectorized!(
     }
 );
 
-/// Adds the attributes of a splat, times its weights. Line by line: a loop over the sums would
-/// become the vector, and its lanes be gathered and scattered.
+/// Adds the attributes of a splat, times its weights. Written line by line, because a loop over the
+/// sums would become the vector, and its lanes would be gathered and scattered.
 #[inline(always)]
 fn add_all(sums: &mut Sums, weight: &Lanes, attributes: &Attributes) {
     add(&mut sums[0], weight, attributes[0]);
@@ -140,7 +140,7 @@ vectorized!(
             let [cr, cg, cb] = sum::average(components(&surface, i), weight[i]);
             (surface[0][i], surface[1][i], surface[2][i]) = (cr, cg, cb);
             let [a, ..] = sum::average([opacity[i], 0.0, 0.0], weight[i]);
-            // A pixel without a layer keeps what it has.
+            // A pixel without a layer keeps its values.
             alpha[i] = if nearest_id[i] == NO_ID { 0.0 } else { a };
         }
         if let Some(own) = own {

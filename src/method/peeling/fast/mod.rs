@@ -1,9 +1,9 @@
-//! The fast path for `f32`: the bits of the definition, from another layout, see [`crate::method`].
+//! Draw in `f32`, fast: the bits of the definition, from another layout, see [`crate::method`].
 //!
-//! Block after block is finished: the fragments of its splats are computed once, with their
+//! Block after block is finished. The fragments of a block's splats are computed once, with their
 //! weights, and then layer after layer is taken from them. A fragment that is in a layer is struck
-//! out, and a splat without fragments left is dropped, so that a layer costs what lies at it and
-//! beyond it. Splats stay in ascending order, and so do the sums.
+//! out, and a splat without fragments left is dropped. So a layer costs only the fragments at it
+//! and beyond it. Splats stay in ascending order, and so do the sums.
 
 mod fragments;
 mod layers;
@@ -30,15 +30,15 @@ struct FastPeeling<'a> {
     shader: Shader<f32>,
     /// The colour of surfels that have none.
     own: Option<[f32; 3]>,
-    /// The most layers of a pixel.
+    /// The maximum number of layers of a pixel.
     most: u32,
 }
 
-/// What is averaged of a splat: colour, opacity, normal, and 1, so that all sums of a pixel are
-/// those of one list.
+/// The attributes of a splat that are averaged: colour, opacity, normal, and 1, so that one list
+/// holds all sums of a pixel.
 type Attributes = [f32; 8];
 
-/// The picture.
+/// Draws the picture.
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Picture<f32> {
     let mut clock = Clock::default();
     let peeling = FastPeeling::project(job, settings);

@@ -1,4 +1,4 @@
-//! How a level is held: rows of numbers, one number of all cells of a row after the other.
+//! Lay out a level in memory: rows of numbers, one number of all cells of a row after the other.
 
 use crate::number::lanes::LANES;
 
@@ -17,7 +17,7 @@ pub(crate) struct RowLayout {
 impl RowLayout {
     pub(crate) fn new([width, height]: [u32; 2], attributes: usize) -> Self {
         let (width, height) = (width as usize, height as usize);
-        // Blocks of LANES coarser cells, which are two blocks of finer ones.
+        // The stride fits blocks of LANES coarser cells, which are two blocks of finer cells.
         let stride = PAD + width.next_multiple_of(2 * LANES) + PAD;
         Self { width, height, attributes, stride }
     }
@@ -27,7 +27,7 @@ impl RowLayout {
         self.attributes * self.stride
     }
 
-    /// Where in a row a number of cell x is.
+    /// The index in a row of a number of cell x.
     #[inline(always)]
     pub(crate) fn at(&self, attribute: usize, x: usize) -> usize {
         attribute * self.stride + PAD + x

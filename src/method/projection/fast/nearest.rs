@@ -1,4 +1,4 @@
-//! The nearest point of each pixel, and its sample.
+//! Find the nearest point of each pixel, and its sample.
 
 #![expect(
     clippy::needless_range_loop,
@@ -14,7 +14,7 @@ use crate::scene::Surfels;
 use crate::splat::ellipse;
 use glam::Vec3;
 
-/// No point: more than any depth and slot.
+/// No point: greater than any depth and slot.
 const NONE: u64 = u64::MAX;
 
 /// The nearest points of a row of pixels.
@@ -22,14 +22,14 @@ pub(crate) struct NearestPoints<'a> {
     points: &'a Points,
     surfels: &'a Surfels,
     lens: &'a PointProjector<f32>,
-    /// The order of the depth in the upper half, and the slot: the less, the nearer, and of two
-    /// surfels equally near the one of the lower index, as the order of slots in a pixel is that of
-    /// the surfels.
+    /// The order of the depth in the upper half, and the slot: the less, the nearer. If two surfels
+    /// are equally near, the lower index wins, because the slots of a pixel are in the order of the
+    /// surfels.
     kept: &'a [u64],
 }
 
 impl Points {
-    /// Calls `draw` for every row of pixels with what the row is drawn into.
+    /// Calls `draw` for every row of pixels, with the target of the row.
     pub(crate) fn each_row<T: Send>(
         &self,
         (surfels, lens): (&Surfels, &PointProjector<f32>),
@@ -53,7 +53,7 @@ impl Points {
     }
 }
 
-/// What the points of [`LANES`] pixels in a row carry.
+/// The values that the points of [`LANES`] pixels in a row carry.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SampleLanes {
     /// +inf where there is none; the other numbers mean nothing there.
@@ -75,13 +75,13 @@ impl NearestPoints<'_> {
         if kept.iter().fold(NONE, |all, kept| all & kept) == NONE {
             return None;
         }
-        // -- What they carry
-        // A pixel without a point reads slot 0, which means nothing: loops of loads without a
-        // branch wait for memory together.
+        // -- The values that they carry
+        // A pixel without a point reads slot 0, whose values are ignored, because loops of loads
+        // without a branch wait for memory together.
         let slot = each(|i| if kept[i] == NONE { 0 } else { kept[i] as u32 as usize });
         let carried = each(|i| self.points.carried[slot[i]]);
         let [x, y, z, radius] = transposed(&carried);
-        // -- What follows from the depth
+        // -- The values that follow from the depth
         let (mut depths, mut extent) = ([f32::INFINITY; LANES], [0.0; LANES]);
         for i in 0..LANES {
             let t = depth((kept[i] >> 32) as u32);
@@ -96,14 +96,14 @@ impl NearestPoints<'_> {
     #[inline(always)]
     pub(crate) fn ids(&self, of: &SampleLanes) -> [u32; LANES] {
         each(|i| {
-            // A slot and its surfel are of the same chunk.
+            // A slot and its surfel belong to the same chunk.
             let (chunk, slot) = (of.slot[i] - of.slot[i] % CHUNK, of.slot[i]);
             let own = chunk as u32 + self.points.keys[slot].surfel();
             if of.depth[i] < f32::INFINITY { own } else { NO_ID }
         })
     }
 
-    /// Where the centres of these surfels are in the picture; any place where there is none.
+    /// The centres of these surfels in the picture; arbitrary where there is no surfel.
     #[inline(always)]
     pub(crate) fn centers(&self, id: &[u32; LANES]) -> [Lanes; 2] {
         let p = vectors(self.surfels.position(), id);
@@ -115,7 +115,7 @@ impl NearestPoints<'_> {
         center
     }
 
-    /// The colours of these surfels, if surfels have colours; any where there is none.
+    /// The colours of these surfels, if surfels have colours; arbitrary where there is no surfel.
     #[inline(always)]
     pub(crate) fn colors(&self, id: &[u32; LANES]) -> Option<[Lanes; 3]> {
         let colors = self.surfels.color()?;
@@ -123,7 +123,7 @@ impl NearestPoints<'_> {
     }
 }
 
-/// The vectors of these surfels; where there is none that of the first, which means nothing.
+/// The vectors of these surfels; where there is no surfel, the first vector, which is ignored.
 #[inline(always)]
 fn vectors(of: &[Vec3], id: &[u32; LANES]) -> [Lanes; 3] {
     let mut vectors = [[0.0; LANES]; 3];

@@ -1,4 +1,4 @@
-//! Every surfel that is seen as a point, sorted by bands.
+//! Turn every surfel that is seen into a point, sorted by bands.
 
 #![expect(
     clippy::needless_range_loop,
@@ -18,18 +18,19 @@ use std::sync::{Mutex, PoisonError};
 
 /// Surfels of a chunk; an index in a chunk has 16 bits.
 pub(super) const CHUNK: usize = 16_384;
-/// Pixels of a band, at most; an index in a band has 16 bits. Depths and slots of a band fit a
-/// second-level cache.
+/// Maximum number of pixels of a band; an index in a band has 16 bits. Depths and slots of a band
+/// fit a second-level cache.
 const BAND: usize = 65_536;
 const _: () = assert!(MAX_EXTENT as usize <= BAND, "a band has a row of the widest picture");
-/// Bands of a picture, at least, if it has as many rows: there should be work for every thread.
+/// Minimum number of bands of a picture, if it has as many rows, so that there is work for every
+/// thread.
 const BANDS: usize = 16;
 
-/// Where a point is, whose it is, and how far.
+/// The place, the surfel and the depth of a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PointKey {
     /// The pixel of the band, counted row by row, in the upper half; the surfel of the chunk in the
-    /// lower.
+    /// lower half.
     place: u32,
     /// See [`order`].
     pub(super) order: u32,
@@ -62,20 +63,21 @@ pub(super) fn depth(order: u32) -> f32 {
 
 /// The points of a picture; the memory can be used for many pictures.
 ///
-/// A **slot** is the place of a point in both arrays. The points of a chunk of surfels have the
-/// first slots from that of its first surfel on, by bands, and in each band in the order of the
+/// A **slot** is the index of a point in both arrays. The points of a chunk of surfels have the
+/// first slots from the slot of its first surfel on, by bands, and in each band in the order of the
 /// surfels. A point carries the normal, towards the viewer and in view space, and the radius.
 #[derive(Debug, Default)]
 pub(crate) struct Points {
     pub(super) keys: Vec<PointKey>,
     pub(super) carried: Vec<[f32; 4]>,
-    /// Of each chunk: where each band starts, from its first slot on, and where the last ends.
+    /// For each chunk: the start of each band, from its first slot on, and the end of the last
+    /// band.
     starts: Vec<u32>,
     bands: Bands,
     spare: Mutex<Vec<Chunk>>,
 }
 
-/// The division of a picture into bands of as many rows, a power of two.
+/// The division of a picture into bands; every band has the same number of rows, a power of two.
 #[derive(Clone, Copy, Debug, Default)]
 struct Bands {
     shift: u32,
@@ -106,7 +108,7 @@ impl Points {
         let [width, height] = [lens.view.width, lens.view.height].map(|n| n.to_pixel() as usize);
         self.bands = Bands::new(width, height);
         let bounds = self.bands.count + 1;
-        // Longer than what they hold, so that they need not be cleared for every picture.
+        // The arrays may be longer than needed, so that they need not be cleared for every picture.
         if self.keys.len() < n {
             self.keys.resize(n, PointKey::default());
             self.carried.resize(n, [0.0; 4]);
@@ -121,7 +123,7 @@ impl Points {
             let range = index * CHUNK..n.min((index + 1) * CHUNK);
             let (count, tally) = points(surfels, lens, range, bands, &mut chunk);
             chunk.sort(count, starts);
-            // In order, which is faster than to sort into far memory.
+            // Copied in order, which is faster than sorting into far memory.
             keys[..count].copy_from_slice(&chunk.keys[..count]);
             carried[..count].copy_from_slice(&chunk.carried[..count]);
             spare().push(chunk);
@@ -147,13 +149,13 @@ impl Points {
 /// A chunk of surfels while it becomes points; it fits a second-level cache.
 #[derive(Debug)]
 struct Chunk {
-    /// Of all surfels, seen or not.
+    /// The blocks of all surfels, seen or not.
     blocks: Vec<PointBlock>,
-    /// The surfels that are seen, ascending; the rest means nothing.
+    /// The surfels that are seen, ascending; the rest is ignored.
     seen: Vec<u16>,
     /// The next slot of each band.
     next: Vec<u32>,
-    /// What [`Chunk::sort`] has sorted.
+    /// The points that [`Chunk::sort`] has sorted.
     keys: Vec<PointKey>,
     carried: Vec<[f32; 4]>,
 }
@@ -184,12 +186,12 @@ impl Chunk {
         }
     }
 
-    /// Sorts the first `count` seen surfels by bands, and tells where each starts, and where the
-    /// last ends.
+    /// Sorts the first `count` seen surfels by bands, and writes the start of each band, and the
+    /// end of the last.
     fn sort(&mut self, count: usize, starts: &mut [u32]) {
         let place = |&i: &u16| (usize::from(i) / LANES, usize::from(i) % LANES);
         let seen = self.seen[..count].iter().map(place);
-        // Counting sort: count, one place late, so that the sums become starts.
+        // Counting sort: the counts are stored one place late, so that their sums become starts.
         starts.fill(0);
         for (block, lane) in seen.clone() {
             starts[self.blocks[block].band[lane] as usize + 1] += 1;
@@ -214,8 +216,8 @@ impl Chunk {
 }
 
 vectorized!(
-    /// What becomes of a range of surfels: fills `chunk` but for what is sorted, and tells how many are
-    /// seen.
+    /// Decides the fates of a range of surfels: fills `chunk` except for the sorted points, and
+    /// returns how many are seen.
     fn points(
         surfels: &Surfels,
         lens: &PointProjector<f32>,
@@ -223,7 +225,7 @@ vectorized!(
         bands: Bands,
         chunk: &mut Chunk,
     ) -> (usize, Tally) {
-        // A copy, which nothing that is written can be thought to change.
+        // A copy, so that the compiler knows that no write changes it.
         let lens = &{ *lens };
         let (p, last_p) = surfels.position()[range.clone()].as_chunks();
         let (n, last_n) = surfels.normal()[range.clone()].as_chunks();
@@ -236,7 +238,7 @@ vectorized!(
         }
         let rest = last_p.len();
         if rest > 0 {
-            // Lanes without a surfel have the last one again, and are not counted.
+            // Lanes without a surfel repeat the last surfel, and are not counted.
             let (index, at) = (p.len(), std::array::from_fn(|i: usize| i.min(rest - 1)));
             let last = (&at.map(|i| last_p[i]), &at.map(|i| last_n[i]), &at.map(|i| last_r[i]));
             let mut own = Fates::default();
@@ -249,10 +251,11 @@ vectorized!(
     }
 );
 
-/// Notes the surfels of a block that are visible, and tells how many.
+/// Notes the surfels of a block that are visible, and returns how many.
 #[inline(always)]
 fn note(visible: &[u32; LANES], block: usize, seen: &mut [u16]) -> usize {
-    // Written whether it is seen or not, and kept only if it is: no branch to mispredict.
+    // Written whether the surfel is seen or not, and kept only if it is, so that there is no branch
+    // to mispredict.
     let seen = &mut seen[..LANES];
     let mut count = 0;
     for i in 0..LANES {
@@ -263,8 +266,8 @@ fn note(visible: &[u32; LANES], block: usize, seen: &mut [u16]) -> usize {
 }
 
 impl PointBlock {
-    /// The block of this index from positions, normals and radii, and which of them are visible: 1,
-    /// else 0.
+    /// Fills the block with this index from positions, normals and radii. Returns which surfels are
+    /// visible: 1, else 0.
     #[inline(always)]
     fn fill(
         &mut self,
@@ -300,7 +303,7 @@ impl PointBlock {
     }
 }
 
-/// How many surfels of each lane are not seen, and why.
+/// How many surfels of each lane are not seen, by reason.
 #[derive(Clone, Copy, Debug, Default)]
 struct Fates {
     behind: [u32; LANES],
@@ -309,7 +312,7 @@ struct Fates {
 }
 
 impl Fates {
-    /// Adds those of the first lanes.
+    /// Adds the counts of the first lanes.
     fn add(&mut self, other: &Self, lanes: usize) {
         for i in 0..lanes {
             self.behind[i] += other.behind[i];
@@ -318,7 +321,7 @@ impl Fates {
         }
     }
 
-    /// Of so many surfels, of which some are visible.
+    /// The tally of `all` surfels, of which `visible` are visible.
     fn tally(&self, all: usize, visible: usize) -> Tally {
         let sum = |of: &[u32; LANES]| of.iter().map(|&n| u64::from(n)).sum::<u64>();
         let visible = visible as u64;

@@ -1,4 +1,4 @@
-//! Fast is plain, bit for bit.
+//! The fast path equals the definition, bit for bit.
 
 use super::points::{CHUNK, depth, order};
 use super::*;
@@ -13,7 +13,7 @@ use crate::number::lanes::{LANES, Lanes};
 use crate::scene::{Camera, Cloud, Projection, Surfels};
 use crate::splat::View;
 
-/// The samples of the fast path, as text: the shortest decimals tell floats apart, and the signs of
+/// The samples of the fast path, as text. The shortest decimals tell floats apart, and the signs of
 /// zeros.
 fn samples(of: &Surfels, camera: &Camera, cull: bool, points: &mut Points) -> Vec<String> {
     let exec = Exec::new(3, 16).unwrap();
@@ -61,7 +61,7 @@ fn expected(of: &Surfels, camera: &Camera, cull: bool) -> Vec<String> {
 fn samples_have_the_bits_of_the_definition() {
     let mut points = Points::default();
     for (i, camera) in cameras().into_iter().enumerate() {
-        // A chunk less one, one, and one more; the last lanes whole and not.
+        // Counts around a chunk and around full lanes.
         for count in [1, 16, 17, CHUNK as u64 - 1, CHUNK as u64 + 1, 2 * CHUNK as u64] {
             for cull in [true, false] {
                 let of = surfels(count, 0.1, count % 2 == 1, i as u64);
@@ -98,7 +98,8 @@ fn depths_may_be_negative() {
     let of = surfels(20_000, 0.1, false, 3);
     for camera in cameras() {
         if camera.projection == Projection::Orthographic {
-            // Through the middle of the scene, and all of it behind the camera.
+            // Cameras whose near plane runs through the middle of the scene, and with all of the
+            // scene behind them.
             for shift in [4.0, 8.0] {
                 let mut camera = Camera { near: -100.0, ..camera };
                 camera.view_from_world.w_axis.z += shift;

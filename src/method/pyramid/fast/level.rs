@@ -1,4 +1,4 @@
-//! A level in rows of numbers.
+//! Hold a level in rows of numbers.
 
 use crate::method::projection::fast::RowLayout;
 use crate::method::projection::{Has, SampleKind};
@@ -8,13 +8,14 @@ pub(super) const KIND: usize = 0;
 pub(super) const FRONT: usize = 1;
 pub(super) const BACK: usize = 2;
 pub(super) const RADIUS: usize = 3;
-/// The displacement: two numbers; not of level 0, where it is 0 until the push, and then not
-/// wanted.
+/// The displacement: two numbers. Level 0 does not store it: it is 0 there until the push, and not
+/// wanted afterwards.
 pub(super) const PLACE: usize = 4;
 /// The normal: three numbers.
 pub(super) const NORMAL: usize = 6;
-/// The tilt of the ellipse: two numbers; not of level 0, of which each is needed once. After it the
-/// colour, three, and the tangent, three, if the scene has them.
+/// The tilt of the ellipse: two numbers. Level 0 does not store it, because each tilt is needed
+/// once there. After the tilt come the colour, three, and the tangent, three, if the scene has
+/// them.
 pub(super) const TILT: usize = 9;
 /// The first number that not every scene has.
 pub(super) const FURTHER: usize = 11;
@@ -33,7 +34,7 @@ pub(super) fn layout(size: [u32; 2], has: Has) -> RowLayout {
     RowLayout::new(size, FURTHER + further)
 }
 
-/// A level; an empty row above the first and below the last.
+/// A level, with an empty row above the first and below the last.
 #[derive(Debug)]
 pub(super) struct CellLevel {
     pub(super) layout: RowLayout,

@@ -1,4 +1,5 @@
-//! Which of four cells take part, and their averages, in lanes: the formulas of the definition.
+//! Decide which of four cells take part, and average them, in lanes: the formulas of the
+//! definition.
 
 #![expect(
     clippy::needless_range_loop,
@@ -10,7 +11,7 @@ use crate::number::lanes::{LANES, Lanes, any_above_0, each, vector};
 use crate::number::{Real, Vector2};
 use crate::splat::Ellipse;
 
-/// The numbers of four cells for [`LANES`] new ones that decide who takes part.
+/// The numbers of four cells that decide which take part, for [`LANES`] new cells.
 pub(super) struct FourCells {
     pub(super) kind: [Lanes; 4],
     pub(super) front: [Lanes; 4],
@@ -18,27 +19,29 @@ pub(super) struct FourCells {
     pub(super) radius: [Lanes; 4],
     /// The displacements.
     pub(super) displacement: [[Lanes; 2]; 4],
-    /// From the new cell's centre to those of the cells; with the displacement, to that of the
-    /// ellipse.
+    /// From the new cell's centre to the centres of the cells; plus the displacement, to the centre
+    /// of the ellipse.
     pub(super) shift: [[f32; 2]; 4],
     /// The tilts of the ellipses.
     pub(super) tilt: [[Lanes; 2]; 4],
 }
 
-/// The weights of four cells, 0 for one that takes no part, and the kind of the new one.
+/// The weights of four cells, 0 for a cell that takes no part, and the kind of the new cell.
 pub(super) struct Mix {
     weights: [Lanes; 4],
     /// 1 divided by the sum of the weights.
     scale: Lanes,
     pub(super) kind: Lanes,
-    /// Which cell is the foremost, as a number; only for tubes.
+    /// The index of the foremost cell, as a number; only for tubes.
     first: Lanes,
 }
 
 impl FourCells {
-    /// See [`super::super::Cell::foremost`]; `TUBES` false promises that there are none.
+    /// The decisions of [`super::super::Cell::foremost`]; `TUBES` false promises that there are no
+    /// tubes.
     ///
-    /// One long loop: LLVM unrolls short ones before it looks for vectors, and then finds few.
+    /// Written as one long loop, because LLVM unrolls short loops before it looks for vectors, and
+    /// then finds few.
     #[inline(always)]
     pub(super) fn mix<const GAUSSIAN: bool, const TUBES: bool>(&self) -> Mix {
         let mut weights = [[0.0; LANES]; 4];
@@ -90,7 +93,7 @@ impl FourCells {
         Mix { weights, scale, kind: kinds, first: firsts }
     }
 
-    /// From the new cell's centre to those of the ellipses, along an axis.
+    /// From the new cell's centre to the centres of the ellipses, along an axis.
     #[inline(always)]
     pub(super) fn place(&self, axis: usize) -> [Lanes; 4] {
         let place = |j: usize| each(|i| self.displacement[j][axis][i] + self.shift[j][axis]);
@@ -115,7 +118,7 @@ pub(super) fn tilts(normal: &[Lanes; 3]) -> [Lanes; 2] {
     tilts
 }
 
-/// exp(-2 d^2), as the definition has it for d <= 1; any number for other d.
+/// exp(-2 d^2), as in the definition for d <= 1; an arbitrary number for other d.
 #[inline(always)]
 fn gaussian(square: f32) -> f32 {
     crate::number::elementary::exp_f32_in_range::<false>(-2.0 * square)
@@ -143,7 +146,7 @@ impl Mix {
         average
     }
 
-    /// Tangents of the four cells, by axis, on the side of that of the foremost; see
+    /// Tangents of the four cells, by axis, turned to the side of the foremost tangent; see
     /// [`super::super::Cell::average`].
     #[inline(always)]
     pub(super) fn aligned(&self, tangent: [[Lanes; 4]; 3]) -> [[Lanes; 4]; 3] {

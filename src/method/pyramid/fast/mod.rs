@@ -1,10 +1,10 @@
-//! The fast path for `f32`: the bits of [`super::pull`] and [`super::push`], from another layout.
+//! Draw in `f32`, fast: the bits of [`super::pull`] and [`super::push`], from another layout.
 //!
 //! A level is rows of numbers, one number of all cells of a row after the other, so that 16 cells
-//! of a row are 16 neighbours in memory. The pull phase computes 16 coarser cells at a time, the
-//! push phase 16 finer ones of every second column, which have 16 consecutive parents. What is
-//! empty is passed over; the push phase changes a level in place and touches only cells that are
-//! empty or occluded.
+//! of a row are 16 neighbours in memory. The pull phase computes 16 coarser cells at a time. The
+//! push phase computes 16 finer cells of every second column, which have 16 consecutive parents.
+//! Empty cells are passed over. The push phase changes a level in place and touches only cells that
+//! are empty or occluded.
 
 mod level;
 mod mix;
@@ -32,7 +32,7 @@ use level::{BACK, CellLevel, FRONT, FURTHER, KIND, NORMAL, RADIUS};
 use push::PushRules;
 use write::GBufferRow;
 
-/// The levels of a picture, which can be used for many pictures.
+/// The levels of a picture; their memory can be used for many pictures.
 #[derive(Debug, Default)]
 pub struct CellLevels {
     points: Points,
@@ -74,7 +74,7 @@ impl CellLevels {
         Ok((tally, clock.into_laps()))
     }
 
-    /// The memory for a picture.
+    /// Makes the memory for a picture.
     fn reshape(&mut self, camera: &Camera, has: Has) {
         let sizes = pyramid::sizes(camera.width, camera.height);
         let layouts = sizes.into_iter().map(|size| level::layout(size, has));
@@ -84,7 +84,7 @@ impl CellLevels {
         self.has = has;
     }
 
-    /// Level 0.
+    /// Fills level 0.
     fn project(&mut self, job: &Job<'_>, settings: &Settings) -> Result<Tally> {
         let Job { scene, camera, exec, .. } = *job;
         let level = &mut self.levels[0];
@@ -103,7 +103,7 @@ impl CellLevels {
         Ok(tally)
     }
 
-    /// The push to level 0, and the picture.
+    /// Pushes to level 0, and writes the picture.
     fn finish(
         &mut self,
         view: &View<f32>,
@@ -120,14 +120,14 @@ impl CellLevels {
                 let rules = PushRules { side: side(0), tubes: self.has.tangent, settings };
                 push::push(fine, coarse, &rules, exec, rows, write);
             }
-            // One pixel.
+            // A picture of one pixel has no coarser level.
             None => fine.rows_mut().zip(rows).for_each(|(cells, row)| write(cells, row)),
         }
     }
 }
 
 vectorized!(
-    /// A row of level 0 from the nearest points of its pixels.
+    /// Fills a row of level 0 from the nearest points of its pixels.
     fn samples(nearest: &NearestPoints<'_>, row: &mut [f32], layout: &RowLayout) {
         for x in (0..layout.width).step_by(LANES) {
             let mut put = |attribute: usize, lanes: &Lanes| {
@@ -152,7 +152,7 @@ vectorized!(
 /// [`SampleKind::Surface`] as a number.
 const SURFACE: f32 = SampleKind::Surface as u8 as f32;
 
-/// The samples of a projected scene as level 0.
+/// Stores the samples of a projected scene as level 0.
 fn fill(projected: &Projected<f32>, has: Has, level: &mut CellLevel, exec: &Exec) {
     let layout = level.layout;
     let samples = projected.samples.values().chunks(layout.width);

@@ -1,4 +1,4 @@
-//! The pull phase in lanes; see [`super::super::pull`].
+//! Pull in lanes; see [`super::super::pull`].
 
 use super::level::{BACK, CellLevel, FRONT, FURTHER, KIND, NORMAL, PLACE, RADIUS, TILT, tangent};
 use super::mix::{FourCells, pairs, tilts};
@@ -9,7 +9,7 @@ use crate::number::lanes::{LANES, Lanes, any_above_0, load_halves, store, vector
 /// Rows of a job.
 const ROWS: usize = 4;
 
-/// A coarser level from the finer one, of which `side` is the side of a cell in pixels.
+/// Pulls a coarser level from the finer one; `side` is the side of a finer cell in pixels.
 pub(super) fn pull(fine: &CellLevel, coarse: &mut CellLevel, side: f32, tubes: bool, exec: &Exec) {
     let finest = side == 1.0;
     let run = match (finest, tubes) {
@@ -73,7 +73,7 @@ vectorized!(
             if !any_above_0(&mix.kind) {
                 continue;
             }
-            // -- What becomes of those who do
+            // -- The new cells
             put(FRONT, &mix.least(&four.front));
             put(BACK, &mix.greatest(&four.back));
             put(RADIUS, &mix.of(&four.radius));

@@ -1,5 +1,5 @@
-//! The push phase in lanes; see [`super::super::push`]. A level is changed in place, where it must
-//! be.
+//! Push in lanes; see [`super::super::push`]. A level is changed in place, and only where it must
+//! change.
 
 #![expect(
     clippy::needless_range_loop,
@@ -28,8 +28,8 @@ pub(super) struct PushRules<'a> {
     pub(super) settings: &'a Settings,
 }
 
-/// The cells of a level that are empty or occluded, from the coarser level. Each row is then handed to
-/// `done`, while it is in the cache, with what `beside` has for it.
+/// Computes the cells of a level that are empty or occluded, from the coarser level. `done` then
+/// receives each row, while it is in the cache, with the row's item of `beside`.
 pub(super) fn push<T: Send>(
     fine: &mut CellLevel,
     coarse: &CellLevel,
@@ -77,7 +77,7 @@ fn four(
     ]
 }
 
-/// Where cells must be computed: 1, else 0. Only the first `left` are of the level's width.
+/// Which cells must be computed: 1, else 0. Only the first `left` are within the level's width.
 #[inline(always)]
 fn needed(kind: &Lanes, front: &Lanes, parent: [&Lanes; 3], outside: bool, left: usize) -> Lanes {
     let [parent_kind, parent_front, parent_back] = parent;
@@ -124,7 +124,7 @@ vectorized!(
             if cells[0].is_none() && cells[1].is_none() {
                 continue;
             }
-            // -- What every level has of them
+            // -- The numbers of them that every level has
             put(fine, at(KIND), &cells, |_, new| new.mix.kind);
             let tangent = tangent(layout, TUBES);
             for attribute in [FRONT].into_iter().chain(FURTHER..tangent) {
@@ -150,7 +150,8 @@ vectorized!(
             if finest {
                 continue;
             }
-            // -- What the next level is pushed from; of the finest the picture wants no more
+            // -- The numbers that the next level is pushed from; the picture needs no more of the
+            // finest level
             for attribute in [BACK, RADIUS] {
                 put(fine, at(attribute), &cells, |odd, new| new.mix.of(&number(attribute, odd)));
             }
@@ -192,7 +193,7 @@ struct NewCells {
 }
 
 impl NewCells {
-    /// Who takes part in the cells that are needed; none if nobody does.
+    /// Which cells take part in the needed cells; none if no needed cell has any.
     #[inline(always)]
     fn new<const GAUSSIAN: bool, const TUBES: bool>(
         number: impl Fn(usize) -> [Lanes; 4],
@@ -217,7 +218,8 @@ impl NewCells {
     }
 }
 
-/// From the centres of the finer cells to those of their parents and the neighbours of those.
+/// From the centres of the finer cells to the centres of their parents and of the parents'
+/// neighbours.
 #[inline(always)]
 fn shifts(side: f32, [even_x, even_y]: [bool; 2]) -> [[f32; 2]; 4] {
     let shift = |neighbour: bool, even: bool| {

@@ -1,4 +1,4 @@
-//! Fast is plain, bit for bit.
+//! The fast path equals the definition, bit for bit.
 
 use super::super::tests::indexed;
 use super::super::{Occlusion, Weights};
@@ -28,7 +28,7 @@ fn assert_same(scene: Scene, camera: &Camera, settings: &Settings, levels: &mut 
 
 #[test]
 fn every_cell_has_the_bits_of_the_definition() {
-    // Used again and again, for other sizes too.
+    // Used again and again, also for other sizes.
     let mut levels = CellLevels::default();
     for (i, camera) in cameras().into_iter().enumerate() {
         for (count, radius) in [(1, 1e30), (37, 0.4), (3000, 0.05), (50_000, 0.01)] {

@@ -1,4 +1,4 @@
-//! Level 0 as a picture wants it, in lanes.
+//! Write level 0 into the planes of the picture, in lanes.
 
 use super::super::gbuffer::GBuffer;
 use super::level::{FRONT, FURTHER, KIND, NORMAL};
@@ -71,7 +71,7 @@ vectorized!(
 );
 
 vectorized!(
-    /// Vectors, turned to world space with a view, or colours; 0 where a cell is empty.
+    /// Writes vectors, turned to world space with a view, or colours; 0 where a cell is empty.
     fn vectors(
         cells: &[f32],
         layout: &RowLayout,

@@ -1,4 +1,4 @@
-//! The compositing pass over one tile, compiled for every vector width.
+//! Run the compositing pass over one tile, compiled for every vector width.
 
 use super::images::{GroupImages, ImageBlock};
 use crate::method::fast::resolve::least_nearness;
@@ -18,7 +18,8 @@ impl GroupImages {
         }
     }
 
-    /// The sums over what passes the epsilon-z test; fragments that do not pass lose their weight.
+    /// Sums the fragments that pass the epsilon-z test; fragments that do not pass lose their
+    /// weight.
     pub(crate) fn composite(&mut self, tile: &mut Tile, shared: &Shared<f32>) {
         composite(self, tile, shared);
     }
@@ -30,13 +31,13 @@ vectorized!(
         let finite = least_nearness(shared, f32::MAX);
         let places = images.ends.len();
         for (index, block) in tile.blocks.iter_mut().enumerate() {
-            // -- What passes the epsilon-z test
+            // -- The fragments that pass the epsilon-z test
             let list = &images.lists[index * places..][..images.counts[index]];
             let mut least = block.least;
             for lane in &mut least {
                 *lane = lane.at_least(finite);
             }
-            // A loop of its own, in lanes; the next one reads single numbers.
+            // A separate loop in lanes, because the next loop reads single numbers.
             for &image in list {
                 hide(&mut images.images[image as usize], &least);
             }
@@ -63,7 +64,7 @@ vectorized!(
     }
 );
 
-/// Takes the weight of the fragments that are less near.
+/// Sets the weight of fragments that are less near to 0.
 #[inline(always)]
 fn hide(image: &mut ImageBlock, least: &Lanes) {
     let visible = mask(|i| image.nearness[i] >= least[i]);

@@ -1,4 +1,4 @@
-//! The geometry pass over one tile, compiled for every vector width.
+//! Run the geometry pass over one tile, compiled for every vector width.
 
 use super::images::{GroupImages, ImageBlock, NearestFragments};
 use crate::composite::bins::DepthBins;
@@ -9,7 +9,7 @@ use crate::number::lanes::{LANES, Lanes, each, mask, select, select_u32, vectori
 use crate::splat::Shared;
 use multiversion::target::target_cfg_f;
 
-/// What the image of the group that is being drawn keeps at the pixels of a block.
+/// The fragments that the image of the present group keeps at the pixels of a block.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 struct KeptFragments {
@@ -41,7 +41,7 @@ impl GroupImages {
 }
 
 vectorized!(
-    /// One group after the other in the same blocks, which stay in the nearest cache.
+    /// Draws one group after the other in the same blocks, which stay in the nearest cache.
     fn geometry<const RAY_CAST: bool, const VORONOI: bool>(
         images: &mut GroupImages,
         tile: &Tile,
@@ -62,7 +62,7 @@ vectorized!(
         for group in 0..images.ends.len() {
             let end = images.ends[group];
             // -- The splats of the group
-            // A bit for each block: a tile has at most 16 x 16.
+            // One bit for each block: a tile has at most 16 x 16.
             let mut touched = [0_u64; 4];
             for &index in &images.order[start..end] {
                 let splat = &tile.splats[index as usize];
@@ -72,14 +72,14 @@ vectorized!(
                 });
             }
             start = end;
-            // -- What the group has left
+            // -- The blocks that the group has touched
             for (word, mut bits) in touched.into_iter().enumerate() {
                 while bits != 0 {
                     let block = 64 * word + bits.trailing_zeros() as usize;
                     bits &= bits - 1;
                     let kept = &mut kept[block];
                     finish::<FUSED>(images, block, kept);
-                    // Empty again: the other numbers are read where there is a splat only.
+                    // Empty again; the other numbers are read only where there is a splat.
                     if VORONOI {
                         kept.z = empty.z;
                     }
@@ -91,7 +91,7 @@ vectorized!(
 );
 
 impl KeptFragments {
-    /// The depth test against the fragments of a splat, given with its place in the list of the
+    /// The depth test against the fragments of a splat; `index` is its place in the list of the
     /// tile.
     #[inline(always)]
     fn meet<const VORONOI: bool>(
@@ -105,7 +105,7 @@ impl KeptFragments {
         let wins = if VORONOI && let Some(bins) = bins {
             let mut z = [0.0; LANES];
             for i in 0..LANES {
-                // NaN, which fails, outside.
+                // NaN outside, which fails.
                 z[i] = bins.voronoi(shared.depth(inside[i]), (q[i] / shared.limit).sqrt());
             }
             let wins = mask(|i| z[i] < self.z[i]);
@@ -121,8 +121,8 @@ impl KeptFragments {
     }
 }
 
-/// Adds what a block has become to the images: a weight is computed once, for the fragment that is
-/// kept.
+/// Adds the finished block of a group to the images. A weight is computed once, for the fragment
+/// that is kept.
 #[inline(always)]
 fn finish<const FUSED: bool>(images: &mut GroupImages, block: usize, kept: &KeptFragments) {
     let KeptFragments { nearness, q, amplitude, splat, .. } = *kept;

@@ -1,21 +1,21 @@
-//! The depth-images of the groups in one tile: only the blocks that a splat touches.
+//! Hold the depth-images of the groups in one tile: only the blocks that a splat touches.
 
 use crate::frame::NO_ID;
 use crate::method::fast::groups::sorted;
 use crate::method::fast::tile::{Surface, Tile};
 use crate::number::lanes::{LANES, Lanes};
 
-/// Colour, 1, normal and opacity of a splat, so that all sums of a pixel are those of one vector.
+/// Colour, 1, normal and opacity of a splat, so that one vector holds all sums of a pixel.
 pub(super) type Attributes = [f32; 8];
 
-/// What the image of a group keeps at the pixels of a block.
+/// The fragments that the image of a group keeps at the pixels of a block.
 #[repr(align(64))]
 pub(super) struct ImageBlock {
     /// Nearness of the fragment.
     pub(super) nearness: Lanes,
-    /// Its weight; where there is no fragment, any number.
+    /// Weight of the fragment; where there is no fragment, an arbitrary number.
     pub(super) weight: Lanes,
-    /// Its splat in the list of the tile, the length of that list where there is none.
+    /// The fragment's splat in the list of the tile; where there is none, the length of that list.
     pub(super) splat: [u32; LANES],
 }
 
@@ -23,9 +23,9 @@ pub(super) struct ImageBlock {
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct NearestFragments {
-    /// Its nearness.
+    /// Nearness of the fragment.
     pub(super) nearness: Lanes,
-    /// Its splat, as in [`ImageBlock`].
+    /// The fragment's splat, as in [`ImageBlock`].
     pub(super) splat: [u32; LANES],
 }
 
@@ -33,29 +33,29 @@ pub(super) struct NearestFragments {
 pub(crate) struct GroupImages {
     /// The splats of the tile, by group and then ascending.
     pub(super) order: Vec<u32>,
-    /// Each group that has splats: where it ends in `order`.
+    /// For each group that has splats: its end in `order`.
     pub(super) ends: Vec<usize>,
-    /// Of each splat of the tile its surfel; then [`NO_ID`].
+    /// The surfel of each splat of the tile; then [`NO_ID`].
     pub(super) surfels: Vec<u32>,
-    /// Of each splat of the tile; then zeros.
+    /// The attributes of each splat of the tile; then zeros.
     pub(super) attributes: Vec<Attributes>,
     /// The blocks that are touched, group by group.
     pub(super) images: Vec<ImageBlock>,
-    /// Which of the images each block has, by group: of each block as many places as there are
+    /// The images that each block has, by group; every block has as many places as there are
     /// `ends`.
     pub(super) lists: Vec<u32>,
     /// How many of those places are in use.
     pub(super) counts: Vec<usize>,
-    /// Of each block.
+    /// The nearest fragments of each block.
     pub(super) nearest: Vec<NearestFragments>,
-    /// Of each block, if they are wanted, the sums of weighted opacities.
+    /// The sums of weighted opacities of each block, if they are wanted.
     pub(crate) opacities: Vec<Lanes>,
 }
 
 impl GroupImages {
-    /// Sorts the splats of a tile by group; nothing is touched yet. Of each splat the group is given,
-    /// with the count of all groups, and the opacity, if opacities are wanted; `empty` is the nearness
-    /// of an empty pixel.
+    /// Sorts the splats of a tile by group; nothing is touched yet. The arguments are the group of
+    /// each splat, the count of all groups, and the opacity of each splat, if opacities are wanted.
+    /// `empty` is the nearness of an empty pixel.
     pub(crate) fn new(
         tile: &Tile,
         (groups, count): (&[u8], usize),
@@ -81,7 +81,7 @@ impl GroupImages {
             ends,
             surfels,
             attributes,
-            // Memory that is not written takes no room.
+            // Memory that is never written takes no room.
             images: Vec::with_capacity(most),
             lists: vec![0; most],
             counts: vec![0; blocks],

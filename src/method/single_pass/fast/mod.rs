@@ -1,14 +1,14 @@
-//! The fast path for `f32`: the bits of the definition, from another layout, see [`crate::method`].
+//! Draw in `f32`, fast: the bits of the definition, from another layout, see [`crate::method`].
 //!
-//! In a tile the splats are sorted by group, and the groups are drawn one after the other into the
-//! same blocks. What a group has left in a block is then put aside: nearness, weight and splat of
-//! each pixel. So the images exist for one tile at a time, and there only where something was
-//! drawn.
+//! The splats of a tile are sorted by group, and the groups are drawn one after the other into the
+//! same blocks. After each group, nearness, weight and splat of each pixel of a block are put
+//! aside. So the images exist for one tile at a time, and only where something was drawn.
 //!
-//! Geometry is visited once, and a weight (an exponential) is computed once a pixel and group, not
-//! once a fragment; in exchange each block of an image has to be composited. So this method is the
-//! faster one where a block sees many splats of each group, and the slower one where it sees few:
-//! where splats are small and groups are many. `cargo bench --bench single_pass` shows both.
+//! Geometry is visited once, and a weight (an exponential) is computed once for each pixel and
+//! group, not once for each fragment. In exchange each block of an image has to be composited. So
+//! this method is faster than `ewa` where a block sees many splats of each group. It is slower
+//! where a block sees few: where splats are small and groups are many. `cargo bench --bench
+//! single_pass` shows both.
 
 mod compositing;
 mod geometry;
@@ -25,18 +25,18 @@ use crate::splat::Tally;
 use images::GroupImages;
 
 /// Draws a scene into a framebuffer: the geometry pass, the compositing pass and the normalization.
-/// The wall times of the fused passes are shares of their common time; the geometry pass includes
-/// the gathering of each tile's splats, the compositing pass the normalization.
+/// The wall times of the fused passes are shares of their common time. The geometry pass includes
+/// gathering each tile's splats, the compositing pass the normalization.
 ///
 /// Every pixel of `target` is overwritten, so a framebuffer can be used for many pictures. Its
-/// stencil and margin are not written; the definition has those.
+/// stencil and margin are not written, because only the definition has them.
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] if the Voronoi depth test takes too many bins, or if there are no groups of as
-/// many surfels.
+/// [`crate::Error::Invalid`] if the Voronoi depth test takes too many bins, or if there are no
+/// groups for this number of surfels.
 ///
 /// # Panics
-/// If the framebuffer has not the size of the camera's picture.
+/// If the framebuffer does not have the size of the camera's picture.
 pub(super) fn render(
     job: &Job<'_>,
     settings: &Settings,
