@@ -14,7 +14,7 @@ use proptest::prelude::*;
 
 mod polygons;
 
-/// What a random test draws: objects that move, a camera that moves, settings.
+/// The input of a random test: objects that move, a camera that moves, settings.
 #[derive(Clone, Debug)]
 struct Case {
     scene: Scene,
@@ -45,7 +45,8 @@ impl Case {
         self.scene(frame).objects.unwrap()
     }
 
-    /// The frames of a sequence, each with the planes of its stages, and what each saw.
+    /// The frames of a sequence, each with the planes of its stages, and with what the frame before
+    /// saw.
     fn frames<R: Exact>(&self, frames: u32, mut seen: Option<Seen>, exec: &Exec) -> Vec<Shown<R>> {
         let mut shown = Vec::new();
         for frame in 0..frames {
@@ -86,7 +87,7 @@ fn case() -> impl Strategy<Value = Case> {
                 primitives: Primitives::default(),
                 detail: None,
             };
-            // Of half the cases the sphere has levels of detail.
+            // In half of the cases the sphere has levels of detail.
             let sphere = leveled(Shape::Sphere.surfels(400, seed).unwrap(), 3, seed);
             let sphere = geometry("sphere", sphere);
             let sphere = match seed % 4 {
@@ -146,7 +147,7 @@ fn plain<R: Exact>(case: &Case, frame: u32, ids: &[u64], exec: &Exec) -> Option<
     if scene.surfels.is_empty() {
         return None;
     }
-    // Epsilon in the units of the whole.
+    // Epsilon in units of the whole scene's median radius.
     let epsilon = case.settings.splats.epsilon.in_units(objects.median_radius());
     let settings = ewa::Settings { epsilon: Epsilon::World(epsilon), ..case.settings.splats };
     let session = Session::new(&scene, settings.into(), exec).unwrap();
@@ -191,12 +192,12 @@ fn laws<R: Exact>(case: &Case) -> std::result::Result<(), TestCaseError> {
         // A surfel has one centre.
         let kept = id(frame, "indices.id").values().iter().filter(|&&id| id != NO_ID).count();
         prop_assert_eq!(kept, now.len());
-        // What the frame saw is what it selected.
+        // A frame saw the surfels that it selected.
         if let Some((_, seen)) = shown.get(i as usize + 1) {
             let found = Seen::from_selected(ids, case.settings.flags, &now);
             prop_assert_eq!(seen.as_ref(), Some(&found));
         }
-        // The depth of pass 4 is that of plain visibility splatting of B(i-1) and B(i).
+        // The depth of pass 4 equals plain visibility splatting of B(i-1) and B(i).
         let mut drawn = old.clone();
         if case.settings.second {
             drawn.extend(&now);
@@ -214,8 +215,8 @@ fn laws<R: Exact>(case: &Case) -> std::result::Result<(), TestCaseError> {
             }
             None => prop_assert!(depth.values().iter().all(|&t| t == R::INFINITY)),
         }
-        // Where the nearest fragment is of B(i), the pixel is that of plain `ewa` over B(i); without
-        // pass 3 fragments of B(i) may be nearer than the depth.
+        // Where the nearest fragment belongs to B(i), the pixel equals plain `ewa` over B(i).
+        // Without pass 3, fragments of B(i) may be nearer than the depth.
         if !case.settings.second {
             continue;
         }
@@ -260,7 +261,7 @@ proptest! {
         session.resume(seen.clone());
         let again = session.define::<f32>(&case.camera(at as u32), true).unwrap().frame;
         prop_assert_eq!(&again.planes, &frame.planes);
-        // The way a program draws it, with other threads and tiles too.
+        // A session draws the same frame, with other threads and tiles too.
         for exec in [exec, Exec::new(3, 8).unwrap(), Exec::new(2, 64).unwrap()] {
             let mut session = Session::new(&scene, case.settings.into(), &exec).unwrap();
             session.resume(seen.clone());
@@ -274,7 +275,7 @@ proptest! {
         }
     }
 
-    /// With a share the frame is that of the scene without the objects that it leaves out.
+    /// With a share, the frame equals the frame of the scene without the objects that are left out.
     #[test]
     fn what_was_hardly_seen_is_left_out(case in case(), share in 0.0..=1.0_f32) {
         let exec = Exec::sequential();

@@ -91,10 +91,10 @@ fn count<'a, R: Exact>(picture: &'a Picture<R>, name: &str) -> &'a [u8] {
 /// A fragment of a pixel: surfel, nearness, depth, weight, whether the back is seen.
 type Fragment<R> = (u32, R, R, R, bool);
 
-/// What a picture should hold: colour, opacity, depth, surfel, count of layers.
+/// The expected picture: colour, opacity, depth, surfel, count of layers.
 type Expected<R> = (Vec<[R; 3]>, Vec<R>, Vec<R>, Vec<u32>, Vec<u8>);
 
-/// The fragments that are inside, of every pixel: no tiles, no bins, no bounds.
+/// The fragments that are inside, for every pixel: no tiles, no bins, no bounds.
 fn fragments<R: Exact>(
     scene: &Scene,
     camera: &Camera,
@@ -140,7 +140,7 @@ fn average<R: Exact>(surfels: &Surfels, layer: &[Fragment<R>]) -> ([R; 3], Optio
     (normal, color, mean(&|i| surfels.opacity().map_or(1.0, |all| all[i]), false))
 }
 
-/// Depth peeling from its page: every pixel has the list of all its fragments.
+/// Depth peeling exactly as its page says: every pixel has the list of all its fragments.
 fn by_the_page<R: Exact>(scene: &Scene, camera: &Camera, settings: &Settings) -> Expected<R> {
     let (width, height) = (camera.width, camera.height);
     let epsilon = R::from_f32(settings.splats.epsilon.resolve(&scene.surfels));
@@ -203,7 +203,7 @@ fn agrees_with_the_page<R: Exact>(scene: &Scene, camera: &Camera, settings: &Set
     }
 }
 
-/// A few large discs at all angles, in a box before the camera; every fourth lies on the one
+/// A few large discs at all angles, in a box before the camera. Every fourth lies on the disc
 /// before, with another colour and opacity.
 fn jumble(seed: u64, n: usize, colored: bool, transparent: bool) -> Cloud {
     let value = |i: usize, c: u64| {
@@ -288,7 +288,7 @@ fn two_parallel_sheets_are_alpha_blended() {
     let (front, back) = (Vec3::new(0.5, 0.25, 1.0), Vec3::new(0.125, 1.0, 0.75));
     for (a, b) in [(0.25, 0.75), (0.5, 1.0), (1.0, 0.5), (0.75, 0.0)] {
         let mut cloud = Cloud::default();
-        // The farther one first: the order of the surfels is not that of depth.
+        // The farther one first, because the order of the surfels is not the order of depth.
         sheet(&mut cloud, 3.0, b, back);
         sheet(&mut cloud, 2.0, a, front);
         let picture =

@@ -7,7 +7,7 @@ use crate::source::Shape;
 use glam::DVec3;
 use proptest::prelude::*;
 
-/// One surfel at the origin with so many levels: the colour of level k is k.
+/// One surfel at the origin with `levels` levels: the colour of level k is k.
 fn one(normal: Vec3, tangents: Option<[Vec3; 2]>, levels: usize) -> Surfels {
     let cloud = Cloud {
         position: vec![Vec3::ZERO],
@@ -42,7 +42,7 @@ fn a_level_is_twice_the_size() {
         let expected = Vec3::splat(found.number() as f32);
         assert_eq!(color(&surfels, 0, found), expected, "the colour of level k is k");
     }
-    // Turned by 60 degrees it covers half as much, about any axis.
+    // Turned by 60 degrees, about any axis, the surfel covers half as much.
     let seen = view(DVec3::Z * 3.0, Lens::Orthographic(16.0));
     for about in [DVec3::X, DVec3::Y, DVec3::new(3.0, 4.0, 0.0)] {
         let turned = rotation(about, 60.0) * DVec3::Z;
@@ -85,7 +85,7 @@ proptest! {
         for i in 0..12 {
             let eye = at * f64::from(1_u32 << i) * step;
             let level = Level::of(&view(eye, Lens::FieldOfView(30.0)), &surfels, 0).number();
-            // The camera is rounded to f32, and what is nearly edge-on feels it.
+            // The camera is rounded to f32, which matters for a surfel that is nearly edge-on.
             prop_assert!(level >= before - 1e-2, "{} {} after {}", i, level, before);
             before = level;
         }
@@ -127,7 +127,7 @@ fn levels_of_the_own_colour_change_no_bit_and_others_do() {
     let own = board.color().unwrap();
     assert!(plain == of(own.iter().flat_map(|color| [*color; 3]).collect()));
     assert!(plain != of(own.iter().flat_map(|_| [Vec3::ONE; 3]).collect()));
-    // No other method looks at them.
+    // No other method reads the mipmap.
     let exec = Exec::sequential();
     let white = Mipmap::new(1, vec![Vec3::ONE; board.len()]).unwrap();
     let with = board.clone().with_mipmap(Some(white)).unwrap();

@@ -19,7 +19,7 @@ fn square(depth: f32, color: Option<Vec3>) -> Primitives {
     Primitives { triangles, ..Primitives::default() }
 }
 
-/// The case with a square that is an object of its own.
+/// The case with a square as one more object.
 fn with_square(case: &Case, depth: f32, color: Option<Vec3>) -> Case {
     let objects = case.scene.objects.as_ref().unwrap();
     let (mut geometries, mut all) = (objects.geometries().to_vec(), objects.objects().to_vec());
@@ -51,8 +51,8 @@ fn at<R: Exact>(frame: &Frame<R>, name: &str, pixel: usize) -> [R; 3] {
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(24))]
 
-    /// Frame by frame: the fast path has the bits of the definition, each stage runs alone, and each pixel
-    /// shows the nearer of the square, whose depth is known, and of the splats.
+    /// Frame by frame: the fast path has the bits of the definition, and each stage runs alone.
+    /// Each pixel shows the nearer of the splats and the square, whose depth is known.
     #[test]
     fn a_square_stands_among_the_surfels(
         case in case(), depth in -2.5..2.5_f32, colored in any::<bool>(),
@@ -87,7 +87,7 @@ proptest! {
 
 const STAGES: &[&str] = &["visibility", "indices", "difference", "attributes", "normalization"];
 
-/// What a pixel shows, by the depth of the square in closed form.
+/// Each pixel shows the nearer surface, by the depth of the square in closed form.
 fn shows_the_nearer(
     case: &Case,
     i: u32,
@@ -114,7 +114,7 @@ fn shows_the_nearer(
             let hit = from + to * t;
             let inside = hit.x.abs() < 8.5 && hit.y.abs() < 8.5;
             let outside = hit.x.abs() > 9.5 || hit.y.abs() > 9.5;
-            // Seen from behind it is culled, or it is turned.
+            // A square seen from behind is culled, or its normal is turned.
             let faces = to.z < 0.0 || !case.settings.splats.cull;
             let near = t > f64::from(camera.near) * 1.001;
             let there = inside && near && faces;
@@ -147,8 +147,8 @@ fn shows_the_nearer(
     Ok(())
 }
 
-/// Before everything a polygon is all that is seen, and nothing is selected; far behind it changes no pixel
-/// that splats cover.
+/// A polygon in front of everything is all you see, and no surfel is selected. Far behind, it
+/// changes no pixel that splats cover.
 #[test]
 fn a_wall_hides_and_a_backdrop_does_not() {
     let exec = Exec::sequential();
@@ -179,8 +179,9 @@ fn a_wall_hides_and_a_backdrop_does_not() {
     }
 }
 
-/// Known answers: of a disc and a square at one depth the disc is seen, in the colour of the material where
-/// the square alone has one; a disc that is behind by less than epsilon is selected, and not seen.
+/// Known answers. If a disc and a square have one depth, the disc is seen, in the colour of the
+/// material if the square alone has one. A disc that is behind by less than epsilon is selected,
+/// and not seen.
 #[test]
 fn at_one_depth_a_surfel_wins() {
     let exec = Exec::sequential();
@@ -205,7 +206,7 @@ fn at_one_depth_a_surfel_wins() {
         let selected = id(&defined, "indices.id").values().iter().filter(|&&id| id == 0).count();
         assert_eq!(selected, 1);
         let drawn = session.render(&camera).unwrap().frame.clone();
-        // The pixel (4, 3), whose centre is that of the disc, and a corner of the picture.
+        // The pixel (4, 3), whose centre is the centre of the disc, and a corner of the picture.
         for frame in [&defined, &drawn] {
             let expected = if seen { 0 } else { NO_ID };
             assert_eq!(id(frame, "id").values()[3 * 8 + 4], expected, "{behind}");

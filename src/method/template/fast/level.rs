@@ -1,15 +1,16 @@
-//! A level in rows of numbers.
+//! Hold a level in rows of numbers.
 
 use crate::frame::NO_ID;
 use crate::method::projection::fast::{PAD, RowLayout};
 use crate::number::lanes::{LANES, Lanes, load, store, vector};
 use crate::splat::Ellipse;
 
-/// The numbers of a centre, by their place in a row: place in the picture, two numbers.
+/// The numbers of a centre, by their place in a row. First the position in the picture, two
+/// numbers.
 pub(super) const PLACE: usize = 0;
 /// The ellipse's tilt, two numbers.
 pub(super) const TILT: usize = 2;
-/// The ellipse's square; NaN, of which no form is within, if no centre stays here.
+/// The ellipse's square; NaN, which holds no form, if no centre stays here.
 pub(super) const SQUARE: usize = 4;
 pub(super) const DEPTH: usize = 5;
 pub(super) const RADIUS: usize = 6;
@@ -28,7 +29,7 @@ pub(super) fn layout(size: [u32; 2], color: bool) -> RowLayout {
 #[derive(Debug)]
 pub(super) struct CenterRowMut<'a> {
     pub(super) numbers: &'a mut [f32],
-    /// Of each cell, [`PAD`] cells first; [`NO_ID`] where there is no centre.
+    /// The id of each cell, after [`PAD`] cells; [`NO_ID`] where there is no centre.
     pub(super) ids: &'a mut [u32],
     /// Whether a centre stays in the row, and whether one moves on.
     pub(super) has: &'a mut [bool; 2],
@@ -96,7 +97,7 @@ impl CenterRow<'_> {
         load(self.numbers, attribute * self.layout.stride + first)
     }
 
-    /// Three numbers of [`LANES`] cells, likewise.
+    /// Three numbers of [`LANES`] cells; `first` counts the [`PAD`].
     #[inline(always)]
     pub(super) fn load_vectors(&self, attribute: usize, first: usize) -> [Lanes; 3] {
         [
@@ -108,8 +109,8 @@ impl CenterRow<'_> {
 }
 
 impl CenterRowMut<'_> {
-    /// Finds the ellipses of [`LANES`] cells from x on, of which ids, extents and normals are
-    /// there, and notes which of them stay within `reach`.
+    /// Computes the ellipses of [`LANES`] cells from x on, whose ids, extents and normals are
+    /// stored already, and notes which of them stay within `reach`.
     #[inline(always)]
     pub(super) fn settle(&mut self, layout: &RowLayout, x: usize, reach: f32) {
         let number = |attribute: usize| load(self.numbers, layout.at(attribute, x));

@@ -1,4 +1,4 @@
-//! Propagation and merging; see [`super::super::levels`].
+//! Propagate and merge centres in lanes; see [`super::super::levels`].
 
 use super::level::{
     COLOR, CenterLevel, CenterRow, CenterRowMut, DEPTH, EXTENT, NORMAL, PLACE, RADIUS,
@@ -11,13 +11,15 @@ use crate::number::lanes::{LANES, Lanes, Mask, any, each, load_halves, mask, sto
 /// Rows of a job.
 const ROWS: usize = 8;
 
-/// The next level, from what does not stay within the first `reach`; the second is its own.
+/// Makes the next level from the centres that do not stay within the first `reach`; the second
+/// `reach` is the next level's.
 pub(super) fn merge(fine: &CenterLevel, coarse: &mut CenterLevel, reach: [f32; 2], exec: &Exec) {
     let layouts = [fine.layout, coarse.layout];
     exec.chunks(coarse.rows_mut(), ROWS, |first, rows| {
         for (y, mut row) in (first..).zip(rows) {
             let upper = fine.row(2 * y);
-            // Below the last row of an odd level there is none: the upper one stands for it, unread.
+            // Below the last row of an odd level there is no row; the upper one stands for it,
+            // unread.
             let exists = 2 * y + 1 < fine.layout.height;
             let lower = if exists { fine.row(2 * y + 1) } else { upper };
             *row.has = [false; 2];
@@ -27,7 +29,7 @@ pub(super) fn merge(fine: &CenterLevel, coarse: &mut CenterLevel, reach: [f32; 2
     });
 }
 
-/// [`LANES`] centres: every second cell of two rows, the four that meet in one.
+/// [`LANES`] times four centres: every second cell of two rows; four meet in one cell.
 struct FourCenters {
     /// Which of them move on.
     moves: [Mask; 4],
@@ -64,7 +66,7 @@ vectorized!(
                 let there = exists | (j < 2);
                 *moves = mask(|i| (ids[j][i] != NO_ID) & !(extents[j][i] <= reach) & there);
             }
-            // -- What becomes of them
+            // -- The new centres
             if moves.iter().any(any) {
                 FourCenters { moves, ids }.meet(number, coarse, layout, x);
                 coarse.settle(layout, x, own);
@@ -74,7 +76,7 @@ vectorized!(
 );
 
 impl FourCenters {
-    /// The centres that become of them, from column x of the coarser row on.
+    /// Stores the merged centres, from column x of the coarser row on.
     #[inline(always)]
     fn meet(
         &self,
@@ -96,7 +98,7 @@ impl FourCenters {
             }
         }
         store(coarse.ids, PAD + x, &id);
-        // -- Those of its surface
+        // -- The centres of its surface
         let mut takes = [[0.0; LANES]; 4];
         for j in 0..4 {
             for i in 0..LANES {

@@ -1,10 +1,10 @@
-//! The fast path for `f32`: the bits of [`super::reconstruction`], from another layout.
+//! Draw in `f32`, fast: the bits of [`super::reconstruction`], from another layout.
 //!
-//! A level is rows of numbers, one number of all cells of a row after the other. Ellipses are found
-//! once a centre, not once a visit. 16 pixels of a row search together: at level 0 for centres that
-//! lie beside one another in memory, at coarser levels for one centre after the other; rows and
-//! levels where no centre stays are passed over. Each pixel meets its centres in the order of the
-//! definition.
+//! A level is rows of numbers, one number of all cells of a row after the other. An ellipse is
+//! computed once for each centre, not once for each visit. 16 pixels of a row search together: at
+//! level 0 for centres that lie beside one another in memory, at coarser levels for one centre
+//! after the other. Rows and levels where no centre stays are passed over. Each pixel meets its
+//! centres in the order of the definition.
 
 mod level;
 mod merge;
@@ -24,7 +24,7 @@ use crate::splat::{Tally, View};
 use level::{COLOR, CenterLevel, CenterRowMut, DEPTH, EXTENT, NORMAL, PLACE, RADIUS};
 use search::Target;
 
-/// The levels of a picture, which can be used for many pictures.
+/// The levels of a picture; their memory can be used for many pictures.
 #[derive(Debug, Default)]
 pub struct CenterLevels {
     points: Points,
@@ -32,11 +32,11 @@ pub struct CenterLevels {
 }
 
 impl CenterLevels {
-    /// Projects a scene, propagates and reconstructs; every pixel of `target` is overwritten but
-    /// for stencil and margin.
+    /// Projects a scene, propagates and reconstructs. Every pixel of `target` is overwritten,
+    /// except in the stencil and the margin.
     ///
     /// # Panics
-    /// If the framebuffer has not the size of the camera's picture.
+    /// If the framebuffer does not have the size of the camera's picture.
     pub fn draw(
         &mut self,
         scene: &Scene,
@@ -70,7 +70,7 @@ impl CenterLevels {
         (tally, clock.into_laps())
     }
 
-    /// Level 0.
+    /// Fills level 0.
     fn project(
         &mut self,
         scene: &Scene,
@@ -89,7 +89,7 @@ impl CenterLevels {
         tally
     }
 
-    /// The picture.
+    /// Reconstructs the picture.
     fn search(
         &self,
         camera: &Camera,
@@ -114,7 +114,7 @@ impl CenterLevels {
 }
 
 vectorized!(
-    /// A row of level 0 from the nearest points of its pixels.
+    /// Fills a row of level 0 from the nearest points of its pixels.
     fn samples(
         nearest: &NearestPoints<'_>,
         row: &mut CenterRowMut<'_>,

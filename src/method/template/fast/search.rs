@@ -1,9 +1,9 @@
-//! Reconstruction and normalization in lanes; see [`super::super::reconstruction`].
+//! Reconstruct and normalize in lanes; see [`super::super::reconstruction`].
 //!
-//! [`LANES`] pixels of a row search together. At level 0 each has a template of its own: the
-//! centres beside one another are read as lanes. A cell of a coarser level belongs to the templates
-//! of many of them: it is one centre for all lanes, those outside its template masked. Either way
-//! every lane meets its centres in the order of the definition.
+//! [`LANES`] pixels of a row search together. At level 0 each pixel has its own template: centres
+//! beside one another are read as lanes. A cell of a coarser level belongs to the templates of many
+//! pixels. It is one centre for all lanes; lanes outside its template are masked. Either way every
+//! lane meets its centres in the order of the definition.
 
 use super::level::{COLOR, CenterLevel, CenterRow, DEPTH, NORMAL, PLACE, RADIUS, SQUARE, TILT};
 use crate::composite::sum;
@@ -18,7 +18,7 @@ use crate::number::lanes::{
 use crate::number::{Vector2, Vector3};
 use crate::splat::{Ellipse, View};
 
-/// What [`LANES`] pixels of a row have gathered.
+/// The centres that [`LANES`] pixels of a row have gathered.
 struct GatheredLanes {
     id: [u32; LANES],
     depth: Lanes,
@@ -49,7 +49,7 @@ pub(super) struct Target<'a> {
 }
 
 vectorized!(
-    /// A row of pixels: reconstruction and normalization; `half` is h.
+    /// Reconstructs and normalizes a row of pixels; `half` is h.
     pub(super) fn search_row<const COLORED: bool, const GAUSSIAN: bool>(
         levels: &[&CenterLevel],
         which: &[usize],
@@ -90,7 +90,7 @@ fn beside<const COLORED: bool, const GAUSSIAN: bool>(
     half: usize,
 ) {
     for dx in 0..=2 * half {
-        // -- Which centres a pixel is inside of, and its own
+        // -- Which centres hold a pixel, and the pixel's own centre
         let first = PAD + x + dx - half;
         let own = own_row && dx == half;
         let [px, py] = [row.load(PLACE, first), row.load(PLACE + 1, first)];
@@ -102,7 +102,7 @@ fn beside<const COLORED: bool, const GAUSSIAN: bool>(
         if !any(&inside) {
             continue;
         }
-        // -- What those are
+        // -- The numbers of these centres
         let centers = CenterLanes {
             id: load(row.ids, first),
             depth: row.load(DEPTH, first),
@@ -125,16 +125,16 @@ fn around<const COLORED: bool, const GAUSSIAN: bool>(
     let first = (x >> level).saturating_sub(half);
     let last = row.layout.width.min(((x + LANES - 1) >> level) + half + 1);
     for cx in first..last {
-        // -- Whether a pixel can be inside of it at all
+        // -- Whether the centre can hold a pixel at all
         let number = |attribute: usize| row.numbers[row.layout.at(attribute, cx)];
         let square = number(SQUARE);
         let (left, upper) = (number(PLACE), number(PLACE + 1));
         let dy = y as f32 + 0.5 - upper;
-        // The form is at least dy dy; the margin is for rounding. NaN: no centre stays here.
+        // The form is at least dy dy; the margin allows for rounding. NaN: no centre stays here.
         if !(dy * dy <= square * (1.0 + 1.0 / 1_048_576.0)) {
             continue;
         }
-        // -- Which pixels are, and have it in their templates
+        // -- Which pixels it holds, if they have it in their templates
         let ellipse = Ellipse { tilt: Vector2::new(number(TILT), number(TILT + 1)), square };
         let form = each(|i| ellipse.form((x + i) as f32 + 0.5 - left, dy));
         let inside = mask(|i| {
@@ -145,7 +145,7 @@ fn around<const COLORED: bool, const GAUSSIAN: bool>(
         if !any(&inside) {
             continue;
         }
-        // -- What it is
+        // -- The numbers of this centre
         let all = |attribute: usize| [number(attribute); LANES];
         let three = |first: usize| [all(first), all(first + 1), all(first + 2)];
         let centers = CenterLanes {
@@ -160,7 +160,7 @@ fn around<const COLORED: bool, const GAUSSIAN: bool>(
 }
 
 impl GatheredLanes {
-    /// Nothing.
+    /// No centre.
     #[inline(always)]
     fn new() -> Self {
         Self {
@@ -174,7 +174,7 @@ impl GatheredLanes {
         }
     }
 
-    /// The ternary test, and the sums, in the lanes that are inside.
+    /// Makes the ternary test, and adds to the sums, in the lanes that are inside.
     #[inline(always)]
     fn add<const COLORED: bool, const GAUSSIAN: bool>(
         &mut self,
@@ -216,7 +216,7 @@ impl GatheredLanes {
     }
 }
 
-/// What the ternary test has decided of one centre for each lane.
+/// The result of the ternary test on one centre for each lane.
 struct TermLanes {
     /// Where the sums start anew.
     anew: Mask,
@@ -239,7 +239,7 @@ impl TermLanes {
     }
 }
 
-/// Sums divided by the sum of weights, into the picture.
+/// Divides the sums by the sum of weights, and writes them into the picture.
 #[inline(always)]
 fn normalize<const COLORED: bool>(
     gathered: &GatheredLanes,

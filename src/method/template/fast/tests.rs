@@ -1,4 +1,4 @@
-//! Fast is plain, bit for bit.
+//! The fast path equals the definition, bit for bit.
 
 use super::super::LevelRule;
 use super::*;
@@ -15,7 +15,7 @@ fn bits(values: &[f32]) -> Vec<u32> {
 #[test]
 fn every_pixel_has_the_bits_of_the_definition() {
     let exec = Exec::new(3, 16).unwrap();
-    // Used again and again, for other sizes too.
+    // Used again and again, also for other sizes.
     let mut levels = CenterLevels::default();
     for (i, camera) in cameras().into_iter().enumerate() {
         for (count, radius) in [(1, 1e30), (37, 0.4), (3000, 0.05), (50_000, 0.01)] {
@@ -50,7 +50,8 @@ fn every_pixel_has_the_bits_of_the_definition() {
                 let normal = found.normal.unwrap();
                 assert_eq!(bits(normal.values().as_flattened()), expected("normal"), "{place}");
                 if let Some(color) = found.color {
-                    // Unlit, so that the picture is the colour, black where it is empty.
+                    // The scene is unlit, so that the picture is the colour, black where it is
+                    // empty.
                     assert_eq!(bits(color.values().as_flattened()), expected(""), "{place}");
                 }
                 assert!(found.weight.values().iter().all(|weight| weight.is_finite()));

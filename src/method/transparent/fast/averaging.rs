@@ -1,15 +1,15 @@
-//! The compositing pass over a block of pixels: the average of the groups.
+//! Average the groups over a block of pixels: the compositing pass.
 
 use super::blending::LayersBlock;
 use crate::frame::NO_ID;
 use crate::method::transparent::Holes;
 use crate::number::lanes::{LANES, Lanes, each, mask, select, select_u32};
 
-/// The groups of the pixels of a block together: sums first, then averages.
+/// The average of the groups at a block's pixels: sums first, then averages.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(crate) struct AverageBlock {
-    /// Over black.
+    /// The colour over black.
     pub(crate) color: [Lanes; 3],
     pub(crate) alpha: Lanes,
     /// See [`LayersBlock::opacity`].
@@ -20,7 +20,7 @@ pub(crate) struct AverageBlock {
     pub(crate) layers: Lanes,
     /// Least depth of any group.
     pub(crate) depth: Lanes,
-    /// Its surfel; of equal depths the lower one.
+    /// Surfel of that depth; the lower one if depths are equal.
     pub(crate) id: [u32; LANES],
     /// How many groups have a fragment.
     groups: Lanes,
@@ -39,10 +39,10 @@ impl AverageBlock {
         groups: [0.0; LANES],
     };
 
-    /// Adds a group; one without a fragment would add zeros.
+    /// Adds a group; a group without a fragment would add zeros.
     #[inline(always)]
     pub(super) fn add<const TOTALS: bool>(&mut self, layers: &LayersBlock) {
-        // Line by line: a loop over the channels would become the vector.
+        // Written line by line, because a loop over the channels would become the vector.
         plus(&mut self.color[0], &layers.color[0]);
         plus(&mut self.color[1], &layers.color[1]);
         plus(&mut self.color[2], &layers.color[2]);
@@ -62,11 +62,11 @@ impl AverageBlock {
         self.id = select_u32(&wins, &layers.id, &id);
     }
 
-    /// Divides the sums by the count of the groups that count.
+    /// Divides the sums by the count of the groups that [`Holes`] takes.
     #[inline(always)]
     pub(super) fn divide<const TOTALS: bool>(&mut self, holes: Holes, groups: usize) {
         let count = match holes {
-            // An average of no group is 0, as its sums are.
+            // An average of no group is 0, like its sums.
             Holes::Skipped => each(|i| if self.groups[i] > 0.0 { self.groups[i] } else { 1.0 }),
             Holes::Background => [groups as f32; LANES],
         };

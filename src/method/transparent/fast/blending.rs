@@ -1,4 +1,4 @@
-//! The geometry pass over a block of pixels, compiled for every vector width.
+//! Blend the layers of a block of pixels: the geometry pass, compiled for every vector width.
 
 use super::FastBlending;
 use super::averaging::AverageBlock;
@@ -13,24 +13,24 @@ use crate::method::transparent::Holes;
 use crate::number::lanes::{LANES, Lanes, Mask, any, each, mask, select, select_u32, vectorized};
 use crate::splat::Shared;
 
-/// What the image of the group that is being drawn holds at the pixels of a block.
+/// The image of the present group at the pixels of a block.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct LayersBlock {
     /// The bin of the nearest fragment so far; +inf where there is none.
     bin: Lanes,
-    /// All fragments that passed, blended.
+    /// The blend of all fragments that passed.
     pub(super) color: [Lanes; 3],
     pub(super) alpha: Lanes,
     /// The sum of the opacities in front of the nearest opaque fragment.
     pub(super) opacity: Lanes,
-    /// 1 if an opaque fragment hides what is behind, else 0.
+    /// 1 if an opaque fragment hides the fragments behind it, else 0.
     pub(super) hidden: Lanes,
     /// How many fragments passed, up to 255.
     pub(super) count: Lanes,
     /// Depth of the fragment that passed last, the nearest; +inf where there is none.
     pub(super) depth: Lanes,
-    /// Its surfel.
+    /// Surfel of that fragment.
     pub(super) id: [u32; LANES],
 }
 
@@ -58,9 +58,9 @@ impl Nearest {
 }
 
 impl<A: Blended> FastBlending<A> {
-    /// Blends the layers of each group at the pixels of a block, whose first is `corner`, and
-    /// averages the groups. `list` has splats of the tile from back to front; `images`, which have any
-    /// values, are of as many groups as there are.
+    /// Blends the layers of each group at the pixels of a block, whose first pixel is `corner`, and
+    /// averages the groups. `list` holds splats of the tile from back to front. `images` has one
+    /// image for each group; their previous values are ignored.
     pub(super) fn blend<const BEHIND: bool>(
         &self,
         (average, images): (&mut AverageBlock, &mut [LayersBlock]),
@@ -95,7 +95,8 @@ vectorized!(
         let shared = *shared;
         let common = bins[0];
         let groups = images.len();
-        // The groups that have a fragment: the images of the others are of an earlier block.
+        // The groups that have a fragment; the images of the others still belong to an earlier
+        // block.
         let mut there: Set = 0;
         for &index in list {
             let splat = &splats[index as usize];
@@ -111,7 +112,7 @@ vectorized!(
             let (mut place, mut depth) = ([0.0; LANES], [0.0; LANES]);
             for i in 0..LANES {
                 depth[i] = shared.depth(left[i]);
-                // NaN, which fails, outside.
+                // NaN outside, which fails.
                 place[i] = common.unmoved(depth[i]);
             }
             let layer = splat.attributes.as_ref();
@@ -137,8 +138,8 @@ vectorized!(
 );
 
 impl LayersBlock {
-    /// The depth test against the fragments of a splat, whose bins are NaN where there are none, and
-    /// the blending of those that pass.
+    /// Makes the depth test against the fragments of a splat, and blends those that pass. Bins are
+    /// NaN where there is no fragment.
     #[inline(always)]
     fn meet<const TOTALS: bool>(&mut self, layer: &Layer, surfel: u32, bin: &Lanes, depth: &Lanes) {
         let before = *self;
@@ -168,8 +169,8 @@ impl LayersBlock {
     }
 }
 
-/// A channel of a layer of opacity `alpha` before what was below it, where it passes; `own` is the
-/// channel times alpha.
+/// A channel of a layer with opacity `alpha` over the channel below, where the layer passes; `own`
+/// is the layer's channel times alpha.
 #[inline(always)]
 fn over(passes: &Mask, alpha: f32, own: f32, below: &Lanes) -> Lanes {
     let through = 1.0 - alpha;

@@ -1,9 +1,9 @@
-//! The fast path for `f32`: the bits of the definition, from another layout, see [`crate::method`].
+//! Draw in `f32`, fast: the bits of the definition, from another layout, see [`crate::method`].
 //!
-//! A surfel is projected once for all groups that draw it with the same radius, and so are its
-//! fragments computed once. Block after block is finished: a fragment is blended into the images of its
-//! groups, which the nearest cache holds, and then the groups are averaged, in their order. So no image
-//! of a group is kept at all.
+//! A surfel is projected once for all groups that draw it with the same radius, and its fragments
+//! are computed once for them. Block after block is finished. A fragment is blended into the images
+//! of its groups, which the nearest cache holds. Then the groups are averaged, in their order. So
+//! no image of a group is kept beyond its block.
 
 mod averaging;
 mod blending;
@@ -31,12 +31,12 @@ use std::time::Instant;
 /// The splats of all groups as records with `A`, projected, shaded and sorted into tiles.
 pub(crate) struct FastBlending<A> {
     pub(crate) prepared: Prepared<f32, Record<A>>,
-    /// Of each group.
+    /// The bins of each group.
     bins: Vec<DepthBins<f32>>,
     holes: Holes,
 }
 
-/// The picture.
+/// Draws the picture.
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
     let mut clock = Clock::default();
     let blending = FastBlending::<Layer>::project(job, settings, Set::count_ones)?;
@@ -67,10 +67,10 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
 }
 
 impl<A: Blended> FastBlending<A> {
-    /// Both passes over the splats of a tile: the average of its blocks.
+    /// Runs both passes over the splats of a tile, and returns the average of its blocks.
     ///
     /// With `BEHIND`, fragments that are not strictly beyond the nearest layer of a block are
-    /// dropped, and the sums of opacities are there.
+    /// dropped, and the sums of opacities are computed.
     pub(crate) fn averages<const BEHIND: bool>(
         &self,
         splats: &[Record<A>],
@@ -90,7 +90,7 @@ impl<A: Blended> FastBlending<A> {
 }
 
 impl AverageBlock {
-    /// What pictures keep of the average.
+    /// The part of the average that pictures keep.
     fn layers(&self) -> LayeredBlock {
         let Self { color, alpha, depth, id, layers, .. } = *self;
         LayeredBlock { color, alpha, depth, id, layers }

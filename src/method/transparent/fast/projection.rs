@@ -1,4 +1,4 @@
-//! Order, projection and shading.
+//! Order, project and shade the surfels.
 
 use super::FastBlending;
 use crate::error::Result;
@@ -17,23 +17,23 @@ use crate::splat::batch::Enlarged;
 use crate::splat::{Splat, Tally, View, batch};
 use glam::Vec3;
 
-/// What is blended where a splat is one of some groups.
+/// The layer of a splat that belongs to some groups.
 #[derive(Clone, Copy)]
 pub(crate) struct Layer {
-    /// Shaded at the centre.
+    /// The colour, shaded at the centre.
     pub(super) color: [f32; 3],
     pub(crate) alpha: f32,
-    /// The groups that draw it.
+    /// The groups that draw the surfel.
     pub(super) groups: Set,
-    /// The one that is the surfel's own.
+    /// The surfel's own group.
     pub(crate) own: u8,
     /// Whether the back of the surfel is seen.
     back: bool,
 }
 
-/// What a record has of a splat that is blended.
+/// The attributes in the record of a splat that is blended.
 pub(crate) trait Blended: AsRef<Layer> + AsMut<Layer> + Copy + Send + Sync {
-    /// The layer that it is, and what else is kept of the splat.
+    /// Makes the attributes from the layer, and from the splat and its surfels.
     fn new(layer: Layer, splat: &Splat<f32>, surfels: &Surfels) -> Self;
 }
 
@@ -56,7 +56,7 @@ impl Blended for Layer {
     }
 }
 
-/// A splat that is blended, and averaged in a nearest layer.
+/// A splat that is blended, and also averaged in a nearest layer.
 #[derive(Clone, Copy)]
 pub(crate) struct LayerOfSurface {
     layer: Layer,
@@ -64,7 +64,7 @@ pub(crate) struct LayerOfSurface {
 }
 
 impl LayerOfSurface {
-    /// The splat in the nearest layer.
+    /// The record of the splat for the nearest layer.
     #[inline(always)]
     pub(crate) fn surface(record: &Record<Self>) -> Record {
         let Record { footprint, surfel, bounds, attributes } = *record;
@@ -92,8 +92,8 @@ impl Blended for LayerOfSurface {
 }
 
 impl<A: Blended> FastBlending<A> {
-    /// Every surfel from back to front, once for all groups that draw it alike; `times` tells as how many
-    /// a surfel that some groups draw is counted.
+    /// Projects every surfel from back to front, once for all groups that draw it alike. `times`
+    /// says how often a surfel counts that some groups draw.
     pub(crate) fn project(
         job: &Job<'_>,
         settings: &Settings,
@@ -103,7 +103,7 @@ impl<A: Blended> FastBlending<A> {
         let (groups, order, members) = (index.groups()?, index.order()?, index.members()?);
         let bins = settings.bins(job, groups.len())?;
         let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
-        // Until their layers are shaded, surfels are known by their places in the tree.
+        // Until their layers are shaded, surfels carry their places in the tree.
         let surfels = &members.surfels;
         let grid = job.strips();
         let size = batch_size(&grid, surfels.len());
@@ -142,13 +142,13 @@ impl<A: Blended> FastBlending<A> {
         Ok(Self { prepared, bins, holes: settings.holes })
     }
 
-    /// What became of the surfels.
+    /// Counts the fates of the surfels.
     pub(crate) fn tally(&self) -> Tally {
         self.prepared.tally
     }
 }
 
-/// Parts that follow one another, together of `size` surfels or a few more.
+/// Joins parts that follow one another into batches of `size` surfels or a few more.
 fn batches(parts: Vec<Part>, size: usize) -> Vec<Vec<Part>> {
     let mut batches = Vec::new();
     let (mut batch, mut count) = (Vec::new(), 0);
@@ -174,7 +174,7 @@ vectorized!(
     ) {
         let (positions, normals) = (surfels.position(), surfels.normal());
         for records in records.chunks_mut(LANES) {
-            // Lanes without a splat show the null vector in black.
+            // Lanes without a splat shade the null vector in black.
             let zero = [[0.0; LANES]; 3];
             let (mut position, mut normal, mut surface): ([Lanes; 3], [Lanes; 3], [Lanes; 3]) =
                 (zero, zero, zero);

@@ -1,4 +1,4 @@
-//! Pass 3: the nearest layer before the others.
+//! Composite the nearest layer before the others: pass 3.
 
 use super::nearest::FrontBlock;
 use crate::composite::over::Blend;
@@ -10,10 +10,10 @@ use crate::method::transparent_hq::compositing::Through;
 use crate::method::transparent_hq::nearest::{FrontLayer, MASK};
 use crate::number::lanes::{LANES, components, each, vectorized};
 
-/// A block of the nearest layer, what it shows, and what is behind it.
+/// A block of the nearest layer, its shaded colours, and the layers behind it.
 type Behind<'a> = ((&'a PixelBlock, &'a FrontBlock), &'a AverageBlock);
 
-/// What the blocks of a tile show before the environment.
+/// The blocks of a tile before the environment.
 pub(super) fn compositing(
     through: &Through<'_, f32>,
     tile: &Tile,
@@ -32,7 +32,7 @@ pub(super) fn compositing(
 }
 
 vectorized!(
-    /// The nearest layer over the others.
+    /// Blends the nearest layer over the others.
     fn over(nearest: &PixelBlock, front: &FrontBlock, others: &AverageBlock) -> LayeredBlock {
         let AverageBlock { mut color, mut alpha, mut layers, .. } = *others;
         let (depth, front) = (nearest.nearest, *front);
@@ -51,8 +51,8 @@ vectorized!(
     }
 );
 
-/// What is seen through the nearest layer where it bends light, pixel by pixel: almost all of the
-/// time goes into the environment.
+/// Composites a nearest layer that bends light, pixel by pixel, because almost all of the time goes
+/// into the environment.
 fn refract(
     through: &Through<'_, f32>,
     block: &mut LayeredBlock,

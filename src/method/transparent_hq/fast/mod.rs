@@ -1,6 +1,6 @@
-//! The fast path for `f32`: the bits of the definition, from the fast paths of both its parts, a
-//! tile after the other, see [`crate::method`]. A splat is projected, sorted into tiles and gathered
-//! once for both, if no group enlarges it.
+//! Draw in `f32`, fast: the bits of the definition, from the fast paths of both parts, tile after
+//! tile, see [`crate::method`]. A splat is projected, sorted into tiles and gathered once for both
+//! parts, if no group enlarges it.
 
 mod compositing;
 mod nearest;
@@ -23,7 +23,7 @@ use nearest::FastNearest;
 use projection::Splats;
 use std::time::{Duration, Instant};
 
-/// The picture.
+/// Draws the picture.
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
     picture::check(job, settings)?;
     let mut clock = Clock::default();
@@ -41,7 +41,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
         let start = Instant::now();
         let mut gathered = splats.gather(pixels.depth.index, pixels.depth.rect);
         if gathered.nearest.splats.is_empty() {
-            // Where there is no nearest layer nothing is seen.
+            // Without a nearest layer nothing is seen, because pass 2 drops all fragments there.
             pixels.clear(0.0);
             clear_plane(&mut normal, [0.0; 3]);
             clear_plane(&mut weight, 0.0);

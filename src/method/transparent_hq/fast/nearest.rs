@@ -1,4 +1,5 @@
-//! Pass 1: the fast path of the single pass, with opacities, and the shading of what it leaves.
+//! Draw the nearest layer, pass 1: the fast path of the single pass, with opacities, and its
+//! shading.
 
 use super::projection::Gathered;
 use crate::composite::bins::DepthBins;
@@ -16,7 +17,7 @@ use crate::scene::Scene;
 use crate::shade::phong::Shader;
 use crate::splat::{Shared, View};
 
-/// What the nearest layer is drawn with.
+/// The constants of the nearest layer.
 pub(super) struct FastNearest<'a> {
     scene: &'a Scene,
     /// How many groups there are.
@@ -28,7 +29,7 @@ pub(super) struct FastNearest<'a> {
     shader: Shader<f32>,
 }
 
-/// What the nearest layer shows at the pixels of a block.
+/// The nearest layer at the pixels of a block.
 #[derive(Clone, Copy)]
 #[repr(align(64))]
 pub(super) struct FrontBlock {
@@ -39,7 +40,7 @@ pub(super) struct FrontBlock {
 }
 
 impl<'a> FastNearest<'a> {
-    /// What is known before anything is projected.
+    /// Sets up everything that is known before projection.
     pub(super) fn new(job: &Job<'a>, settings: &Settings) -> Result<Self> {
         let (scene, settings) = (job.scene, of(settings));
         let single_pass::Settings { splats, .. } = settings;
@@ -61,8 +62,8 @@ impl<'a> FastNearest<'a> {
         images
     }
 
-    /// The compositing pass, normalization and shading: leaves depth, surfel, weight and normal in
-    /// the blocks of the tile, and the least nearness that is within epsilon.
+    /// Runs the compositing pass, normalization and shading. Leaves depth, surfel, weight and
+    /// normal in the blocks of the tile, and the least nearness that is within epsilon.
     pub(super) fn resolve(&self, tile: &mut Tile, images: &mut GroupImages) -> Vec<FrontBlock> {
         let shared = &self.shared;
         images.nearest(tile);

@@ -1,4 +1,4 @@
-//! The splats of both passes.
+//! Project the splats of both passes.
 
 use crate::error::Result;
 use crate::frame::Rect;
@@ -17,36 +17,37 @@ use crate::splat::Tally;
 pub(super) struct Splats<'a> {
     surfels: &'a Surfels,
     groups: &'a Groups,
-    /// Those of the other layers.
+    /// The splats of the other layers.
     pub(super) blending: FastBlending<LayerOfSurface>,
-    /// Those of the nearest layer, where groups enlarge their surfels; else they are the others.
+    /// The splats of the nearest layer, if groups enlarge their surfels; else both passes share the
+    /// splats.
     nearest: Option<Prepared<f32, Record>>,
 }
 
 /// The splats of a tile.
 pub(super) struct Gathered {
-    /// Those of the other layers, from back to front.
+    /// The splats of the other layers, from back to front.
     pub(super) layers: Vec<Record<LayerOfSurface>>,
-    /// Those of the nearest layer in ascending order, and the empty blocks of the tile.
+    /// The splats of the nearest layer in ascending order, and the empty blocks of the tile.
     pub(super) nearest: Tile,
-    /// Of each of the nearest layer its own group.
+    /// The own group of each splat of the nearest layer.
     pub(super) groups: Vec<u8>,
-    /// Of each of the nearest layer its opacity.
+    /// The opacity of each splat of the nearest layer.
     pub(super) opacities: Vec<f32>,
 }
 
 impl<'a> Splats<'a> {
-    /// Projection: of every surfel once, or once more for each scale of its groups.
+    /// Projects every surfel once, or once more for each scale of its groups.
     pub(super) fn project(job: &Job<'a>, settings: &Settings) -> Result<Self> {
         let keep_radii = job.index.members()?.keep_radii();
         let nearest = (!keep_radii).then(|| prepare(job, &settings.layers.splats));
-        // As the nearest layer has it: once, whatever groups it is in.
+        // Each surfel counts once, whatever groups it is in, as in the nearest layer.
         let once = |_: Set| 1;
         let blending = FastBlending::project(job, &settings.layers, once)?;
         Ok(Self { surfels: &job.scene.surfels, groups: job.index.groups()?, blending, nearest })
     }
 
-    /// What became of the surfels as the nearest layer draws them.
+    /// Counts the fates of the surfels as the nearest layer draws them.
     pub(super) fn tally(&self) -> Tally {
         self.nearest.as_ref().map_or(self.blending.tally(), |nearest| nearest.tally)
     }
@@ -63,8 +64,8 @@ impl<'a> Splats<'a> {
                 nearest.splats.iter().map(|splat| surfels.opacity_of(splat.surfel as usize));
             (own(&nearest.splats, self.groups), opacities.collect())
         } else {
-            // A layer has its group and its opacity with it: of two million surfels, fetching them from
-            // the scene took a tenth of a frame and more.
+            // A layer carries its group and its opacity: with two million surfels, fetching them
+            // from the scene took a tenth of a frame and more.
             nearest.splats.reserve(layers.len());
             let beside = ascending(&layers).map(|splat| {
                 nearest.splats.push(LayerOfSurface::surface(splat));
