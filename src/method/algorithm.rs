@@ -1,4 +1,4 @@
-//! What a method is: the interface that a row of the table of methods implements.
+//! Implement a method: the interface of every row of the table of methods.
 
 use super::buffer_formats::{Buffers, DepthKey};
 use super::input_planes::InputPlanes;
@@ -14,22 +14,23 @@ use crate::setting::Fields;
 use crate::splat::SplatSettings;
 use std::fmt::{Debug, Display};
 
-/// What a picture is made of, and how.
+/// The inputs of one picture.
 #[derive(Clone, Copy, Debug)]
 pub struct Job<'a> {
-    /// What is given.
+    /// The scene to draw.
     pub scene: &'a Scene,
-    /// What was built once from the scene.
+    /// The index that was built once from the scene.
     pub index: &'a Index,
-    /// Where the scene is seen from.
+    /// The camera that sees the scene.
     pub camera: &'a Camera,
     /// Threads and tiles; these cannot change one bit.
     pub exec: &'a Exec,
     /// How the sums that fragments are blended into are stored.
     pub(crate) buffers: Buffers,
-    /// What is compared where the nearest fragment wins.
+    /// The depth that is compared where the nearest fragment wins.
     pub(crate) key: DepthKey,
-    /// The one level that a stage makes, of those of [`Algorithm::levels`]; all of them if none.
+    /// The one level that a stage makes, from the list of [`Algorithm::levels`]; none: the stage
+    /// makes all levels.
     pub(crate) level: Option<usize>,
 }
 
@@ -41,7 +42,7 @@ impl<'a> Job<'a> {
         Self { scene, index, camera, exec, buffers, key, level: None }
     }
 
-    /// Of the levels of a stage those that it makes.
+    /// The levels that this job makes, from all `levels` of a stage.
     pub(crate) fn only(&self, levels: Vec<usize>) -> Vec<usize> {
         self.level.map_or(levels, |level| vec![level])
     }
@@ -61,7 +62,7 @@ impl<'a> Job<'a> {
         Rect { x0: 0, y0: 0, x1: self.camera.width, y1: self.camera.height }
     }
 
-    /// What decides which planes a frame of the scene has.
+    /// The conditions that decide which planes a frame of the scene has.
     pub(crate) fn there(&self, keep: Keep) -> Conditions {
         Conditions::new(self.scene, keep)
     }
@@ -72,56 +73,57 @@ impl<'a> Job<'a> {
     }
 }
 
-/// A method, implemented by its settings: everything in the settings may change the picture, and
+/// A method, implemented by its settings. Everything in the settings may change the picture, and
 /// [`Fields`] lists all of them.
 ///
-/// The settings have been checked and the scene is one that the method draws when a picture is
-/// asked for: [`super::Session`] sees to both.
+/// [`super::Session`] checks the settings, and that the method draws the scene, before it asks for
+/// a picture.
 pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'static {
     /// The name in scene files and on the command line.
     const NAME: &'static str;
-    /// What the method is, in one line, with its source.
+    /// A one-line summary of the method, with its source.
     const SUMMARY: &'static str;
     /// The passes, in the order in which they run.
     const STAGES: &'static [Stage];
-    /// Whether triangles, ribbons and tubes are drawn beside surfels.
+    /// Whether the method draws triangles, ribbons and tubes beside surfels.
     const DRAWS_PRIMITIVES: bool = false;
-    /// Whether triangles are drawn beside surfels, by a method that draws no other primitives.
+    /// Whether the method draws triangles beside surfels, but no other primitives.
     const DRAWS_POLYGONS: bool = false;
-    /// Whether the objects of a scene are drawn as they are; else the scene must be made flat.
+    /// Whether the method draws the objects of a scene as they are; else the scene must be made
+    /// flat.
     const DRAWS_OBJECTS: bool = false;
-    /// How surfels are divided into groups if nobody says; none: the method draws no groups.
+    /// How the method groups surfels by default; none: the method draws no groups.
     const GROUPING: Option<Grouping> = None;
-    /// Whether layers of surfels with opacities are blended; else a surfel is opaque.
+    /// Whether the method blends layers of surfels with opacities; else a surfel is opaque.
     const BLENDS: bool = false;
-    /// Whether surfels are needed from back to front.
+    /// Whether the method needs the surfels from back to front.
     const BACK_TO_FRONT: bool = false;
 
-    /// About the most bytes that the fast path takes for a pixel, the picture included; none: there
-    /// is no fast path.
+    /// An upper estimate of the bytes that the fast path takes for a pixel, the picture included;
+    /// none: there is no fast path.
     const FAST_BYTES_A_PIXEL: Option<u64> = None;
 
-    /// What the fast path works in, kept from picture to picture.
+    /// The memory that the fast path works in, kept from picture to picture.
     type Memory: Debug + Default + Send;
 
-    /// Footprints, epsilon and culling of a method that draws splats.
+    /// Footprints, epsilon and culling, if the method draws splats.
     fn splats(&self) -> Option<&SplatSettings> {
         None
     }
 
-    /// Whether the numbers are in range.
+    /// Checks that the numbers are in range.
     ///
     /// # Errors
-    /// [`crate::Error::Invalid`] if one is not.
+    /// [`crate::Error::Invalid`] if a number is not.
     fn check(&self) -> Result<()>;
 
-    /// The definition, in any number; with `stages` the planes of every stage are kept.
+    /// Renders by the definition, in any number; with `stages` the planes of every stage are kept.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] if the method cannot draw the scene with these settings.
     fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>>;
 
-    /// The picture in `f32`, by the fast path where there is one: the bits of the definition.
+    /// Renders in `f32`, by the fast path where there is one, with the bits of the definition.
     ///
     /// # Errors
     /// As [`Algorithm::define`].
@@ -135,12 +137,12 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
         self.define(job, false)
     }
 
-    /// Runs one stage on the planes of the stages that it reads, whoever made these planes, and
-    /// gives the planes that the stage leaves.
+    /// Runs one stage on the planes of the stages that it reads, whoever made these planes. Returns
+    /// the planes that the stage leaves.
     ///
     /// # Errors
-    /// [`crate::Error::Invalid`] if a plane is missing, of another type or size, or if no stage of
-    /// this name can be run so.
+    /// [`crate::Error::Invalid`] if a plane is missing or has another type or size, or if no stage
+    /// of this name can run on its own.
     fn stage<R: Exact>(
         &self,
         job: &Job<'_>,
@@ -148,14 +150,14 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
         given: &InputPlanes<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>>;
 
-    /// The levels that a stage makes, each from the one before, in the order in which they are made; empty of a
-    /// stage that does not work level by level.
+    /// The levels that a stage makes, each from the one before, in the order in which they are
+    /// made; empty if the stage does not work level by level.
     fn levels(&self, job: &Job<'_>, stage: &str) -> Vec<usize> {
         let _ = (job, stage);
         Vec::new()
     }
 
-    /// Every decision at one pixel, with its operands, in words.
+    /// Explains every decision at one pixel, with its operands, in words.
     ///
     /// # Errors
     /// [`crate::Error::Usage`] if the pixel is outside the picture; else as [`Algorithm::define`].
@@ -170,7 +172,8 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
         Ok(Vec::new())
     }
 
-    /// What the settings come to in a scene: names and values as TOML, for the text of a picture.
+    /// What the settings resolve to in a scene: names and values as TOML, for the text of a
+    /// picture.
     fn settings_in_scene(&self, scene: &Scene, camera: &Camera) -> Vec<(&'static str, String)> {
         let _ = camera;
         self.splats().map_or_else(Vec::new, |splats| splats.settings_in_scene(scene))

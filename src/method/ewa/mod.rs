@@ -1,39 +1,43 @@
-//! EWA surface splatting in two geometry passes and a normalization.
+//! Draw smooth surfaces: EWA surface splatting in two geometry passes and a normalization.
 //!
-//! The passes of \[GBP04, section 3\] (after \[GP03\]) and of the 2+1-pass method of \[ZP06,
-//! section 3.1\]:
+//! The passes are those of \[GBP04, section 3\] (after \[GP03\]) and of the 2+1-pass method of
+//! \[ZP06, section 3.1\]:
 //!
 //! 1. **Projection.** Each surfel becomes a [`Splat`] (see [`mod@crate::splat::project`]).
 //! 2. **Visibility splatting.** Each pixel keeps the greatest nearness of all fragments that are
 //!    inside (q <= k^2), and the surfel it came from. Ties: the lower surfel index.
 //! 3. **Attribute splatting.** Each fragment that is inside and whose depth passes the epsilon-z
 //!    test `t <= t_nearest + epsilon` adds its weight, weight times normal and weight times colour,
-//!    in ascending surfel index. A surfel seen from behind adds its normal reversed, so that
-//!    surfels without a consistent orientation do not cancel (`Decided:`).
+//!    in ascending surfel index. `Decided:` a surfel seen from behind adds its normal reversed, so
+//!    that surfels without a consistent orientation do not cancel.
 //! 4. **Normalization.** Depth from nearness; colour = sum / weight; normal = direction of sum /
 //!    weight. A pixel without weight is empty.
 //! 5. **Deferred shading**, see [`crate::shade`].
 //!
-//! # The margin
+//! # The margin: which pixels every right renderer decides alike
 //!
-//! The plane `margin` says how far the closest decision at a pixel is from being undecided, in units
-//! of the rounding error that the decision's operands may carry. Beyond 1 every renderer that rounds
-//! each operation once, to nearest, and may fuse a product with the sum it goes into, takes the same
-//! decisions at the pixel: the same nearest surfel, the same fragments in the sums. Up to 1 two
-//! right renderers may differ.
+//! The plane `margin` says how far the closest decision at a pixel is from being undecided. Its
+//! unit is the rounding error that the decision's operands may carry.
+//!
+//! - Beyond 1, right renderers take the same decisions at the pixel: the same nearest surfel, the
+//!   same fragments in the sums. This holds for every renderer that rounds each operation once, to
+//!   nearest, and may fuse a product with the sum it goes into.
+//! - Up to 1, two right renderers may differ.
 //!
 //! The surfels are projected in [`Ball`](crate::number::ball)s of the profile
 //! [`Ieee`](crate::number::ball::Ieee), whatever the number of the picture, and so are their
 //! fragments. `distance(a, b)` of two balls is the distance of their midpoints divided by the sum of
 //! their radii: +inf if both radii are 0, 0 if a radius is not finite.
 //!
-//! A surfel is asked unless there certainly is a reason not to draw it. A fragment of it is asked
-//! unless it certainly is outside: its q certainly is beyond k k, or its pixel is not in the
-//! [bounds](mod@crate::splat::bounds) of the splat in balls, which hold whatever may be inside. (The
-//! bounds of the picture's own splats have no part in it. Those in balls are needed: the ball of q
-//! forgets that `ux dx` and `uy dy` cancel, so that along a thin ellipse q alone would never be
-//! certain.) Of the pixel, `id` is the nearest surfel that the picture has; `w_1` and `t_1` are
-//! nearness and depth of its fragment, in balls. With q, w and t of a fragment that is asked:
+//! A surfel takes part unless there certainly is a reason not to draw it. A fragment of it takes
+//! part unless it certainly is outside: its q certainly is beyond k k, or its pixel is not in the
+//! [bounds](mod@crate::splat::bounds) of the splat in balls, which hold every pixel that may be
+//! inside. The bounds of the picture's own splats play no part. The bounds in balls are needed
+//! because the ball of q forgets that `ux dx` and `uy dy` cancel; along a thin ellipse q alone
+//! would never be certain.
+//!
+//! `id` is the nearest surfel that the picture has at the pixel; `w_1` and `t_1` are nearness and
+//! depth of its fragment, in balls. The distances, with q, w and t of a fragment that takes part:
 //!
 //! ```text
 //!   distance(q, k k)               unless certainly t > t_1 + epsilon: a hidden fragment changes
@@ -44,9 +48,9 @@
 //!                                  outline, ray casting) whether it reaches the near plane
 //! ```
 //!
-//! The margin is the least of these, rounded to `f32`; +inf where nothing was asked, or all that was
-//! asked is exact. Of coplanar surfels the nearest is not certain, and the margin is small: the sums
-//! need not differ for that.
+//! The margin is the least of these, rounded to `f32`; +inf where no distance applies, or all
+//! operands are exact. If surfels are coplanar, the nearest is not certain, and the margin is
+//! small; the sums may be equal all the same.
 //!
 //! The definition is over any [`Exact`] number, one fragment at a time; `fast` gives the same bits
 //! for `f32`. [`explain`] lists every decision at one pixel. What each stage leaves:

@@ -1,19 +1,19 @@
-//! Depth peeling: the truth of transparency \[ZP06, sections 2 and 6.2, Fig. 12\].
+//! Draw the truth of transparency by depth peeling \[ZP06, sections 2 and 6.2, Fig. 12\].
 //!
-//! After \[Mam89\] (Mammen: *Transparency and Antialiasing Algorithms Implemented with the Virtual
-//! Pixel Maps Technique*, IEEE CG&A 9(4), 1989) and \[Eve02\] (Everitt: *Interactive
-//! Order-Independent Transparency*, 2002), each layer drawn by the opaque method of [`super::ewa`],
+//! The method follows \[Mam89\] (Mammen: *Transparency and Antialiasing Algorithms Implemented with
+//! the Virtual Pixel Maps Technique*, IEEE CG&A 9(4), 1989) and \[Eve02\] (Everitt: *Interactive
+//! Order-Independent Transparency*, 2002). The opaque method of [`super::ewa`] draws each layer,
 //! one layer after the other from the front:
 //!
 //! 1. **Projection**, as in [`super::ewa`].
-//! 2. **Visibility splatting** of layer j = 1, 2, ...: of the fragments that are inside (q <= k^2)
-//!    and strictly beyond the layer before, `t > limit_(j-1)`, each pixel keeps the greatest
+//! 2. **Visibility splatting** of layer j = 1, 2, ...: take the fragments that are inside (q <=
+//!    k^2) and strictly beyond the layer before, `t > limit_(j-1)`. Each pixel keeps their greatest
 //!    nearness, and the surfel it came from (ties: the lower index); `t_j` is its depth. `limit_0`
-//!    is -inf, so that layer 1 is of all fragments.
-//! 3. **Attribute splatting**: of the same fragments, each with `t <= limit_j` adds its weight, and
-//!    its weight times normal, times colour and times opacity, in ascending surfel index; `limit_j
-//!    = t_j + epsilon`, see [`crate::composite::decide`]. A surfel seen from behind adds its
-//!    normal reversed. In a scene without opacities each is 1.
+//!    is -inf, so that layer 1 takes all fragments.
+//! 3. **Attribute splatting**: each of the same fragments with `t <= limit_j` adds its weight, and
+//!    its weight times normal, times colour and times opacity, in ascending surfel index;
+//!    `limit_j = t_j + epsilon`, see [`crate::composite::decide`]. A surfel seen from behind adds
+//!    its normal reversed. In a scene without opacities each opacity is 1.
 //! 4. **Normalization**: colour and opacity `a_j` = sum / weight, normal = direction of sum /
 //!    weight.
 //! 5. **Deferred shading** ([`crate::shade::phong`]) of the layer at depth `t_j`, to its colour
@@ -27,36 +27,39 @@
 //! in two layers.
 //!
 //! `Decided:` from front to back, where \[ZP06\] collects all layers and blends them from back to
-//! front: no layer has to be kept, and the result is the same up to rounding.
+//! front, because then no layer has to be kept. The result is the same up to rounding.
 //!
 //! So layer 1 is the picture of [`super::ewa`], and a scene of opaque surfels gives that picture
-//! bit for bit. (But where all weights underflow to 0, and A is 0 in both, the colour here is
-//! black.)
+//! bit for bit. There is one exception: where all weights underflow to 0, and A is 0 in both, the
+//! colour here is black.
 //!
-//! `Decided:` the average of colours is not weighted by opacity: within a layer a surfel's opacity
-//! says how dense the surface is there, not how much of its colour counts.
+//! `Decided:` the average of colours is not weighted by opacity, because within a layer a surfel's
+//! opacity says how dense the surface is there, not how much of its colour counts.
 //!
 //! # What even the truth gets wrong
 //!
-//! A layer is what lies within epsilon of depth. A surface steeper than its band allows is cut into
-//! several layers at one pixel and blended with itself: at silhouettes it is too opaque. Two
-//! surfaces closer than epsilon are one layer and are averaged: too transparent. The pixels of a
-//! layer need not be of one surface.
+//! A layer consists of the fragments within epsilon of depth, and these need not belong to one
+//! surface.
 //!
-//! So epsilon must exceed the depth that a surface spans within a footprint on the screen, and the
-//! low-pass filter makes that more than a radius where surfels are smaller than a pixel. Of a torus
-//! of 10 k, 100 k and 1 M surfels whose sight lines nearly all meet two surfaces, at 512 x 512, 99
-//! %, 91 % and 23 % of the covered pixels have two layers with epsilon = 1 median radius; 92 %, 99
-//! % and 92 % with 8. The planes `layer#.count` and `layers` show where it is wrong.
+//! - A surface steeper than its band allows is cut into several layers at one pixel and blended
+//!   with itself. So it is too opaque at silhouettes.
+//! - Two surfaces closer than epsilon are one layer and are averaged: too transparent.
 //!
-//! # It is slow
+//! So epsilon must exceed the depth that a surface spans within a footprint on the screen. The
+//! low-pass filter makes that depth more than a radius where surfels are smaller than a pixel. An
+//! example is a torus of 10 k, 100 k and 1 M surfels whose sight lines nearly all meet two
+//! surfaces, at 512 x 512. With epsilon = 1 median radius, 99 %, 91 % and 23 % of the covered
+//! pixels have two layers; with 8, 92 %, 99 % and 92 %. The planes `layer#.count` and `layers` show
+//! where the result is wrong.
 //!
-//! Every layer is a 2-pass method over all splats: L layers cost 2 L passes, of which each runs
-//! over all fragments, those already peeled included. Fragments grow with the layers, so the time
-//! grows with their square. \[ZP06\] reports less than 2 frames a second for 8 layers, where its
-//! single pass makes 9. It is here to be compared against, not to be fast; but as the truth of every
-//! other picture it is drawn often, and `fast` gives the same bits for `f32`: there a fragment is
-//! computed once, and is gone when its layer is peeled.
+//! # What it costs
+//!
+//! Every layer is a 2-pass method over all splats: L layers cost 2 L passes. Each pass runs over
+//! all fragments, also over those already peeled. Fragments grow with the layers, so the time grows
+//! with their square. \[ZP06\] reports less than 2 frames a second for 8 layers, where its single
+//! pass makes 9. The method is for comparison, not for speed. But other pictures are often compared
+//! with it, so `fast` gives the same bits for `f32` sooner: a fragment is computed once, and is
+//! gone when its layer is peeled.
 //!
 //! What a right implementation may leave of each stage: [`crate::verdict::peeling`].
 

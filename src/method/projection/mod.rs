@@ -1,8 +1,8 @@
-//! Projection to single pixels: the one pass over the scene of image-space reconstruction.
+//! Project a scene to single pixels: the one pass over the scene of image-space reconstruction.
 //!
 //! Source: \[MKC08, sections 3.1, 4.1, 4.2, 5\], \[MOC08, section 3.1\]. Every surfel becomes at
-//! most one pixel, ribbons and tubes become lines one pixel wide, triangles the pixels they cover.
-//! What a pixel keeps is one [`PixelSample`], the nearest; ties: the lower [id](self#ids).
+//! most one pixel, ribbons and tubes become lines one pixel wide, and triangles become the pixels
+//! they cover. A pixel keeps one [`PixelSample`], the nearest; ties: the lower [id](self#ids).
 //!
 //! **Surfels.** With p the centre and n the normal in view space, t = -p.z, m = 1/t and (a, b) =
 //! (p.x m, p.y m) (orthographic: m = 1 and (a, b) = (p.x, p.y)):
@@ -14,10 +14,16 @@
 //!   extent  rho = r (f m)      f = sqrt(fx fy), at most 2^48
 //! ```
 //!
-//! Fates, in this order: `Behind` unless t > near; `Degenerate` if X, Y, t or g is not finite; with
-//! culling `BackFacing` if g >= 0; `Outside` unless 0 <= X < width and 0 <= Y < height; else it is
-//! a sample. Where the back is seen (g > 0) the normal is reversed. `Decided:` an elliptical surfel
-//! counts as the disc of its radius, and opacity is ignored: both papers know discs and opaque
+//! Fates, in this order:
+//!
+//! 1. `Behind` unless t > near;
+//! 2. `Degenerate` if X, Y, t or g is not finite;
+//! 3. with culling, `BackFacing` if g >= 0;
+//! 4. `Outside` unless 0 <= X < width and 0 <= Y < height;
+//! 5. else the surfel is a sample.
+//!
+//! Where the back is seen (g > 0) the normal is reversed. `Decided:` an elliptical surfel counts as
+//! the disc of its radius, and opacity is ignored, because both papers know discs and opaque
 //! surfaces only. A disc whose centre is outside the picture is lost even where it reaches into it:
 //! that is the papers' algorithm, and one of its errors.
 //!
@@ -25,11 +31,12 @@
 //!
 //! # Ids
 //!
-//! Surfels by index, then triangles, ribbons and tubes, each in its order, counted on.
+//! Surfels have their index as id. Triangles, ribbons and tubes follow, each in its order, counted
+//! on.
 //!
 //! # Planes
 //!
-//! With stages: those that [`planes::STAGE`] leaves.
+//! With stages, the picture has the planes that [`planes::STAGE`] leaves.
 
 pub(crate) mod explain;
 pub(crate) mod fast;
@@ -52,11 +59,11 @@ use crate::splat::clip::Clip;
 use crate::splat::{Tally, View};
 use surfels::PointProjector;
 
-/// What a pixel shows; the stencil of \[MKC08, section 4.1\].
+/// The kind of sample that a pixel shows; the stencil of \[MKC08, section 4.1\].
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 #[repr(u8)]
 pub enum SampleKind {
-    /// Nothing.
+    /// An empty pixel.
     #[default]
     Empty = 0,
     /// A surfel.
@@ -70,7 +77,7 @@ pub enum SampleKind {
 }
 
 impl SampleKind {
-    /// All, each at the index that is its value in the stencil.
+    /// All kinds, each at the index that is its value in the stencil.
     pub const ALL: [Self; 5] =
         [Self::Empty, Self::Surface, Self::Ribbon, Self::Tube, Self::Polygon];
 
@@ -80,12 +87,12 @@ impl SampleKind {
     }
 }
 
-/// What one pixel knows of the scene; view space.
+/// The sample of one pixel; view space.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PixelSample<R> {
-    /// What it is.
+    /// The kind of primitive.
     pub kind: SampleKind,
-    /// Which, see the [module](self#ids).
+    /// The id of the primitive, see the [module](self#ids).
     pub id: u32,
     /// Depth t in world units.
     pub depth: R,
@@ -93,9 +100,9 @@ pub struct PixelSample<R> {
     pub radius: R,
     /// Radius rho in pixels.
     pub extent: R,
-    /// Where the centre is in the picture, in pixels. `Decided:` \[MOC08\] stores the coordinates
-    /// of the projection, so they are not rounded; \[MKC08\] has displacement (0, 0), so its centre
-    /// is the pixel's.
+    /// Position of the centre in the picture, in pixels. `Decided:` \[MOC08\] stores the
+    /// coordinates of the projection, so they are not rounded; \[MKC08\] has displacement (0, 0),
+    /// so its centre is the pixel's.
     pub center: Vector2<R>,
     /// Normal, towards the viewer.
     pub normal: Vector3<R>,

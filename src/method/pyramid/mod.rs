@@ -1,4 +1,5 @@
-//! Pull-push interpolation of one pixel a point \[MKC08\].
+//! Fill the gaps between points: draw one pixel a point, and interpolate by pull and push
+//! \[MKC08\].
 //!
 //! 1. **Projection** to single pixels, see [`mod@super::projection`]; each sample becomes a
 //!    [`Cell`] of level 0 with the interval [t, t + r], the radius rho, displacement (0, 0),
@@ -7,24 +8,24 @@
 //! 3. **Push** ([`mod@push`]): from the coarsest level down, cells that are empty or occluded are
 //!    computed again from four coarser ones; every other cell is copied.
 //! 4. **Deferred shading** of level 0, see [`crate::shade`]. The depth of a pixel is its cell's
-//!    `front`; its normal is the cell's, turned to world space and divided by its length, plus 0
-//!    (of length 0: the null vector); that of a tube too, which is lit by its tangent, treated
-//!    likewise.
+//!    `front`. Its normal is the cell's normal, turned to world space and divided by its length,
+//!    plus 0 (of length 0: the null vector). A tube's normal is treated so too. A tube is lit by
+//!    its tangent, treated likewise.
 //!
-//! Levels are those of [`crate::frame::pyramid::sizes`]. A cell's ellipse is that of
+//! [`crate::frame::pyramid::sizes`] gives the levels. A cell's ellipse is defined in
 //! [`crate::splat::ellipse`]; its centre is the centre of the cell plus the displacement.
-//! `Decided:` everywhere a cell is an average of others, those of a tube and those of anything else
-//! are never averaged: neither their light nor their vectors agree (\[MKC08\] 5.2 excludes it too).
-//! The average has the kind of the foremost.
+//! `Decided:` wherever a cell is an average of others, cells of a tube are never averaged with
+//! cells of anything else, because neither their light nor their vectors agree (\[MKC08\] 5.2
+//! excludes it too). The average has the kind of the foremost.
 //!
-//! # What it gets wrong
+//! # What the method gets wrong
 //!
 //! - The projection is without sub-pixel accuracy (section 3.6): a sample lies at the centre of its
 //!   pixel.
-//! - The silhouette of a wide tube zig-zags, by up to 30 % of the radius of the one straight tube that
-//!   was measured (bench `lines`, `docs/image-space.md`: by radius and angle, orthographic). A tube is
-//!   reconstructed of discs parallel to the view, which the paper calls "only appropriate for thin
-//!   projections".
+//! - The silhouette of a wide tube zig-zags, by up to 30 % of the radius of the one straight tube
+//!   that was measured (bench `lines`, `docs/image-space.md`: by radius and angle, orthographic).
+//!   The reason is that a tube is reconstructed from discs parallel to the view, which the paper
+//!   calls "only appropriate for thin projections".
 //!
 //! The passes are the definition, over any [`crate::number::Real`]; [`planes`] has every plane that
 //! they leave.

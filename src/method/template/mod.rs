@@ -1,4 +1,4 @@
-//! Image reconstruction with templates of k x k pixels \[MOC08\].
+//! Fill the gaps between points with templates of k x k pixels: image reconstruction \[MOC08\].
 //!
 //! 1. **Projection** to single pixels, see [`mod@super::projection`].
 //! 2. **Propagation** ([`mod@propagation`]): each centre moves up the levels of a pyramid until k x
@@ -10,10 +10,11 @@
 //!    of the view matrix, (m0 x + m1 y) + m2 z) before it is divided by its length.
 //! 5. **Deferred shading**, see [`crate::shade`].
 //!
-//! The method draws surfels only, and refuses a scene with triangles or lines, which \[MOC08\] does
-//! not have. The template is k = 3, 5 or 7 cells wide, h = (k - 1) / 2. Levels are those of
-//! [`crate::frame::pyramid::sizes`]. The **top** level is the first whose sides are both at most h +
-//! 1: from any of its cells every other is found, so that (section 3.2) coarser ones are not needed.
+//! The method draws surfels only. It refuses a scene with triangles or lines, which \[MOC08\] does
+//! not have. The template is k = 3, 5 or 7 cells wide, h = (k - 1) / 2.
+//! [`crate::frame::pyramid::sizes`] gives the levels. The **top** level is the first whose sides
+//! are both at most h + 1. From any of its cells every other is found, so that (section 3.2)
+//! coarser levels are not needed.
 //!
 //! The passes are the definition, over any [`crate::number::Real`]; [`planes`] has every plane that
 //! they leave.
