@@ -18,8 +18,8 @@ fn main() -> Result<()> {
 
     // `render` is faster, and leaves only the planes of the picture. `define` keeps every pass too.
     let picture = session.define::<f32>(&ready.camera, true)?;
-    let names: Vec<&str> = picture.frame.planes.iter().map(|plane| plane.name.as_str()).collect();
-    println!("planes: {}", names.join(", "));
+    let planes: Vec<_> = picture.frame.planes.iter().map(|plane| plane.name.as_str()).collect();
+    println!("planes: {planes:?}; the picture's colour has the empty name");
 
     let (depth, id) = (picture.frame.scalar("Z")?, picture.frame.index("id")?);
     let covered: Vec<f32> = depth.values().iter().copied().filter(|t| t.is_finite()).collect();

