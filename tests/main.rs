@@ -5,6 +5,7 @@
 //! - [`verify`]: verdicts on a client that is no part of the crate.
 //! - [`settings`], [`docs`], [`models`]: the rows of settings, the pages, real scans.
 //! - [`rooms`]: no folder of `src/` imports a higher one.
+//! - [`examples`]: the programs in `examples/` are short, and a page names each.
 //! - [`deferred`], `blue`: where two methods fail, on the scenes of the benches.
 //! - `cli`, `browser`: the program, and its pages in a real browser.
 //!
@@ -12,6 +13,7 @@
 
 mod deferred;
 mod docs;
+mod examples;
 mod models;
 mod oracle;
 mod rooms;

@@ -45,6 +45,14 @@ impl<R: Real> Blend<R> {
     /// Blends the next nearer layer, from back to front: `alpha c + (1 - alpha) below`, for the
     /// colour and, with c = 1, for the opacity \[ZP06, section 3.3\].
     ///
+    /// ```
+    /// use splatref::composite::over::Blend;
+    ///
+    /// let wall = Blend::<f32>::CLEAR.over(1.0, [0.0, 0.0, 1.0]);
+    /// let behind_glass = wall.over(0.25, [1.0, 0.0, 0.0]);
+    /// assert_eq!((behind_glass.color, behind_glass.alpha), ([0.25, 0.0, 0.75], 1.0));
+    /// ```
+    ///
     /// Laws: alpha = 1 leaves only the layer, and alpha = 0 leaves what was there. The opacity of
     /// layers is 1 - the product of their 1 - alpha, up to rounding.
     #[inline(always)]

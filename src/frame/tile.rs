@@ -11,6 +11,16 @@ use std::mem;
 use std::sync::{Mutex, PoisonError};
 
 /// Threads and tile size: how a picture is computed, never what.
+///
+/// ```
+/// use splatref::frame::Exec;
+///
+/// let fast = Exec::new(0, 32)?; // a thread for each core
+/// let slow = Exec::sequential(); // no threads at all: the same bits
+/// let squares = |exec: &Exec| exec.ordered((0..100).collect(), |i: u32| i * i);
+/// assert_eq!(squares(&fast), squares(&slow), "results come in the order of the jobs");
+/// # Ok::<(), splatref::Error>(())
+/// ```
 #[derive(Debug)]
 pub struct Exec {
     tile: u32,

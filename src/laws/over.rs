@@ -45,6 +45,17 @@ fn equal<R: Exact>(a: &Blend<R>, b: &Blend<R>) -> bool {
 ///
 /// Both hold up to 4 (m + 1) half ulp of the greatest colour, at least 1.
 ///
+/// ```
+/// use splatref::composite::over::Blend;
+/// use splatref::laws::over::closed_form;
+///
+/// let layers = [(0.5_f32, [1.0, 0.0, 0.0]), (0.25, [0.0, 1.0, 0.0])]; // from back to front
+/// closed_form(&|below: Blend<f32>, alpha, color| below.over(alpha, color), &layers)?;
+/// let wrong = |below: Blend<f32>, alpha, color| Blend { color, ..below.over(alpha, color) };
+/// assert!(closed_form(&wrong, &layers).is_err(), "the layers below are lost");
+/// # Ok::<(), splatref::laws::Counterexample>(())
+/// ```
+///
 /// # Errors
 /// The first counterexample.
 pub fn closed_form<R: Exact>(

@@ -19,6 +19,19 @@ use crate::splat::SplatSettings;
 macro_rules! methods {
     ($($(#[$doc:meta])* $method:ident($settings:ty),)*) => {
         /// A method and what it computes.
+        ///
+        /// ```
+        /// use splatref::method::{Method, ewa};
+        ///
+        /// for method in Method::all() {
+        ///     println!("{}: {}", method.name(), method.summary());
+        /// }
+        /// // Settings that you do not name have their defaults.
+        /// let method = Method::from(ewa::Settings { cull: false, ..Default::default() });
+        /// method.check()?;
+        /// assert_ne!(method, Method::by_name("ewa")?);
+        /// # Ok::<(), splatref::Error>(())
+        /// ```
         #[derive(Clone, Copy, Debug, PartialEq)]
         pub enum Method {
             $($(#[$doc])* $method($settings),)*

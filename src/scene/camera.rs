@@ -75,6 +75,17 @@ pub struct Pose {
 }
 
 /// A camera. Its numbers are `f32`, so that every number type gets the same problem.
+///
+/// ```
+/// use glam::DVec3;
+/// use splatref::scene::{Camera, Lens, Pose};
+///
+/// let pose = Pose { eye: DVec3::new(0.0, 0.0, 4.0), target: DVec3::ZERO, up: DVec3::Y };
+/// let camera = Camera::new(640, 480, pose, Lens::FieldOfView(40.0))?;
+/// assert_eq!((camera.cx, camera.cy), (320.0, 240.0), "the target is in the middle");
+/// assert_eq!(camera.eye(), pose.eye);
+/// # Ok::<(), splatref::Error>(())
+/// ```
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Camera {
     /// Width of the picture in pixels.

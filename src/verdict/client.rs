@@ -78,6 +78,18 @@ pub(crate) enum Band {
 ///
 /// Depth is t in world units, and +inf where a pixel is empty, whatever the client stores. In an
 /// empty pixel the id is [`NO_ID`](crate::frame::NO_ID). Rows run from the top.
+///
+/// ```
+/// use splatref::frame::{Frame, Plane, Samples};
+/// use splatref::verdict::client::{Client, Rounding, Storage};
+///
+/// let depth = Plane::filled(64, 48, f32::INFINITY); // what your GPU left, here nothing
+/// let frame = Frame::<f32>::new(64, 48).with("visibility.Z", Samples::Scalar(depth))?;
+/// let mut client = Client::from(&frame).stored("visibility.Z", Storage::Half);
+/// client.rounding = Rounding::Ieee; // the default is `Gpu`
+/// # assert_eq!(client.storage("visibility.Z"), Storage::Half);
+/// # Ok::<(), splatref::Error>(())
+/// ```
 #[derive(Clone, Debug)]
 pub struct Client {
     pub(super) frame: Frame<f64>,
