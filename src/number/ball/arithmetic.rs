@@ -107,8 +107,7 @@ impl<P: Profile> Div for Ball<P> {
     }
 }
 
-/// A call, because a division takes longer than the call does.
-#[inline(never)]
+#[inline(always)]
 fn quotient<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
     let (m, n, r, s) = (a.middle, b.middle, a.radius, b.radius);
     let middle = m / n;

@@ -9,7 +9,7 @@ fn around<P: Profile>(middle: f64, [low, high]: [f64; 2]) -> Ball<P> {
 }
 
 /// `x`, or `low` where `x < low`.
-#[inline(never)]
+#[inline(always)]
 pub(super) fn at_least<P: Profile>(x: Ball<P>, low: Ball<P>) -> Ball<P> {
     if x.low() >= low.high() {
         return x;
@@ -22,7 +22,7 @@ pub(super) fn at_least<P: Profile>(x: Ball<P>, low: Ball<P>) -> Ball<P> {
 }
 
 /// `x`, `low` where `x < low`, or `high` where the result is greater than `high`.
-#[inline(never)]
+#[inline(always)]
 pub(super) fn clamped<P: Profile>(x: Ball<P>, low: Ball<P>, high: Ball<P>) -> Ball<P> {
     if (x.low() >= low.high()) & (x.high() <= high.low()) {
         return x;
@@ -39,7 +39,6 @@ pub(super) fn clamped<P: Profile>(x: Ball<P>, low: Ball<P>, high: Ball<P>) -> Ba
 }
 
 /// The hull of two values, about the one that the midpoints choose.
-#[inline(never)]
 pub(super) fn hull<P: Profile>(middle: bool, yes: Ball<P>, no: Ball<P>) -> Ball<P> {
     let (chosen, other) = if middle { (yes, no) } else { (no, yes) };
     // About equal midpoints the larger radius holds both, without any slack.

@@ -285,7 +285,7 @@ impl<P: Profile> Real for Ball<P> {
         self.middle
     }
 
-    #[inline]
+    #[inline(always)]
     fn to_pixel(self) -> PixelRange {
         // An unbounded ball gets the whole range that a pixel can have. A cast saturates.
         let high = if self.radius.is_nan() { f64::INFINITY } else { self.high() };
@@ -317,7 +317,7 @@ impl<P: Profile> Real for Ball<P> {
         Self::new(self.middle.abs(), self.radius)
     }
 
-    #[inline(never)]
+    #[inline(always)]
     fn exp(self) -> Self {
         let middle = Real::exp(self.middle);
         if is_exact::<P>(middle, self.radius) {
@@ -329,7 +329,7 @@ impl<P: Profile> Real for Ball<P> {
         Self::rounded(middle, spread, units, P::TINY)
     }
 
-    #[inline(never)]
+    #[inline]
     fn pow(self, exponent: Self) -> Self {
         let middle = self.middle.pow(exponent.middle);
         if is_exact::<P>(middle, self.radius + exponent.radius) {
@@ -402,8 +402,8 @@ impl<P: Profile> Real for Ball<P> {
     }
 }
 
-/// The square root: a call, because a root takes longer than the call does.
-#[inline(never)]
+/// The square root.
+#[inline(always)]
 fn root<P: Profile>(x: Ball<P>) -> Ball<P> {
     let middle = x.middle.sqrt();
     if is_exact::<P>(middle, x.radius) | x.is_zero() {
@@ -420,7 +420,7 @@ fn root<P: Profile>(x: Ball<P>) -> Ball<P> {
 }
 
 /// The square root of a sum of squares, which may be 0.
-#[inline(never)]
+#[inline(always)]
 fn root_of_squares<P: Profile>(x: Ball<P>) -> Ball<P> {
     // NaN fails these comparisons.
     if x.low() < 0.0 && x.high().is_finite() {
