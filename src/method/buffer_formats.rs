@@ -1,29 +1,35 @@
-//! Storage formats: the picture as it becomes where passes leave their numbers in buffers of few digits.
+//! Emulate the buffer formats of older GPUs: draw a picture whose passes store their numbers in few
+//! digits.
 //!
-//! The GPUs of the five papers blended into 8-bit or half-float buffers and tested depths of 16 or 24 bits:
-//! \[ZP06, 5.2\] counts on "current 8-bit color and alpha resolutions", \[MOC08, 4\] has "all buffers and textures"
-//! in 16-bit floats. [`super::Session::emulate`] draws the definition of a method in `f32` and rounds what each
-//! [stage](super::Stage) leaves, before the next one reads it:
+//! The GPUs of the five papers blended into 8-bit or half-float buffers and tested depths of 16 or
+//! 24 bits. \[ZP06, 5.2\] counts on "current 8-bit color and alpha resolutions", and \[MOC08, 4\]
+//! has "all buffers and textures" in 16-bit floats. [`super::Session::emulate`] draws the
+//! definition of a method in `f32`. It rounds the planes that each [stage](super::Stage) leaves
+//! before the next stage reads them:
 //!
-//! - [`Buffers`] rounds planes of colours, vectors and numbers but depths, indices and counts.
+//! - [`Buffers`] rounds planes of colours, vectors and numbers. It does not round depths, indices
+//!   and counts.
 //! - [`DepthBuffer`] rounds planes of depths, see [`super::Holds::Depth`].
-//! - A stage that works level by level runs once for each, so that a level is rounded before the next is made
-//!   of it.
-//! - Where fragments are *tested* against a depth buffer, what the buffer holds of them is compared: of fragments whose
-//!   depths round to one the first stays. Those are the tests that a nearest fragment wins (visibility splatting, the
-//!   depth-images of [`mod@super::single_pass`], the pixels of [`mod@super::projection`], the discs of
-//!   [`mod@super::blue`], the indices of [`mod@super::deferred`]), and not those by epsilon, which read a depth in `f32`
-//!   from a buffer. Under the Voronoi depth test the buffer holds z / n of \[ZP06, eq. 10\] and no depth.
-//! - Where fragments are *blended* into a buffer, the buffer is rounded after every one: the sums of
-//!   attribute splatting ([`mod@super::ewa`], [`mod@super::deferred`], and each layer of
-//!   [`mod@super::peeling`]) after every addition, the layers of [`mod@super::transparent`] and
-//!   [`mod@super::transparent_hq`] after every one that is laid over those before, and those of [`mod@super::peeling`]
-//!   after every one that is laid under them.
-//! - Diagnostics that no buffer holds (`margin`, `voronoi`) are left as they are.
+//! - A stage that works level by level runs once for each level. So a level is rounded before the
+//!   next level is made from it.
+//! - Where fragments are *tested* against a depth buffer, the test compares the values that the
+//!   buffer holds. If the depths of several fragments round to one value, the first fragment stays.
+//!   This applies to the tests that a nearest fragment wins: visibility splatting, the depth-images
+//!   of [`mod@super::single_pass`], the pixels of [`mod@super::projection`], the discs of
+//!   [`mod@super::blue`] and the indices of [`mod@super::deferred`]. It does not apply to the tests
+//!   by epsilon, because they read a depth in `f32` from a buffer. Under the Voronoi depth test the
+//!   buffer holds z / n of \[ZP06, eq. 10\] and no depth.
+//! - Where fragments are *blended* into a buffer, the buffer is rounded after every fragment. The
+//!   sums of attribute splatting ([`mod@super::ewa`], [`mod@super::deferred`], and each layer of
+//!   [`mod@super::peeling`]) are rounded after every addition. The layers of
+//!   [`mod@super::transparent`] and [`mod@super::transparent_hq`] are rounded after every layer
+//!   that is laid over the layers before. The layers of [`mod@super::peeling`] are rounded after
+//!   every layer that is laid under them.
+//! - Diagnostics that no buffer holds (`margin`, `voronoi`) are not rounded.
 //!
 //! # Rounding
 //!
-//! In f64, which holds every `f32`:
+//! The formulas are computed in f64, which holds every `f32`:
 //!
 //! ```text
 //!   f16      the nearest binary16, ties to the even one, denormals too; beyond 65504: +-65504
@@ -34,22 +40,26 @@
 //!            t = (n f) / (f - y (f - n))            under an orthographic camera n + y (f - n)
 //! ```
 //!
-//! each rounded to `f32` once, -0 as +0; +inf, the depth of an empty pixel, stays. n and f are the depths
-//! between which the scene's [bounding sphere](crate::scene::Scene::bounding_sphere) lies: with t its centre's and r
-//! its radius, n = t - r, at least the near plane, f = t + r, at least 2 n.
+//! Each result is rounded to `f32` once, and -0 becomes +0. The depth of an empty pixel, +inf,
+//! stays. n and f are the depths between which the scene's [bounding
+//! sphere](crate::scene::Scene::bounding_sphere) lies. With t the depth of the sphere's centre and
+//! r its radius, n = t - r, at least the near plane, and f = t + r, at least 2 n.
 //!
 //! # Decided
 //!
-//! - Fragments come in `f32` and only what is stored is rounded: the blending units of that time
-//!   computed in more digits than they stored.
-//! - What overflows a half float is the greatest one and not +inf: no plane may hold what follows from infinities.
-//! - `unorm8` of numbers with a unit (pixels, bins, world units) is `f32`: no 8 bits could hold them.
-//! - The shift by epsilon is added in `f32` to what the depth buffer holds.
-//! - The bins of \[ZP06, eq. 6\] that [`mod@super::transparent`] tests are whole numbers of at most 16 bits, and are told apart
-//!   in every format.
-//! - A layer of `peeling` begins at the depth that the buffer holds, and the next one beyond that depth and epsilon. Where a
-//!   step of the buffer is more than epsilon a fragment may be in no layer or in several.
-//! - What `deferred` carries to the next frame is what a frame in `f32` saw.
+//! - Fragments come in `f32`, and only the stored values are rounded, because the blending units of
+//!   that time computed in more digits than they stored.
+//! - A value that overflows a half float becomes the greatest half float and not +inf, because no
+//!   plane may hold the results of infinities.
+//! - Numbers with a unit (pixels, bins, world units) stay `f32` under `unorm8`, because no 8 bits
+//!   could hold them.
+//! - The shift by epsilon is added in `f32` to the depth that the depth buffer holds.
+//! - The bins of \[ZP06, eq. 6\] that [`mod@super::transparent`] tests are whole numbers of at most
+//!   16 bits. They are told apart in every format.
+//! - A layer of `peeling` begins at the depth that the buffer holds, and the next layer begins
+//!   beyond that depth and epsilon. Where a step of the buffer is more than epsilon, a fragment may
+//!   be in no layer or in several.
+//! - `deferred` carries to the next frame what a frame in `f32` saw.
 
 use super::stage::{Holds, PlaneRow, Stage};
 use crate::composite::bins::DepthBins;
@@ -60,10 +70,10 @@ use crate::number::{Exact, Real};
 use crate::scene::{Camera, Projection, Scene};
 use crate::setting::Words;
 
-/// How colours, weights, normals and their sums are stored.
+/// The buffer format of colours, weights, normals and their sums.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Buffers {
-    /// `f32`: as they are.
+    /// `f32`: values are stored unchanged.
     #[default]
     F32,
     /// Half floats.
@@ -72,10 +82,10 @@ pub enum Buffers {
     Unorm8,
 }
 
-/// How depths are stored.
+/// The buffer format of depths.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum DepthBuffer {
-    /// `f32`: as they are.
+    /// `f32`: depths are stored unchanged.
     #[default]
     F32,
     /// Half floats of the depth t itself.
@@ -86,12 +96,12 @@ pub enum DepthBuffer {
     Unorm16,
 }
 
-/// Both.
+/// The formats of all buffers of a renderer.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Formats {
-    /// Of colours, weights, normals and their sums.
+    /// The format of colours, weights, normals and their sums.
     pub buffers: Buffers,
-    /// Of depths.
+    /// The format of depths.
     pub depth: DepthBuffer,
 }
 
@@ -110,19 +120,20 @@ impl Words for DepthBuffer {
 }
 
 impl Formats {
-    /// All is stored as it is.
+    /// Formats that store every value unchanged.
     pub const WHOLE: Self = Self { buffers: Buffers::F32, depth: DepthBuffer::F32 };
 
-    /// Whether all is stored as it is.
+    /// Whether these formats store every value unchanged.
     #[must_use]
     pub fn keep_all(self) -> bool {
         self == Self::default()
     }
 
-    /// Rounds what a stage leaves.
+    /// Rounds the planes that a stage leaves.
     pub(crate) fn store(self, stage: &Stage, left: &mut Frame<f32>, range: &DepthRange) {
         for NamedPlane { name, samples } in &mut left.planes {
             let Some(PlaneRow { holds, unit, .. }) = stage.row(name) else { continue };
+            // No 8 bits could hold a number with a unit.
             let keeps = !unit.is_empty() && self.buffers == Buffers::Unorm8;
             let buffers = if keeps { Buffers::F32 } else { self.buffers };
             match samples {
@@ -144,7 +155,7 @@ impl Formats {
     }
 }
 
-/// Each value as it is stored.
+/// Replaces each value by its stored value, with -0 as +0.
 fn store_each(values: &mut [f32], store: impl Fn(f64) -> f64) {
     for value in values {
         *value = store(f64::from(*value)) as f32 + 0.0;
@@ -152,7 +163,7 @@ fn store_each(values: &mut [f32], store: impl Fn(f64) -> f64) {
 }
 
 impl Buffers {
-    /// A number of [0, 1], as far as the format has such.
+    /// Rounds a number; `unorm8` holds numbers in [0, 1].
     fn number(self, v: f64) -> f64 {
         match self {
             Self::F32 => v,
@@ -161,7 +172,7 @@ impl Buffers {
         }
     }
 
-    /// A component of a vector.
+    /// Rounds a component of a vector; `unorm8` holds components in [-1, 1].
     fn signed(self, v: f64) -> f64 {
         match self {
             Self::F32 => v,
@@ -171,19 +182,19 @@ impl Buffers {
         }
     }
 
-    /// A sum of numbers that fragments are added to.
+    /// Rounds a sum of numbers that fragments are added to.
     #[inline]
     pub(crate) fn sum<R: Exact>(self, v: R) -> R {
         if self == Self::F32 { v } else { R::from_f32(self.number(v.to_f64()) as f32 + 0.0) }
     }
 
-    /// A sum of colours.
+    /// Rounds a sum of colours.
     #[inline]
     pub(crate) fn color<R: Exact>(self, [x, y, z]: [R; 3]) -> [R; 3] {
         [self.sum(x), self.sum(y), self.sum(z)]
     }
 
-    /// A sum of vectors.
+    /// Rounds a sum of vectors.
     #[inline]
     pub(crate) fn vector<R: Exact>(self, v: [R; 3]) -> [R; 3] {
         if self == Self::F32 {
@@ -193,20 +204,20 @@ impl Buffers {
         }
     }
 
-    /// Layers that were blended from the front.
+    /// Rounds layers that were blended from front to back.
     #[inline]
     pub(crate) fn under<R: Exact>(self, Under { color, alpha, through }: Under<R>) -> Under<R> {
         Under { color: self.color(color), alpha: self.sum(alpha), through: self.sum(through) }
     }
 
-    /// Layers that were blended.
+    /// Rounds blended layers.
     #[inline]
     pub(crate) fn blend<R: Exact>(self, Blend { color, alpha }: Blend<R>) -> Blend<R> {
         Blend { color: self.color(color), alpha: self.sum(alpha) }
     }
 }
 
-/// The depths between which a depth buffer tells apart.
+/// The range of depths that a depth buffer of whole numbers can tell apart.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DepthRange {
     near: f64,
@@ -226,7 +237,8 @@ impl DepthRange {
         Self { near, far, perspective }
     }
 
-    /// What a buffer holds of a depth, as a number that grows with the depth: z in [0, 1] of whole numbers.
+    /// The value that a buffer holds for a depth. It grows with the depth; buffers of whole numbers
+    /// hold z in [0, 1].
     fn held(&self, t: f64, format: DepthBuffer) -> f64 {
         let Self { near, far, perspective } = *self;
         if !format.is_whole() || !t.is_finite() {
@@ -236,7 +248,7 @@ impl DepthRange {
         format.share(if perspective { z * (far / t) } else { z })
     }
 
-    /// The depth that a buffer gives back.
+    /// The depth that you read back from a buffer.
     fn store(&self, t: f64, format: DepthBuffer) -> f64 {
         let y = self.held(t, format);
         let Self { near, far, perspective } = *self;
@@ -251,12 +263,13 @@ impl DepthRange {
 }
 
 impl DepthBuffer {
-    /// Whether it holds whole numbers.
+    /// Whether the format stores whole numbers.
     fn is_whole(self) -> bool {
         matches!(self, Self::Unorm24 | Self::Unorm16)
     }
 
-    /// What it holds of a number, which is one of [0, 1] if it holds whole numbers; +inf stays.
+    /// The value that the format holds for `z`. Formats of whole numbers hold values in [0, 1];
+    /// +inf stays.
     fn share(self, z: f64) -> f64 {
         let count = match self {
             Self::F32 => return z,
@@ -268,7 +281,7 @@ impl DepthBuffer {
     }
 }
 
-/// What a depth test compares of a fragment: what the buffer holds.
+/// Compares fragments in a depth test by the values that the depth buffer holds.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct DepthKey {
     format: DepthBuffer,
@@ -276,24 +289,24 @@ pub(crate) struct DepthKey {
 }
 
 impl DepthKey {
-    /// All is compared as it is.
+    /// A key that compares unchanged values.
     pub(crate) const WHOLE: Self = Self {
         format: DepthBuffer::F32,
         range: DepthRange { near: 0.0, far: 1.0, perspective: false },
     };
 
-    /// Of a buffer.
+    /// The key of a depth buffer.
     pub(crate) fn new(format: DepthBuffer, range: DepthRange) -> Self {
         Self { format, range }
     }
 
-    /// Of a depth.
+    /// The value that the depth test compares for a depth.
     #[inline]
     pub(crate) fn depth<R: Exact>(&self, t: R) -> f64 {
         self.range.held(t.to_f64(), self.format)
     }
 
-    /// The depth that the buffer gives back.
+    /// The depth that you read back from the buffer.
     #[inline]
     pub(crate) fn stored<R: Exact>(&self, t: R) -> R {
         if self.format == DepthBuffer::F32 {
@@ -302,13 +315,13 @@ impl DepthKey {
         R::from_f32(self.range.store(t.to_f64(), self.format) as f32)
     }
 
-    /// Of a nearness, which belongs to the depth `t`.
+    /// The value that the depth test compares for a nearness, which belongs to the depth `t`.
     #[inline]
     pub(crate) fn nearness<R: Exact>(&self, w: R, t: impl FnOnce() -> R) -> f64 {
         if self.format == DepthBuffer::F32 { w.to_f64() } else { -self.depth(t()) }
     }
 
-    /// Of a Voronoi-enhanced depth in bins.
+    /// The value that the depth test compares for a Voronoi-enhanced depth in bins.
     #[inline]
     pub(crate) fn voronoi<R: Exact>(&self, z: R, bins: &DepthBins<R>) -> f64 {
         if self.format == DepthBuffer::F32 {
@@ -319,23 +332,24 @@ impl DepthKey {
     }
 }
 
-/// The nearest of so many equal steps from 0 to 1, of a number of at least 0.
+/// Rounds `v`, at least 0, to the nearest of `count` equal steps from 0 to 1.
 fn steps(v: f64, count: f64) -> f64 {
     let v = if v < 1.0 { v } else { 1.0 };
     (count * v + 0.5).floor() / count
 }
 
-/// The nearest half float, ties to the even one; the greatest of its sign beyond all.
+/// The nearest half float, ties to the even one. Beyond the greatest half float, the greatest of
+/// the same sign.
 fn half(v: f64) -> f64 {
     const MOST: f64 = 65_504.0;
-    // Adding and taking away leaves a whole number: the nearest, ties to the even one.
+    // Adding and subtracting WHOLE leaves the nearest whole number, ties to the even one.
     const WHOLE: f64 = 6_755_399_441_055_744.0;
     if !v.is_finite() {
         return v;
     }
     let exponent = (v.to_bits() >> 52 & 0x7ff) as i64 - 1023;
     let step = if exponent < -14 { -24 } else { exponent - 10 };
-    // 2^step, by its bits.
+    // 2^step, made from its bits.
     let step = f64::from_bits(((step + 1023) as u64) << 52);
     let nearest = ((v / step + WHOLE) - WHOLE) * step;
     nearest.clamped(-MOST, MOST)

@@ -1,4 +1,4 @@
-//! Somebody's planes, as the stages of every method read them.
+//! Read the planes that a client gives to a stage.
 
 use super::algorithm::Job;
 use super::projection::{PixelSample, SampleKind};
@@ -9,9 +9,10 @@ use crate::error::{Error, Result};
 use crate::frame::{Frame, NO_ID, Plane, Samples};
 use crate::number::{Exact, Vector3};
 
-/// Somebody's planes, each found by its row, its type and its size.
+/// The planes of a client. Each plane is checked for its name, type and size.
 ///
-/// Their values are taken as they are: a stage computes with what a client has stored.
+/// Their values are not checked or changed: a stage computes with the values that the client
+/// stored.
 #[derive(Clone, Copy, Debug)]
 pub struct InputPlanes<'a, R> {
     frame: &'a Frame<R>,
@@ -19,10 +20,10 @@ pub struct InputPlanes<'a, R> {
 }
 
 impl<'a, R: Exact> InputPlanes<'a, R> {
-    /// The planes of a frame.
+    /// Reads the planes of a frame.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the frame is not of the size of the job's picture.
+    /// [`Error::Invalid`] if the frame does not have the size of the job's picture.
     pub(crate) fn new(frame: &'a Frame<R>, job: &'a Job<'a>) -> Result<Self> {
         let (found, picture) = ([frame.width, frame.height], job.camera.size());
         if found == picture {
@@ -36,15 +37,15 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
         )))
     }
 
-    /// Whether there is a plane of a row; `number` stands for the row's `#`.
+    /// Whether the client gave the plane of a row; `number` stands for the row's `#`.
     pub(crate) fn has(&self, row: &PlaneRow, number: usize) -> bool {
         self.frame.plane(&row.numbered(number)).is_some()
     }
 
-    /// One number a pixel.
+    /// A plane of one number a pixel.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the plane is missing, or of another type or size.
+    /// [`Error::Invalid`] if the plane is missing, or has another type or size.
     pub(crate) fn scalar(&self, row: &PlaneRow, number: usize) -> Result<&'a Plane<R>> {
         match self.samples(row, number)? {
             Samples::Scalar(plane) => self.sized(row, number, plane),
@@ -52,7 +53,7 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
         }
     }
 
-    /// Colours or vectors, as the row says.
+    /// A plane of colours or vectors, as the row says.
     ///
     /// # Errors
     /// As [`InputPlanes::scalar`].
@@ -65,7 +66,7 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
         }
     }
 
-    /// Small counts.
+    /// A plane of small counts.
     ///
     /// # Errors
     /// As [`InputPlanes::scalar`].
@@ -76,10 +77,10 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
         }
     }
 
-    /// Ids: surfels by index, then the primitives.
+    /// A plane of ids: surfels by index, then the primitives.
     ///
     /// # Errors
-    /// As [`InputPlanes::scalar`], and if the scene has nothing of an id.
+    /// As [`InputPlanes::scalar`], and if nothing in the scene has an id of the plane.
     pub(crate) fn ids(&self, row: &PlaneRow, number: usize) -> Result<&'a Plane<u32>> {
         let Samples::Index(plane) = self.samples(row, number)? else {
             return Err(of_another_type(row, number));
@@ -88,7 +89,8 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
         let count = scene.surfels.len() + scene.primitives.len();
         let objects = scene.objects.as_ref().filter(|_| count == 0);
         let known = |id: u32| match objects {
-            // What 32 bits of a wider id say alone is for those to judge that have the others.
+            // The lowest 32 bits of a wider id do not say enough. The caller that also has the high
+            // bits checks the id.
             Some(objects) => objects.ids().is_wide() || objects.ids().find(id.into()).is_some(),
             None => (id as usize) < count,
         };
@@ -103,12 +105,12 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
         self.sized(row, number, plane)
     }
 
-    /// Puts the values of planes into records, if the scene has such planes. Records that are fewer
-    /// than the pixels lie in the upper left corner.
+    /// Copies the values of planes into records, as far as the scene has such planes. If there are
+    /// fewer records than pixels, the records lie in the upper left corner.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if a plane is missing, or of another type or size, or if it has an id or a
-    /// kind that there is not.
+    /// [`Error::Invalid`] if a plane is missing, or has another type or size, or has an id or a
+    /// kind that does not exist.
     pub(crate) fn records<T>(
         &self,
         fields: &[Field<T, R>],
@@ -140,7 +142,7 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
         Ok(records)
     }
 
-    /// The samples of the projection.
+    /// The samples that the stage of projection left.
     ///
     /// # Errors
     /// As [`InputPlanes::records`].
@@ -149,7 +151,7 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
         self.records(&PixelSample::PLANES, 0, Plane::filled(width, height, PixelSample::empty()))
     }
 
-    /// What each pixel shows.
+    /// What each pixel shows, from a plane of counts.
     fn kinds(&self, row: &PlaneRow, number: usize) -> Result<Plane<SampleKind>> {
         let counts = self.count(row, number)?;
         let last = SampleKind::ALL.len() - 1;
@@ -162,7 +164,8 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
         Ok(counts.map(|&value| SampleKind::ALL[usize::from(value)]))
     }
 
-    /// The same of one record for every pixel, as passes hold them; without planes a record is `empty`.
+    /// One record for every pixel, tile by tile as passes hold them. A record without planes is
+    /// `empty`.
     ///
     /// # Errors
     /// As [`InputPlanes::records`].
@@ -177,7 +180,7 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
         Ok(self.tiled(|x, y| *records.at(x, y)))
     }
 
-    /// A record for each pixel, made of the values of planes there.
+    /// Makes a record for each pixel from the values of planes at that pixel.
     pub(crate) fn tiled<T: Send>(&self, record: impl Fn(u32, u32) -> T + Sync + Send) -> Tiled<T> {
         Tiled::new(self.job, |_, rect| pixels(rect).map(|(x, y)| record(x, y)).collect())
     }
@@ -204,7 +207,7 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
     }
 }
 
-/// Puts each value into the record of its pixel, as far as there are records.
+/// Copies each value into the record of its pixel, as far as there are records.
 fn put<T, V: Copy>(records: &mut Plane<T>, values: &Plane<V>, set: impl Fn(&mut T, V)) {
     let rows = values.values().chunks(values.width().max(1) as usize);
     for (records, values) in records.rows_mut().zip(rows) {

@@ -1,4 +1,4 @@
-//! What every method leaves: named planes, counts and times.
+//! The result that every method leaves: named planes, counts and times.
 
 use super::algorithm::Job;
 use super::surface::{ALPHA, DEPTH, ID, NORMAL, SHADED, WEIGHT};
@@ -11,22 +11,22 @@ use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
 use std::time::{Duration, Instant};
 
-/// A picture and how it came about.
+/// A picture, with the counts and times of its drawing.
 #[derive(Clone, Debug)]
 pub struct Picture<R> {
     /// The planes: the shaded colour (`R G B`), `A` (1 where a surfel or the environment is seen,
-    /// else 0), `Z`, `normal` (world space; not of an unlit scene), `weight`, `id`; before them
-    /// those of the stages, if asked for.
+    /// else 0), `Z`, `normal` (world space; not in an unlit scene), `weight`, `id`. If you asked
+    /// for the planes of the stages, they come first.
     pub frame: Frame<R>,
-    /// What became of the surfels.
+    /// How many surfels were drawn or dropped, and why.
     pub tally: Tally,
     /// The wall time of each stage, in order.
     pub timings: Laps,
-    /// What the frame saw, if its method carries that to the next.
+    /// What the frame saw, if its method carries that to the next frame.
     pub seen: Option<Seen>,
 }
 
-/// Deferred shading, and the planes of the picture.
+/// Shades a framebuffer, and makes the planes of the picture.
 pub(crate) fn finish<R: Exact>(
     target: Framebuffer<R>,
     mut planes: Vec<NamedPlane<R>>,
@@ -49,7 +49,8 @@ pub(crate) fn finish<R: Exact>(
     }
 }
 
-/// The colour and the opacity of a picture: deferred shading before the environment of the scene.
+/// The colour and the opacity of a picture: deferred shading, in front of the environment of the
+/// scene.
 pub(crate) fn shaded<R: Exact>(
     job: &Job<'_>,
     depth: &Plane<R>,
@@ -64,7 +65,7 @@ pub(crate) fn shaded<R: Exact>(
     before_environment(scene, camera, color, alpha, exec)
 }
 
-/// Colours multiplied by their opacity before the environment of the scene, if it has one.
+/// Lays colours multiplied by their opacity over the environment of the scene, if it has one.
 pub(crate) fn before_environment<R: Exact>(
     scene: &Scene,
     camera: &Camera,
@@ -87,7 +88,7 @@ pub(crate) fn before_environment<R: Exact>(
     (color, alpha)
 }
 
-/// A pixel before the light behind it, which is asked for where the pixel is not opaque.
+/// Lays a pixel over the light behind it. The light is computed only where the pixel is not opaque.
 pub(crate) fn before_light<R: Real>(layers: Blend<R>, light: impl FnOnce() -> [R; 3]) -> Blend<R> {
     let open = layers.alpha.lt(R::ONE);
     if !open.possibly() {
@@ -98,7 +99,7 @@ pub(crate) fn before_light<R: Real>(layers: Blend<R>, light: impl FnOnce() -> [R
     Blend { color, alpha: R::select(open, whole.alpha, layers.alpha) }
 }
 
-/// A framebuffer for a camera's picture, in memory that is used again: the values are any.
+/// A framebuffer for a camera's picture, in reused memory: it may hold any values.
 pub(crate) fn framebuffer(camera: &Camera, wanted: Wanted, pool: &mut Pool) -> Framebuffer<f32> {
     let size = camera.size();
     Framebuffer {
@@ -114,10 +115,10 @@ pub(crate) fn framebuffer(camera: &Camera, wanted: Wanted, pool: &mut Pool) -> F
     }
 }
 
-/// Stages, in order, and the wall time of each.
+/// The stages in order, and the wall time of each.
 pub type Laps = Vec<(&'static str, Duration)>;
 
-/// The wall time divided among stages, as the time of all tiles is.
+/// Divides the wall time among stages in proportion to their time in all tiles.
 pub(crate) fn wall_shares<const N: usize>(
     wall: Duration,
     tiles: &[[Duration; N]],
@@ -130,7 +131,7 @@ pub(crate) fn wall_shares<const N: usize>(
     })
 }
 
-/// Takes the wall times of stages.
+/// Measures the wall times of stages.
 pub(crate) struct Clock {
     start: Instant,
     laps: Laps,
@@ -143,7 +144,7 @@ impl Default for Clock {
 }
 
 impl Clock {
-    /// A clock whose stages have been timed elsewhere.
+    /// A clock for stages that were timed elsewhere.
     pub(crate) fn of(laps: Laps) -> Self {
         Self { laps, ..Self::default() }
     }
@@ -152,13 +153,13 @@ impl Clock {
         self.start = Instant::now();
     }
 
-    /// The stages and how long they took.
+    /// The stages and their wall times.
     pub(crate) fn into_laps(self) -> Laps {
         self.laps
     }
 
-    /// Ends stages that ran one after the other in every tile: each gets the share of the wall time
-    /// that it had of the time of all tiles.
+    /// Ends stages that ran one after the other in every tile. Each stage gets a share of the wall
+    /// time in proportion to its time in all tiles.
     pub(crate) fn shares<const N: usize>(
         &mut self,
         names: [&'static str; N],
@@ -169,7 +170,8 @@ impl Clock {
         self.start = Instant::now();
     }
 
-    /// Ends a stage that began at the last call, or at `restart`, or goes on with the last one.
+    /// Ends a stage that began at the last call or at `restart`. If the last stage has the same
+    /// name, adds to its time.
     pub(crate) fn lap(&mut self, name: &'static str) {
         match self.laps.last_mut() {
             Some((last, time)) if *last == name => *time += self.start.elapsed(),

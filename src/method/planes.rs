@@ -1,4 +1,4 @@
-//! Which planes each method leaves, when, and what they hold.
+//! Look up the planes that each method leaves, when it leaves them, and what they hold.
 //!
 //! A plane has the size of the picture. The column *when* says which pictures have the plane:
 //!
@@ -8,18 +8,21 @@
 //! | lit | in every picture of a scene with lights, and with the planes of the stages |
 //! | tubes | in every picture of a scene with tubes |
 //! | stages | with the planes of the stages |
-//! | stages, colours | the same, if the scene has colours |
-//! | stages, tubes | the same, if the scene has tubes |
-//! | stages, wide ids | the same, if ids have [more than 32 bits](crate::scene::objects::ids) |
-//! | stages, setting | the same, under the setting that the last column names |
+//! | stages, colours | with the planes of the stages, if the scene has colours |
+//! | stages, tubes | with the planes of the stages, if the scene has tubes |
+//! | stages, wide ids | with the planes of the stages, if ids have [more than 32 bits](crate::scene::objects::ids) |
+//! | stages, setting | with the planes of the stages, under the setting that the last column names |
 //! | stages, whole | with the planes of the stages of a whole picture; not where the stage runs alone |
-//! | alone | where the stage runs alone: what the next stage reads, and no picture keeps |
+//! | alone | where the stage runs alone: the next stage reads the plane, and no picture keeps it |
 //!
-//! With the planes of the stages means [`Session::define`] with `stages`. A scene has colours if its
-//! surfels have, for the methods that draw primitives also if any primitives have. Opacities, an
-//! environment and the number type change no set of planes, and the fast paths leave those of a
-//! picture without stages. A stage that runs alone ([`Session::stage`]) leaves the rows of its
-//! stage as with the planes of the stages, but for *stages, whole*, and *alone* too.
+//! To keep the planes of the stages, call [`Session::define`] with `stages`. A scene has colours if
+//! its surfels have colours. For the methods that draw primitives, it also has colours if any
+//! primitives have them. Opacities, an environment and the number type do not change which planes
+//! are there. The fast paths leave the planes of a picture without stages.
+//!
+//! If a stage runs alone ([`Session::stage`]), it leaves the rows of its stage as with the planes
+//! of the stages. It does not leave the rows of *stages, whole*, and it also leaves the rows of
+//! *alone*.
 //!
 //! A `#` stands for a digit of a number, which has leading zeros:
 //!
@@ -31,10 +34,12 @@
 //! | `push##` | the level, 0 to L - 1 |
 //! | `level##` | the level, 1 to the top of [`mod@super::template`] |
 //!
-//! The stage `layers` of [`mod@super::peeling`], run alone, begins anew if it is given no planes of
-//! layers. Given those of the layers up to j - 1, it leaves the planes of layer j alone.
+//! If you run the stage `layers` of [`mod@super::peeling`] alone without planes of layers, it
+//! begins with the first layer. If you give it the planes of the layers up to j - 1, it leaves the
+//! planes of layer j alone.
 //!
-//! A stage without rows leaves no planes: its records are those of [`crate::splat::record`].
+//! A stage without rows leaves no planes, because its results are the records of
+//! [`crate::splat::record`].
 //!
 //! [`Session::define`]: super::Session::define
 //! [`Session::stage`]: super::Session::stage

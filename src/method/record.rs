@@ -1,37 +1,38 @@
-//! Records of a pixel and their planes: one row a plane.
+//! Connect the records of a pixel to their planes: one row a plane.
 //!
-//! A record lists its planes once, each with the place of its value. The planes that a stage leaves,
-//! the records that a stage reads, and what a verdict takes of a client follow from that list, as
-//! scene files and the command line follow from the rows of [`crate::setting`].
+//! A record lists its planes once, each with the place of its value. Three things follow from that
+//! list: the planes that a stage leaves, the records that a stage reads, and the planes that a
+//! verdict takes from a client. In the same way, scene files and the command line follow from the
+//! rows of [`crate::setting`].
 
 use super::projection::SampleKind;
 use super::stage::{Conditions, Holds, PlaneRow, When};
 use crate::frame::{NO_ID, NamedPlane, Plane};
 use crate::number::{Real, Vector3};
 
-/// A plane of records `T`, whose numbers are `R`.
+/// A plane of records `T` with numbers `R`.
 #[derive(Debug)]
 pub(crate) struct Field<T, R> {
-    /// The plane.
+    /// The row of the plane.
     pub(crate) row: PlaneRow,
-    /// Where its value is.
+    /// The place of the plane's value in the record.
     pub(crate) part: Part<T, R>,
 }
 
-/// Where the value of a plane is in a record `T`, whose numbers are `R`.
+/// The place of a plane's value in a record `T` with numbers `R`.
 #[derive(Debug)]
 pub(crate) enum Part<T, R> {
     /// A number.
     Number(fn(&mut T) -> &mut R),
     /// Three numbers.
     Triple(fn(&mut T) -> &mut [R; 3]),
-    /// A vector with names for its components, three numbers in a plane.
+    /// A vector with named components: three numbers in a plane.
     Direction(fn(&mut T) -> &mut Vector3<R>),
     /// An id.
     Id(fn(&mut T) -> &mut u32),
-    /// The lowest 32 bits of an id that has up to 40.
+    /// The lowest 32 bits of an id with up to 40 bits.
     LowId(fn(&mut T) -> &mut u64),
-    /// The highest 8 bits of such an id; its lowest are read before.
+    /// The highest 8 bits of such an id. Its lowest bits are read first.
     HighId(fn(&mut T) -> &mut u64),
     /// A count.
     Count(fn(&mut T) -> &mut u8),
@@ -50,7 +51,7 @@ impl<T, R> Field<T, R> {
         Self { row: self.row.unit(unit), part: self.part }
     }
 
-    /// The plane, there at other times.
+    /// The plane with another condition.
     pub(crate) const fn when(self, when: When) -> Self {
         Self { row: self.row.when(when), part: self.part }
     }
@@ -62,13 +63,13 @@ impl<T, R> Field<T, R> {
 }
 
 impl PlaneRow {
-    /// The row as a plane of records, with the place of its value.
+    /// Adds the place of the value, which makes the row a plane of records.
     pub(crate) const fn at<T, R>(self, part: Part<T, R>) -> Field<T, R> {
         Field { row: self, part }
     }
 }
 
-/// The rows of a table, for the stage that leaves its planes.
+/// The rows of a table, for the stage that leaves these planes.
 pub(crate) const fn rows<T, R, const N: usize>(fields: &[Field<T, R>; N]) -> [PlaneRow; N] {
     let mut rows = [fields[0].row; N];
     let mut i = 1;
@@ -79,7 +80,7 @@ pub(crate) const fn rows<T, R, const N: usize>(fields: &[Field<T, R>; N]) -> [Pl
     rows
 }
 
-/// The rows of several tables, one table after the other.
+/// Joins the rows of several tables, one table after the other.
 macro_rules! joined {
     ($($rows:expr),+) => {{
         const ROWS: [$crate::method::PlaneRow; 0 $(+ $rows.len())+] = {
@@ -102,8 +103,8 @@ macro_rules! joined {
 }
 pub(crate) use joined;
 
-/// The planes of the records of a picture of this size, if they are there; `number` stands for the
-/// rows' `#`.
+/// Makes planes from the records of a picture of this size, for the rows that are there. `number`
+/// stands for the rows' `#`.
 pub(crate) fn planes<T, R: Real>(
     fields: &[Field<T, R>],
     number: usize,
@@ -137,12 +138,13 @@ fn values<V>(size: [u32; 2], value: &dyn Fn(u32, u32) -> V) -> Plane<V> {
     Plane::from_pixels(size, value)
 }
 
-/// The bits of an id above the lowest 32; those of none are 0.
+/// The bits of an id above the lowest 32; 0 for no id.
 fn high(id: u64) -> u8 {
     if id as u32 == NO_ID { 0 } else { (id >> 32) as u8 }
 }
 
-/// The id of these lowest 32 bits and of higher ones; all bits set if the lowest say that there is none.
+/// Joins the lowest 32 bits of an id with its higher bits. All bits are set if the lowest bits say
+/// that there is no id.
 pub(crate) fn wide_id(low: u32, high: u8) -> u64 {
     if low == NO_ID { u64::MAX } else { u64::from(high) << 32 | u64::from(low) }
 }

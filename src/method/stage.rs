@@ -1,4 +1,4 @@
-//! Stages as values: the passes of a method, what each reads, and the planes that each leaves.
+//! List the passes of a method: what each stage reads, and which planes it leaves.
 
 use super::projection::Has;
 use crate::error::Error;
@@ -12,40 +12,41 @@ use crate::scene::Scene;
 /// names of these stages, whether the definition or the fast path drew it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stage {
-    /// What the pass is called: `visibility`.
+    /// The name of the pass: `visibility`.
     pub name: &'static str,
-    /// The stages whose planes or records it reads; every stage reads the scene and the camera.
+    /// The stages whose planes or records this stage reads. Every stage reads the scene and the
+    /// camera.
     pub reads: &'static [&'static str],
-    /// The planes it leaves.
+    /// The planes that this stage leaves.
     pub leaves: &'static [PlaneRow],
 }
 
-/// A plane that a stage leaves: everything that is said of it, once.
+/// A plane that a stage leaves: one row says everything about it.
 ///
-/// A plane of a record is one row of the table of its record's planes, see `record.rs`.
+/// The plane of a record is one row of that record's table of planes, see `record.rs`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct PlaneRow {
-    /// The name, see [`crate::frame::NamedPlane`]; each run of `#` stands for a number of as many
+    /// The name, see [`crate::frame::NamedPlane`]. Each run of `#` stands for a number of as many
     /// digits: `group##.Z`.
     pub name: &'static str,
-    /// What a value is.
+    /// The kind of the values.
     pub holds: Holds,
-    /// The unit of the values: `px`, `world units`; empty for what has none.
+    /// The unit of the values: `px`, `world units`. Empty for values without a unit.
     pub unit: &'static str,
-    /// What a value says, and what an empty pixel has.
+    /// What a value means, and which value an empty pixel has.
     pub meaning: &'static str,
-    /// When the plane is there.
+    /// The pictures that have the plane.
     pub when: When,
 }
 
-/// What a plane holds; several kinds have one type of [`Samples`].
+/// The kind of values that a plane holds. Several kinds share one type of [`Samples`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Holds {
     /// One number a pixel.
     Scalar,
     /// Depth t, one number a pixel; +inf where a pixel is empty.
     Depth,
-    /// One number a pixel that describes the picture, and that no buffer of a renderer holds.
+    /// One number a pixel that describes the picture. No buffer of a renderer holds it.
     Diagnostic,
     /// Linear RGB.
     Color,
@@ -53,7 +54,7 @@ pub enum Holds {
     Vector,
     /// Unit normals; the null vector where a pixel is empty.
     Normal,
-    /// Indices: the lowest 32 bits of the ids of what is drawn.
+    /// Indices: the lowest 32 bits of the ids of the surfels and primitives drawn.
     Index,
     /// The highest 8 bits of the ids whose [`Holds::Index`] the same stage leaves.
     HighIndex,
@@ -61,7 +62,7 @@ pub enum Holds {
     Count,
 }
 
-/// When a stage leaves a plane.
+/// The condition under which a stage leaves a plane.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum When {
     /// In every picture.
@@ -80,25 +81,25 @@ pub enum When {
     Wide,
     /// With the planes of the stages, if the settings ask for the quantity.
     Settings,
-    /// With the planes of the stages of a whole picture; not where the stage runs on somebody's
-    /// planes, which do not hold what the quantity takes.
+    /// With the planes of the stages of a whole picture. Not where the stage runs on a client's
+    /// planes, because those planes do not hold what the quantity needs.
     Whole,
-    /// Where the stage runs alone: what the next stage reads, and no picture keeps.
+    /// Where the stage runs alone: the next stage reads the plane, and no picture keeps it.
     Alone,
 }
 
-/// Which planes of its stages a frame keeps.
+/// Which planes of the stages a frame keeps.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Keep {
-    /// None: a picture as every frame has it.
+    /// No planes of the stages: a picture as every frame has it.
     Picture,
-    /// Those of a picture with the planes of the stages.
+    /// The planes of a picture with the planes of the stages.
     Stages,
-    /// Those of a stage that runs alone.
+    /// The planes of a stage that runs alone.
     Alone,
 }
 
-/// What decides which planes are there.
+/// The facts that decide which planes are there.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Conditions {
     keep: Keep,
@@ -109,7 +110,7 @@ pub(crate) struct Conditions {
 }
 
 impl Conditions {
-    /// In a frame of this scene; none of the settings asks for a plane.
+    /// The conditions in a frame of this scene. None of the settings asks for a plane.
     pub(crate) fn new(scene: &Scene, keep: Keep) -> Self {
         let (mut has, mut wide) = (Has::of(scene), false);
         if let Some(objects) = &scene.objects {
@@ -119,12 +120,12 @@ impl Conditions {
         Self { keep, has, lit, wide, settings: false }
     }
 
-    /// The same where the settings may ask for planes of [`When::Settings`].
+    /// The same conditions, with planes of [`When::Settings`] if `settings` is true.
     pub(crate) fn with_settings(self, settings: bool) -> Self {
         Self { settings, ..self }
     }
 
-    /// Whether a plane of a row is there.
+    /// Whether the plane of a row is there.
     pub(crate) fn hold(&self, row: &PlaneRow) -> bool {
         let stages = self.keep != Keep::Picture;
         match row.when {
@@ -143,7 +144,7 @@ impl Conditions {
 }
 
 impl Holds {
-    /// The same without what the values mean: the type of [`Samples`] alone.
+    /// The kind without the meaning of its values: one kind for each type of [`Samples`].
     #[must_use]
     pub fn plain(self) -> Self {
         match self {
@@ -155,7 +156,7 @@ impl Holds {
         }
     }
 
-    /// The names that the channels of a plane called `name` have in a file.
+    /// The channel names in a file of a plane called `name`.
     #[must_use]
     pub fn channels(self, name: &str) -> Vec<String> {
         let letters = match self.plain() {
@@ -180,7 +181,7 @@ impl Holds {
 }
 
 impl When {
-    /// The condition in words, those of [`mod@super::planes`].
+    /// The condition in the words of [`mod@super::planes`].
     #[must_use]
     pub fn words(self) -> &'static str {
         match self {
@@ -199,7 +200,7 @@ impl When {
 }
 
 impl PlaneRow {
-    /// A row of a plane that is there with the planes of the stages.
+    /// A row whose plane is there with the planes of the stages.
     #[must_use]
     pub const fn new(name: &'static str, holds: Holds, meaning: &'static str) -> Self {
         let unit = match holds {
@@ -216,7 +217,7 @@ impl PlaneRow {
         Self { unit, ..self }
     }
 
-    /// The row of a plane that is there at other times.
+    /// The row with another condition.
     #[must_use]
     pub const fn when(self, when: When) -> Self {
         Self { when, ..self }
@@ -228,7 +229,7 @@ impl PlaneRow {
         Self { meaning, ..self }
     }
 
-    /// The name, with a number in place of `#`.
+    /// The name of the plane, with a number in place of `#`.
     #[must_use]
     pub fn numbered(&self, number: usize) -> String {
         numbered(self.name, number)
@@ -253,7 +254,7 @@ impl PlaneRow {
         }
     }
 
-    /// A plane of this row, of surfels.
+    /// A plane of this row, of surfel indices.
     pub(crate) fn index<R>(&self, number: usize, plane: Plane<u32>) -> NamedPlane<R> {
         self.plane(number, Samples::Index(plane))
     }
@@ -263,14 +264,15 @@ impl PlaneRow {
         self.plane(number, Samples::Count(plane))
     }
 
-    /// Whether a plane of this name is of this row.
+    /// Whether `name` is a name of this row's plane.
     #[must_use]
     pub fn is_called(&self, name: &str) -> bool {
+        // A `#` of the row stands for one digit of the name.
         let same = |(of, c): (u8, u8)| of == c || (of == b'#' && c.is_ascii_digit());
         self.name.len() == name.len() && self.name.bytes().zip(name.bytes()).all(same)
     }
 
-    /// Whether a plane of these values can be of this row.
+    /// Whether a plane of this row can hold these values.
     #[must_use]
     pub fn holds<R>(&self, samples: &Samples<R>) -> bool {
         let holds = match samples {
@@ -284,7 +286,7 @@ impl PlaneRow {
     }
 }
 
-/// A name with a number in place of its run of `#`.
+/// Puts a number in place of the run of `#` in a name.
 pub(crate) fn numbered(name: &str, number: usize) -> String {
     let digits = name.bytes().filter(|&c| c == b'#').count();
     let number = format!("{number:0digits$}");
@@ -311,7 +313,7 @@ impl Stage {
     }
 }
 
-/// There is no stage of this name, or none that runs on planes.
+/// The error for a stage that does not exist or does not run on planes.
 pub(crate) fn unknown(stage: &str) -> Error {
     Error::Invalid(format!("there is no stage `{stage}` that runs on planes"))
 }
