@@ -11,8 +11,7 @@ use crate::number::{Exact, Vector3};
 
 /// The planes of a client. Each plane is checked for its name, type and size.
 ///
-/// Their values are not checked or changed: a stage computes with the values that the client
-/// stored.
+/// A stage computes with the values that the client stored, unchanged.
 #[derive(Clone, Copy, Debug)]
 pub struct InputPlanes<'a, R> {
     frame: &'a Frame<R>,

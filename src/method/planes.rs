@@ -8,10 +8,10 @@
 //! | lit | in every picture of a scene with lights, and with the planes of the stages |
 //! | tubes | in every picture of a scene with tubes |
 //! | stages | with the planes of the stages |
-//! | stages, colours | with the planes of the stages, if the scene has colours |
-//! | stages, tubes | with the planes of the stages, if the scene has tubes |
-//! | stages, wide ids | with the planes of the stages, if ids have [more than 32 bits](crate::scene::objects::ids) |
-//! | stages, setting | with the planes of the stages, under the setting that the last column names |
+//! | stages, colours | the same, if the scene has colours |
+//! | stages, tubes | the same, if the scene has tubes |
+//! | stages, wide ids | the same, if ids have [more than 32 bits](crate::scene::objects::ids) |
+//! | stages, setting | the same, under the setting that the last column names |
 //! | stages, whole | with the planes of the stages of a whole picture; not where the stage runs alone |
 //! | alone | where the stage runs alone: the next stage reads the plane, and no picture keeps it |
 //!

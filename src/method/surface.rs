@@ -1,5 +1,5 @@
-//! A surface at each pixel, before it is shaded: where the passes of opaque splats end, and the
-//! stage of shading that they have in common.
+//! The surface at each pixel before it is shaded. The passes of opaque splats end with it, and
+//! share the stage of shading that reads it.
 
 use super::algorithm::Job;
 use super::input_planes::InputPlanes;
@@ -14,18 +14,18 @@ use crate::error::Result;
 use crate::frame::{Framebuffer, NO_ID, NamedPlane, Wanted};
 use crate::number::Exact;
 
-/// The averages at a pixel.
+/// The averages of the visible fragments at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct SurfacePixel<R> {
     /// Depth of the nearest fragment in world units; +inf where there is none.
     pub(crate) depth: R,
-    /// Its surfel; [`crate::frame::NO_ID`] where there is none.
+    /// Surfel of the nearest fragment; [`crate::frame::NO_ID`] where there is none.
     pub(crate) id: u32,
     /// Sum of the weights.
     pub(crate) weight: R,
     /// Direction of the average normal, in world space.
     pub(crate) normal: [R; 3],
-    /// Average colour; 0 where the scene has none.
+    /// Average colour; 0 where the scene has no colours.
     pub(crate) color: [R; 3],
 }
 
@@ -93,12 +93,12 @@ impl<R> SurfacePixel<R> {
     ];
 }
 
-/// Deferred shading, as a stage after the one called `normalized`.
+/// Deferred shading, as a stage after the stage called `normalized`.
 pub(crate) const fn shading(normalized: &'static [&'static str]) -> Stage {
     Stage { name: "shading", reads: normalized, leaves: &[SHADED, ALPHA] }
 }
 
-/// The average colours, if the scene has colours: what no picture without stages keeps.
+/// The average colours, if the scene has colours. Pictures without stages do not keep them.
 pub(crate) fn colors<R: Exact>(
     job: &Job<'_>,
     pixels: &Tiled<SurfacePixel<R>>,
@@ -106,7 +106,7 @@ pub(crate) fn colors<R: Exact>(
     pixels.planes(&SurfacePixel::PLANES[..1], 0, &job.there(Keep::Stages))
 }
 
-/// The averages as a framebuffer that can be shaded.
+/// Turns the averages into a framebuffer that can be shaded.
 pub(crate) fn framebuffer<R: Exact>(
     job: &Job<'_>,
     pixels: &Tiled<SurfacePixel<R>>,
@@ -125,7 +125,8 @@ pub(crate) fn framebuffer<R: Exact>(
     }
 }
 
-/// The stage of shading, on somebody's averages, of surfels with colours or without.
+/// Runs the stage of shading on a client's averages. `colored` says whether the surfels have
+/// colours.
 pub(crate) fn shade<R: Exact>(
     job: &Job<'_>,
     given: &InputPlanes<'_, R>,

@@ -1,4 +1,4 @@
-//! Pictures between their passes: a record a pixel, tile by tile.
+//! Hold a picture between its passes: a record a pixel, tile by tile.
 
 use super::algorithm::Job;
 use super::record::{self, Field};
@@ -6,7 +6,7 @@ use super::stage::Conditions;
 use crate::frame::{Grid, NamedPlane, Plane, Rect};
 use crate::number::Real;
 
-/// A record for each pixel of a picture; the pixels of a tile are together, row by row.
+/// A record for each pixel of a picture. The pixels of a tile lie together, row by row.
 #[derive(Clone, Debug)]
 pub(crate) struct Tiled<T> {
     grid: Grid,
@@ -14,7 +14,7 @@ pub(crate) struct Tiled<T> {
 }
 
 impl<T: Send> Tiled<T> {
-    /// Runs a pass over every tile: its number and its pixels.
+    /// Runs a pass over every tile. The pass gets the number and the pixels of the tile.
     pub(crate) fn new(job: &Job<'_>, pass: impl Fn(usize, Rect) -> Vec<T> + Sync + Send) -> Self {
         let grid = job.grid();
         let tiles =
@@ -26,12 +26,13 @@ impl<T: Send> Tiled<T> {
 }
 
 impl<T> Tiled<T> {
-    /// The tiles of a picture that passes have made.
+    /// Holds tiles that passes have already made.
     pub(crate) fn from_tiles(grid: Grid, tiles: Vec<Vec<T>>) -> Self {
         Self { grid, tiles }
     }
 
-    /// The images of all groups, or layers, from those of each tile: `tiles[tile][image][pixel]`.
+    /// Turns the images of each tile, `tiles[tile][image][pixel]`, into one picture for each group
+    /// or layer.
     pub(crate) fn images(grid: Grid, tiles: Vec<Vec<Vec<T>>>) -> Vec<Self> {
         let count = tiles.first().map_or(0, Vec::len);
         let mut images: Vec<_> = (0..count).map(|_| Self { grid, tiles: Vec::new() }).collect();
@@ -54,7 +55,7 @@ impl<T> Tiled<T> {
         &self.tiles[tile][pixel]
     }
 
-    /// The record of a pixel, to be changed.
+    /// The record of a pixel, mutable.
     pub(crate) fn at_mut(&mut self, x: u32, y: u32) -> &mut T {
         let (tile, pixel) = self.grid.place(x, y);
         &mut self.tiles[tile][pixel]
@@ -65,20 +66,21 @@ impl<T> Tiled<T> {
         self.tiles.iter().flatten()
     }
 
-    /// A record made of each record.
+    /// Makes a new record from each record.
     pub(crate) fn map<U>(&self, of: impl Fn(&T) -> U) -> Tiled<U> {
         let tiles = self.tiles.iter().map(|pixels| pixels.iter().map(&of).collect());
         Tiled { grid: self.grid, tiles: tiles.collect() }
     }
 
-    /// A record made of each two of a pixel.
+    /// Makes a new record from the two records of each pixel.
     pub(crate) fn with<U, V>(&self, other: &Tiled<U>, of: impl Fn(&T, &U) -> V) -> Tiled<V> {
         let tiles = self.tiles.iter().zip(&other.tiles);
         let both = tiles.map(|(a, b)| a.iter().zip(b).map(|(a, b)| of(a, b)).collect());
         Tiled { grid: self.grid, tiles: both.collect() }
     }
 
-    /// The planes of the records, if they are there; `number` stands for the rows' `#`.
+    /// Makes planes from the records, for the rows that are there. `number` stands for the rows'
+    /// `#`.
     pub(crate) fn planes<R: Real>(
         &self,
         fields: &[Field<T, R>],
@@ -91,13 +93,13 @@ impl<T> Tiled<T> {
         record::planes(fields, number, (self.grid.size(), &|x, y| *self.at(x, y)), there)
     }
 
-    /// One value of each record.
+    /// Makes a plane from one value of each record.
     pub(crate) fn plane<V>(&self, value: impl Fn(&T) -> V) -> Plane<V> {
         Plane::from_pixels(self.grid.size(), |x, y| value(self.at(x, y)))
     }
 }
 
-/// The pixels of a tile as column and row in the picture, row by row.
+/// The pixels of a tile as columns and rows of the picture, row by row.
 pub(crate) fn pixels(rect: Rect) -> impl Iterator<Item = (u32, u32)> {
     (rect.y0..rect.y1).flat_map(move |y| (rect.x0..rect.x1).map(move |x| (x, y)))
 }

@@ -1,5 +1,5 @@
-//! All passes in one call: from a scene and what the last frame saw to named planes; and one stage on
-//! somebody's planes.
+//! Run all passes in one call, from a scene and what the last frame saw to named planes. Or run one
+//! stage on a client's planes.
 
 use super::indices::{Kept, indices, selected};
 use super::part::{Part, Whole};
@@ -24,7 +24,7 @@ use crate::number::Exact;
 use crate::splat::Tally;
 use std::borrow::Cow;
 
-/// The definition, in any number; with `stages`, every stage leaves its planes.
+/// The definition, in any number type. With `stages`, every stage leaves its planes.
 pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -72,7 +72,8 @@ pub(super) fn define<R: Exact>(
     Ok(Picture { seen: Some(now), ..finish(target, left, tally, clock, job) })
 }
 
-/// The fast path for `f32`. Without pass 3 the definition: the paper shows that for what it spoils.
+/// The fast path for `f32`. Without pass 3 it runs the definition, because the paper shows such
+/// pictures only for their errors.
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
     if !settings.second {
         return define(job, settings, false);
@@ -87,7 +88,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     Ok(Picture { seen: Some(now), ..finish(target, Vec::new(), tally, Clock::of(laps), job) })
 }
 
-/// One stage on somebody's planes.
+/// Runs one stage on a client's planes.
 pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -145,18 +146,18 @@ pub(super) fn flagged(job: &Job<'_>, whole: &Whole<'_>, before: &Seen) -> Result
     Ok(whole.shapes(ranges, job.exec))
 }
 
-/// Bytes of a surfel that pass 1 draws: placed, twice while they are put together, and projected in
-/// f64 with its bins.
+/// Bytes of a surfel that pass 1 draws. The surfel is placed, is there twice while the surfels are
+/// put together, and is projected in f64 with its bins.
 const OF_A_FLAGGED: u64 = 512;
 
-/// The surfels of a frame, and what the frame before saw.
+/// The surfels of a frame, and what the last frame saw.
 pub(crate) fn whole<'a>(job: &Job<'a>, settings: &Settings) -> Result<(Whole<'a>, Cow<'a, Seen>)> {
     let whole = Whole::of(job);
     let before = seen(job, settings, &whole)?;
     Ok((whole.after(&before, settings), before))
 }
 
-/// What the frame before saw; nothing before the first.
+/// What the last frame saw; nothing before the first frame.
 fn seen<'a>(job: &Job<'a>, settings: &Settings, whole: &Whole<'_>) -> Result<Cow<'a, Seen>> {
     match &job.index.seen {
         None => Ok(Cow::Owned(Seen::nothing(whole.ids(), settings.flags))),
@@ -167,7 +168,7 @@ fn seen<'a>(job: &Job<'a>, settings: &Settings, whole: &Whole<'_>) -> Result<Cow
     }
 }
 
-/// Pass 1: the depth of polygons, with the flagged surfels.
+/// Pass 1: the depth of polygons and of the flagged surfels.
 pub(super) fn first<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -181,7 +182,7 @@ pub(super) fn first<R: Exact>(
     both(job, &below, &surfels)
 }
 
-/// Pass 3: the depth of pass 1, with the selected surfels whose flags are not set.
+/// Pass 3: the depth of pass 1 and of the selected surfels whose flags are not set.
 fn difference<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -197,7 +198,7 @@ fn difference<R: Exact>(
     both(job, visible, &nearest(job, &settings.splats, &fresh))
 }
 
-/// Those of some surfels, in ascending ids, whose flag is not set.
+/// The ids of `ids`, ascending, whose flags are not set.
 pub(super) fn unseen(whole: &Whole<'_>, before: &Seen, ids: &[u64]) -> Vec<u64> {
     let mut new = Vec::new();
     for (object, run) in whole.ids().runs(ids) {
@@ -207,7 +208,7 @@ pub(super) fn unseen(whole: &Whole<'_>, before: &Seen, ids: &[u64]) -> Vec<u64> 
     new
 }
 
-/// Pass 4: attribute splatting of B(i), and what became of its surfels.
+/// Pass 4: attribute splatting of B(i), with the tally of its surfels.
 fn sums<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -227,7 +228,7 @@ fn shown<R: Exact>(
     selected: &Part,
     depth: &Tiled<Nearest<R>>,
 ) -> Tiled<Nearest<R>> {
-    // With pass 3 every fragment of B(i) has a depth in front of itself, or its own.
+    // With pass 3 every fragment of B(i) has its own depth, or a depth in front of it.
     if settings.second {
         return depth.map(|pixel| *pixel);
     }
@@ -242,7 +243,7 @@ fn ids<R: Exact>(shown: &Tiled<Nearest<R>>, averages: &Tiled<SurfacePixel<R>>) -
     shown.with(averages, |nearest, shown| if shown.id == NO_ID { NONE } else { nearest.id })
 }
 
-/// Pass 5, and the polygons where no splats are shown.
+/// Pass 5: normalization, with polygons where no splats are shown.
 fn normalization<R: Exact>(
     job: &Job<'_>,
     (shown, polygons): (&Tiled<Nearest<R>>, Option<&Polygons<R>>),

@@ -1,4 +1,4 @@
-//! All stages in one call: from a scene to named planes; and one stage on somebody's planes.
+//! Run all stages in one call, from a scene to named planes. Or run one stage on a client's planes.
 
 use super::attributes::{Sums, attributes};
 use super::margin::margins;
@@ -17,7 +17,7 @@ use crate::method::surface::{self, SurfacePixel};
 use crate::number::Exact;
 use crate::scene::Scene;
 
-/// The definition, in any number; with `stages`, every stage leaves its planes.
+/// The definition, in any number type. With `stages`, every stage leaves its planes.
 pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -46,7 +46,7 @@ pub(super) fn define<R: Exact>(
     Ok(finish(target, left, splats.tally, clock, job))
 }
 
-/// One stage on somebody's planes.
+/// Runs one stage on a client's planes.
 pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,

@@ -1,4 +1,4 @@
-//! All layers in one call: from a scene to named planes; and one stage on somebody's planes.
+//! Run all layers in one call, from a scene to named planes. Or run one stage on a client's planes.
 
 use super::Settings;
 use super::blending::shown;
@@ -14,7 +14,8 @@ use crate::method::stage::{Keep, unknown};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 
-/// The definition, in any number; with `stages`, the first [`STAGES`] layers leave their planes.
+/// The definition, in any number type. With `stages`, the first [`STAGES`] layers leave their
+/// planes.
 pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -35,7 +36,7 @@ pub(super) fn define<R: Exact>(
     Ok(Picture { frame, tally: peeling.splats.tally, timings, seen: None })
 }
 
-/// What the stage of layers leaves.
+/// The results of the stage of layers.
 struct Peeled<R> {
     pixels: Tiled<PeeledPixel<R>>,
     kept: Vec<Tiled<PeeledLayer<R>>>,
@@ -71,7 +72,7 @@ fn peel<R: Exact>(
     Peeled { pixels: Tiled::from_tiles(grid, pixels), kept: Tiled::images(grid, kept) }
 }
 
-/// One stage on somebody's planes.
+/// Runs one stage on a client's planes.
 pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -96,7 +97,7 @@ pub(super) fn stage<R: Exact>(
     }
 }
 
-/// The layer after somebody's layer `before`.
+/// The layer after the client's layer `before`.
 fn next_layer<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,

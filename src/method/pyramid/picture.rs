@@ -1,4 +1,4 @@
-//! From a scene to named planes: all stages in one call, or one of them on somebody's planes.
+//! Run all stages in one call, from a scene to named planes. Or run one stage on a client's planes.
 
 use super::fast::CellLevels;
 use super::gbuffer::GBuffer;
@@ -17,7 +17,7 @@ use crate::method::stage::unknown;
 use crate::number::Exact;
 use crate::splat::Tally;
 
-/// The definition, in any number; with `stages`, every stage leaves its planes.
+/// The definition, in any number type. With `stages`, every stage leaves its planes.
 pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -56,7 +56,7 @@ pub(super) fn draw(
     Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
 }
 
-/// Deferred shading, and the planes of the picture.
+/// Shades a picture, and makes its planes.
 fn finish<R: Exact>(
     target: GBuffer<R>,
     mut planes: Vec<NamedPlane<R>>,
@@ -88,12 +88,13 @@ fn write<R: Exact>(
     (first..).zip(levels).flat_map(level).collect()
 }
 
-/// One stage on somebody's planes, see [`super::planes`].
+/// Runs one stage on a client's planes, see [`super::planes`].
 ///
 /// Every level is computed from the level before it *as the planes have it*: the finer one in the
-/// pull, the coarser one in the push. Where the planes of that level are missing, from the level
-/// just computed. So a mistake in one level does not spread to the next, if all are given; and the
-/// planes of the projection alone, or of the pull, are enough to run the stage.
+/// pull, the coarser one in the push. Where the planes of that level are missing, the level just
+/// computed takes its place. So if all levels are given, a mistake in one level does not spread
+/// beyond the next. And the planes of the projection alone, or of the pull, are enough to run the
+/// stage.
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] as [`crate::method::Algorithm::stage`].
@@ -120,7 +121,8 @@ pub(super) fn stage<R: Exact>(
     }
 }
 
-/// The levels that a stage makes one from the other: the pull ever coarser ones, the push ever finer ones.
+/// The levels that a stage makes from each other, in order: the pull makes ever coarser levels, the
+/// push ever finer ones.
 pub(super) fn levels(job: &Job<'_>, stage: &str) -> Vec<usize> {
     let last = pyramid::sizes(job.camera.width, job.camera.height).len() - 1;
     match stage {
@@ -130,7 +132,7 @@ pub(super) fn levels(job: &Job<'_>, stage: &str) -> Vec<usize> {
     }
 }
 
-/// The levels as somebody's planes have them.
+/// The levels in a client's planes.
 struct GivenLevels<'a, R> {
     job: &'a Job<'a>,
     given: &'a InputPlanes<'a, R>,
@@ -155,13 +157,13 @@ impl<'a, R: Exact> GivenLevels<'a, R> {
         Ok(self.given.projection()?.map(Cell::new))
     }
 
-    /// A level of a phase.
+    /// Reads a level of a phase.
     fn read(&self, fields: &CellFields<R>, level: usize) -> Result<Plane<Cell<R>>> {
         let [width, height] = self.sizes[level];
         self.given.records(fields, level, Plane::filled(width, height, Cell::empty()))
     }
 
-    /// A level of a phase, or where its planes are missing, the level just computed.
+    /// Reads a level of a phase. Where its planes are missing, returns the level just computed.
     fn read_or(
         &self,
         fields: &CellFields<R>,
@@ -176,12 +178,12 @@ impl<'a, R: Exact> GivenLevels<'a, R> {
         if level == 0 { self.samples() } else { self.read(&Cell::PULL, level) }
     }
 
-    /// A level after the push; the level of one pixel is not pushed.
+    /// A level after the push. The level of one pixel is not pushed.
     fn pushed(&self, level: usize) -> Result<Plane<Cell<R>>> {
         if level == self.last() { self.pulled(level) } else { self.read(&Cell::PUSH, level) }
     }
 
-    /// The planes of the pull phase.
+    /// Runs the pull phase, and returns its planes.
     fn pull(&self) -> Result<Vec<NamedPlane<R>>> {
         let levels = self.job.only(levels(self.job, "pull"));
         let Some(first) = levels.first() else { return Ok(Vec::new()) };
@@ -195,7 +197,7 @@ impl<'a, R: Exact> GivenLevels<'a, R> {
         Ok(planes)
     }
 
-    /// The planes of the push phase.
+    /// Runs the push phase, and returns its planes.
     fn push(&self, settings: &Settings) -> Result<Vec<NamedPlane<R>>> {
         let levels = self.job.only(levels(self.job, "push"));
         let Some(first) = levels.first() else { return Ok(Vec::new()) };

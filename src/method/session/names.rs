@@ -1,4 +1,4 @@
-//! Surfels of objects by their ids, and by their order among those that are drawn.
+//! Translate between the ids of surfels in objects and their indices among the drawn surfels.
 
 use crate::error::{Error, Result};
 use crate::frame::{Frame, NO_ID, Plane, Samples};
@@ -6,11 +6,11 @@ use crate::method::record::wide_id;
 use crate::method::stage::{Holds, Stage};
 use crate::scene::objects::{Ids, Objects};
 
-/// The ids of the surfels that are drawn, ascending: by these a method that draws surfels one by one, and
-/// every verdict, counts them.
+/// The ids of the drawn surfels, ascending. A surfel's index is its place in this order. Methods
+/// that draw surfels one by one, and every verdict, use these indices.
 pub(crate) struct Names<'a> {
     ids: &'a Ids,
-    /// Of objects with levels of detail; else all ids are drawn.
+    /// The drawn ids of objects with levels of detail. Without levels of detail, all ids are drawn.
     drawn: Option<Vec<u64>>,
 }
 
@@ -20,7 +20,7 @@ impl<'a> Names<'a> {
         Self { ids: objects.ids(), drawn }
     }
 
-    /// The lowest 32 bits of the id of a surfel that has been counted.
+    /// The lowest 32 bits of the id of the surfel with this index.
     pub(super) fn id(&self, index: u32) -> Option<u32> {
         let id = match &self.drawn {
             Some(drawn) => drawn.get(index as usize).copied(),
@@ -29,7 +29,7 @@ impl<'a> Names<'a> {
         id.map(|id| id as u32)
     }
 
-    /// How many surfels are drawn whose ids are less.
+    /// The number of drawn surfels with lower ids.
     fn index(&self, id: u64) -> Option<u32> {
         match &self.drawn {
             Some(drawn) => drawn.binary_search(&id).ok().map(|index| index as u32),
@@ -37,17 +37,17 @@ impl<'a> Names<'a> {
         }
     }
 
-    /// What a verdict calls a surfel that has been counted: by its id, if 32 bits say all of it.
+    /// The id by which a verdict calls the surfel with this index, if 32 bits hold the whole id.
     pub(super) fn told(&self, index: u32) -> Option<u32> {
         if self.ids.is_wide() { None } else { self.id(index) }
     }
 
-    /// Puts ids in the place of indices.
+    /// Replaces indices by ids.
     pub(super) fn name<R>(&self, frame: &mut Frame<R>) {
         each_id(frame, |index| self.id(index).unwrap_or(index));
     }
 
-    /// Puts indices in the place of ids. What is the id of none is the index of none.
+    /// Replaces ids by indices. An id that no surfel has becomes an index that no surfel has.
     pub(super) fn number<R>(&self, frame: &mut Frame<R>) -> Result<()> {
         if self.ids.is_wide() {
             let what = "ids have 40 bits, but planes of ids hold 32 of them, which do not identify \
@@ -58,8 +58,8 @@ impl<'a> Names<'a> {
         Ok(())
     }
 
-    /// The same of what somebody hands in. Planes of ids of 40 bits that come without their highest 8 do not
-    /// say the surfel, and are left out.
+    /// Replaces ids by indices in a client's planes. Planes of ids of 40 bits without the planes of
+    /// their highest 8 bits are left out, because they do not identify the surfel.
     pub(crate) fn number_given<R>(&self, frame: &mut Frame<R>, stages: &[Stage]) -> Result<()> {
         if !self.ids.is_wide() {
             return self.number(frame);
@@ -92,7 +92,7 @@ impl<'a> Names<'a> {
     }
 }
 
-/// Changes every id of a frame that is that of something.
+/// Changes every id of a frame, except the id of nothing.
 fn each_id<R>(frame: &mut Frame<R>, of: impl Fn(u32) -> u32) {
     for plane in &mut frame.planes {
         if let Samples::Index(ids) = &mut plane.samples {

@@ -1,4 +1,5 @@
-//! What a picture takes: upper estimates, checked by `tests/memory.rs` for every method.
+//! Estimate the memory of a picture from above. `tests/memory.rs` checks the estimates for every
+//! method.
 
 use super::Session;
 use crate::error::Result;
@@ -7,24 +8,25 @@ use crate::memory;
 use crate::method::{Holds, PlaneRow, When, peeling};
 use crate::scene::{Camera, Objects};
 
-/// How a picture is made.
+/// The call that makes a picture.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Making {
     /// By [`Session::render`].
     Render,
-    /// By [`Session::define`], in numbers of so many bytes, with the planes of the stages or not.
+    /// By [`Session::define`], in numbers of `number` bytes, with or without the planes of the
+    /// stages.
     Define {
-        /// 4 or 8.
+        /// Bytes of a number: 4 or 8.
         number: u64,
         /// Whether the planes of the stages are kept.
         stages: bool,
     },
-    /// Judged by [`Session::verify`], the planes of one client more included.
+    /// By [`Session::verify`], with the planes of one more client.
     Verdict,
 }
 
 impl Session<'_> {
-    /// About the most bytes that a picture takes beside the session, the picture itself included.
+    /// About the most bytes that a picture needs beside the session, with the picture itself.
     #[must_use]
     pub fn needs(&self, camera: &Camera, making: Making) -> u64 {
         let pixels = u64::from(camera.width) * u64::from(camera.height);
@@ -35,7 +37,7 @@ impl Session<'_> {
             if !self.method.draws_objects() {
                 return judged;
             }
-            // Before it is known which surfels are drawn, all are placed.
+            // All surfels are placed before it is known which of them are drawn.
             return judged + pixels * OF_JUDGED_PASSES + self.surfels() * OF_A_JUDGED_CENTRE;
         }
         let fast = self.method.fast_bytes_a_pixel().filter(|_| making == Making::Render);
@@ -47,12 +49,13 @@ impl Session<'_> {
         // Planes of stages are there twice: as records and as planes, or in numbers of two types.
         let a_pixel = fast.unwrap_or(number * OF_A_PIXEL + 2 * kept);
         let mut rows = self.method.stages().iter().flat_map(|stage| stage.leaves);
+        // Only a plane of a whole picture, such as a margin, needs the splats in balls.
         let balls = if kept > 0 && rows.any(|row| row.when == When::Whole) { OF_A_BALL } else { 0 };
         pixels * a_pixel + self.items(pixels, making) * (number * OF_A_SPLAT + balls)
     }
 
-    /// How many items are drawn at the most; of a method that selects surfels as many as it may select:
-    /// what it draws of an earlier frame it asks for when it knows.
+    /// The most items that are drawn. For a method that selects surfels, as many as it may select.
+    /// When such a method knows what it draws of an earlier frame, it asks for that memory itself.
     fn items(&self, pixels: u64, making: Making) -> u64 {
         if self.method.draws_objects() {
             return self.surfels().min(pixels);
@@ -67,19 +70,19 @@ impl Session<'_> {
         items as u64
     }
 
-    /// How many surfels a method that draws objects may draw.
+    /// The most surfels that a method that draws objects may draw.
     fn surfels(&self) -> u64 {
         let objects = self.scene.objects.as_ref().map(Objects::drawn_total);
         objects.unwrap_or(self.scene.surfels.len() as u64)
     }
 
-    /// Whether there are planes of levels.
+    /// Whether the method leaves planes of levels.
     fn has_levels(&self) -> bool {
         let mut rows = self.method.stages().iter().flat_map(|stage| stage.leaves);
         rows.any(|row| of(row) == Copies::Levels)
     }
 
-    /// The planes of all stages, a pixel.
+    /// Bytes of the planes of all stages, a pixel.
     fn planes(&self, camera: &Camera, number: u64) -> u64 {
         let levels = pyramid::sizes(camera.width, camera.height).len() as u64;
         let groups = self.index.groups.as_ref().map_or(1, |groups| groups.len() as u64);
@@ -100,7 +103,7 @@ impl Session<'_> {
         kept.map(|row| copies(row) * bytes(row)).sum()
     }
 
-    /// Whether the process may hold a picture more.
+    /// Checks that the process may hold one more picture.
     pub(crate) fn ask(&self, camera: &Camera, making: Making) -> Result<()> {
         let (width, height) = (camera.width, camera.height);
         memory::ask(self.needs(camera, making), || {
@@ -109,7 +112,7 @@ impl Session<'_> {
     }
 }
 
-/// Of what there is a plane of a row.
+/// The things for which a row has one plane each.
 #[derive(Clone, Copy, PartialEq, Eq)]
 enum Copies {
     One,
@@ -127,18 +130,18 @@ fn of(row: &PlaneRow) -> Copies {
     }
 }
 
-/// Numbers of a pixel that passes hold at once, the planes of the picture included, at most.
+/// Numbers of a pixel that passes hold at once, with the planes of the picture, at most.
 const OF_A_PIXEL: u64 = 80;
 /// Numbers of a splat, with the bins that list it.
 const OF_A_SPLAT: u64 = 64;
-/// Bytes of a splat that is judged, and of a pixel beside the planes of a client.
+/// Bytes of a splat in a verdict, and of a pixel beside the planes of a client.
 const OF_A_JUDGED_SPLAT: u64 = 704;
 const OF_A_JUDGED_PIXEL: u64 = 128;
-/// Bytes of a pixel that passes before the sums leave in balls, and of a surfel in its place whose centre is
-/// placed in balls.
+/// Bytes of a pixel that the passes before the sums leave in balls, and, in place of a splat, of a
+/// surfel whose centre is placed in balls.
 const OF_JUDGED_PASSES: u64 = 256;
 const OF_A_JUDGED_CENTRE: u64 = 640;
 /// Bytes of the cells of all levels in balls, a pixel.
 const OF_JUDGED_CELLS: u64 = 1536;
-/// Bytes of a splat in balls, with the bins that list it: what a margin is computed from.
+/// Bytes of a splat in balls, with the bins that list it. A margin is computed from them.
 const OF_A_BALL: u64 = 288;

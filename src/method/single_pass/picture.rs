@@ -1,4 +1,4 @@
-//! All stages in one call: from a scene to named planes; and one stage on somebody's planes.
+//! Run all stages in one call, from a scene to named planes. Or run one stage on a client's planes.
 
 use super::compositing::{Composite, composites};
 use super::geometry::{Geometry, ImagePixel};
@@ -19,10 +19,10 @@ use std::time::Instant;
 /// The stages that run tile by tile.
 const STAGES: [&str; 2] = ["geometry", "compositing"];
 
-/// The definition, in any number; with `stages`, every stage leaves its planes.
+/// The definition, in any number type. With `stages`, every stage leaves its planes.
 ///
-/// Both passes run over a tile before the next tile, so that the images of the groups exist for one
-/// tile at a time, if their planes are not kept.
+/// Both passes run over one tile before they run over the next. So unless their planes are kept,
+/// the images of the groups exist for one tile at a time.
 pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -45,14 +45,14 @@ pub(super) fn define<R: Exact>(
     Ok(finish(target, left, geometry.splats.tally, clock, job))
 }
 
-/// What both passes leave.
+/// The results of both passes.
 pub(crate) struct Passes<R> {
-    /// The depth-image of each group, if it is kept.
+    /// The depth-image of each group, if the images are kept.
     pub(crate) images: Vec<Tiled<ImagePixel<R>>>,
     pub(crate) composites: Tiled<Composite<R>>,
 }
 
-/// The geometry and the compositing pass, timed as two stages; `keep` keeps the images.
+/// Runs the geometry and the compositing pass, timed as two stages. `keep` keeps the images.
 pub(crate) fn passes<R: Exact>(
     job: &Job<'_>,
     geometry: &Geometry<'_, R>,
@@ -77,7 +77,7 @@ pub(crate) fn passes<R: Exact>(
     Passes { images, composites: Tiled::from_tiles(grid, composites) }
 }
 
-/// The compositing pass over somebody's depth-images.
+/// Runs the compositing pass over a client's depth-images.
 pub(crate) fn composite<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -91,7 +91,7 @@ pub(crate) fn composite<R: Exact>(
     })
 }
 
-/// One stage on somebody's planes.
+/// Runs one stage on a client's planes.
 pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,

@@ -1,4 +1,4 @@
-//! From a scene to named planes: all stages in one call, or one of them on somebody's planes.
+//! Run all stages in one call, from a scene to named planes. Or run one stage on a client's planes.
 
 use super::fast::CenterLevels;
 use super::normalization::normalize;
@@ -17,7 +17,7 @@ use crate::method::stage::unknown;
 use crate::number::Exact;
 use crate::splat::Tally;
 
-/// The definition, in any number; with `stages`, every stage leaves its planes.
+/// The definition, in any number type. With `stages`, every stage leaves its planes.
 pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -38,7 +38,7 @@ pub(super) fn define<R: Exact>(
         let level = |(level, cells)| planes::write_level(level, cells, job);
         planes.extend((1..).zip(&levels[1..]).flat_map(level));
         planes.extend(planes::write_gathered(&gathered, job));
-        // The id is a plane of the picture.
+        // The id, the last plane, is a plane of the picture.
         planes.pop();
     }
     clock.restart();
@@ -63,11 +63,12 @@ pub(super) fn draw(
     Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
 }
 
-/// One stage on somebody's planes, see [`super::planes`].
+/// Runs one stage on a client's planes, see [`super::planes`].
 ///
-/// In the propagation every level is computed from the finer one *as the planes have it*, and where
-/// its planes are missing, from the level just computed: so a mistake in one level does not spread
-/// to the next, if all are given, and the planes of the projection alone are enough.
+/// The propagation computes every level from the finer level *as the planes have it*. Where the
+/// planes of the finer level are missing, the level just computed takes its place. So if all levels
+/// are given, a mistake in one level does not spread beyond the next. And the planes of the
+/// projection alone are enough to run the stage.
 ///
 /// # Errors
 /// [`crate::Error::Invalid`] as [`crate::method::Algorithm::stage`].
@@ -105,7 +106,8 @@ pub(super) fn stage<R: Exact>(
     }
 }
 
-/// The levels that a stage makes one from the other: the propagation ever coarser ones.
+/// The levels that a stage makes from each other, in order: the propagation makes ever coarser
+/// levels.
 pub(super) fn levels(job: &Job<'_>, settings: &Settings, stage: &str) -> Vec<usize> {
     let count = if stage == "propagation" { sizes(job, settings).len() } else { 0 };
     (1..count).collect()
@@ -118,7 +120,7 @@ fn sizes(job: &Job<'_>, settings: &Settings) -> Vec<[u32; 2]> {
     sizes
 }
 
-/// All levels as the planes have them.
+/// Reads all levels from the planes.
 fn given_levels<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -128,7 +130,7 @@ fn given_levels<R: Exact>(
     (0..sizes.len()).map(|level| given_level(level, &sizes, given)).collect()
 }
 
-/// A level as the planes have it.
+/// Reads a level from the planes.
 fn given_level<R: Exact>(
     level: usize,
     sizes: &[[u32; 2]],
@@ -141,7 +143,7 @@ fn given_level<R: Exact>(
     given.records(&Center::PLANES, level, Plane::filled(width, height, Center::empty()))
 }
 
-/// The planes of the propagation.
+/// Runs the propagation, and returns its planes.
 fn propagated<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,

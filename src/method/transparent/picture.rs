@@ -1,4 +1,4 @@
-//! All stages in one call: from a scene to named planes; and one stage on somebody's planes.
+//! Run all stages in one call, from a scene to named planes. Or run one stage on a client's planes.
 
 use super::averaging::{GroupAverage, averages};
 use super::blending::{Blending, GroupLayers};
@@ -14,7 +14,7 @@ use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use std::time::Instant;
 
-/// The definition of Algorithm 2, in any number; with `stages`, every stage leaves its planes.
+/// The definition of Algorithm 2, in any number type. With `stages`, every stage leaves its planes.
 pub(crate) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -33,7 +33,7 @@ pub(crate) fn define<R: Exact>(
     Ok(Picture { frame, tally: blending.tally(), timings, seen: None })
 }
 
-/// The planes of every picture.
+/// The planes that every picture has.
 fn picture<R: Exact>(job: &Job<'_>, averages: &Tiled<GroupAverage<R>>) -> Vec<NamedPlane<R>> {
     let blends: Tiled<Blend<R>> = averages.map(|pixel| pixel.blend);
     let mut left: Vec<_> = planes::shown(job, &blends).into();
@@ -49,16 +49,16 @@ pub(crate) struct BlendPasses<'a, R: Exact> {
     pub(crate) keep: bool,
 }
 
-/// What both passes leave.
+/// The results of both passes.
 pub(crate) struct Blended<R> {
-    /// The image of each group, if it is kept.
+    /// The image of each group, if the images are kept.
     pub(crate) images: Vec<Tiled<GroupLayers<R>>>,
     pub(crate) averages: Tiled<GroupAverage<R>>,
 }
 
 impl<R: Exact> BlendPasses<'_, R> {
-    /// Runs both over each tile; fragments for which `stays` (the tile, the pixel in it, and the
-    /// depth) does not hold are dropped.
+    /// Runs both passes over each tile. Drops the fragments for which `stays` (the tile, the pixel
+    /// in it, and the depth) does not hold.
     pub(crate) fn run(
         &self,
         job: &Job<'_>,
@@ -82,7 +82,7 @@ impl<R: Exact> BlendPasses<'_, R> {
     }
 }
 
-/// The compositing pass over somebody's images.
+/// Runs the compositing pass over a client's images.
 pub(crate) fn average<R: Exact>(
     job: &Job<'_>,
     holes: Holes,
@@ -94,7 +94,7 @@ pub(crate) fn average<R: Exact>(
     })
 }
 
-/// One stage on somebody's planes.
+/// Runs one stage on a client's planes.
 pub(crate) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,

@@ -1,4 +1,4 @@
-//! All stages in one call: from a scene to named planes; and one stage on somebody's planes.
+//! Run all stages in one call, from a scene to named planes. Or run one stage on a client's planes.
 
 use super::compositing::compositing;
 use super::nearest::{FrontLayer, nearest, single_pass};
@@ -22,7 +22,7 @@ use crate::number::Exact;
 /// The stages of pass 1 that run tile by tile.
 const FIRST: [&str; 2] = ["geometry", "nearest"];
 
-/// The definition of Algorithm 3, in any number; with `stages`, every stage leaves its planes.
+/// The definition of Algorithm 3, in any number type. With `stages`, every stage leaves its planes.
 pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -61,7 +61,7 @@ pub(super) fn define<R: Exact>(
     Ok(Picture { frame, tally: geometry.splats.tally, timings, seen: None })
 }
 
-/// Whether there is something to be refracted.
+/// Checks that there is something to refract.
 pub(super) fn check(job: &Job<'_>, settings: &Settings) -> Result<()> {
     if settings.refraction.is_some() && job.scene.environment.is_none() {
         let what = "refraction needs something to be seen through it; give an environment";
@@ -70,7 +70,7 @@ pub(super) fn check(job: &Job<'_>, settings: &Settings) -> Result<()> {
     Ok(())
 }
 
-/// Algorithm 2 without the fragments of the nearest layer and what is before it.
+/// Runs Algorithm 2 without the fragments of the nearest layer and the fragments before it.
 fn others<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
@@ -84,7 +84,7 @@ fn others<R: Exact>(
     passes.run(job, |tile, pixel, t| nearest.tile(tile)[pixel].is_before(t, epsilon), clock)
 }
 
-/// One stage on somebody's planes.
+/// Runs one stage on a client's planes.
 pub(super) fn stage<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
