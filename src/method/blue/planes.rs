@@ -1,4 +1,4 @@
-//! The planes of the stages.
+//! List the planes that each stage leaves.
 
 use super::discs::Kept;
 use crate::frame::{Framebuffer, NamedPlane, Plane};
@@ -38,7 +38,7 @@ pub(super) const STAGES: &[Stage] = &[
     surface::shading(&["discs"]),
 ];
 
-/// What the discs leave that no picture without stages has.
+/// The planes of the discs that only pictures with stages have.
 pub(super) fn stages<R: Exact>(
     job: &Job<'_>,
     kept: &Tiled<Kept<R>>,
@@ -54,7 +54,7 @@ pub(super) fn stages<R: Exact>(
     color.into_iter().chain([OFFSET.scalar(0, Plane::from_pixels(size, offset))]).collect()
 }
 
-/// What the discs leave in every picture.
+/// The planes of the discs that every picture has.
 pub(super) fn pixels<R: Exact>(target: Framebuffer<R>) -> Vec<NamedPlane<R>> {
     let Framebuffer { depth, id, weight, normal, .. } = target;
     let mut planes = vec![surface::DEPTH.scalar(0, depth)];

@@ -1,4 +1,4 @@
-//! Pass 2: every surfel as one pixel, with its id \[GBP04, 4.2\].
+//! Pass 2: draw every surfel as one pixel with its id \[GBP04, 4.2\].
 
 use super::part::Whole;
 use super::visibility::{NONE, Nearest};
@@ -15,7 +15,7 @@ use crate::splat::{Fate, SplatSettings, View};
 pub(crate) struct Kept<R> {
     /// Depth of the centre in world units; +inf where there is none.
     pub(super) depth: R,
-    /// [`NONE`] where there is none.
+    /// Id of the surfel; [`NONE`] where there is none.
     pub(super) id: u64,
 }
 
@@ -23,10 +23,11 @@ impl<R: Real> Kept<R> {
     pub(super) const EMPTY: Self = Self { depth: R::INFINITY, id: NONE };
 }
 
-/// So many surfels are placed at a time.
+/// The number of surfels that are placed at a time.
 const CHUNK: u32 = 1 << 16;
 
-/// Draws every surfel that the high level left into the picture of indices, tested against the depth of pass 1.
+/// Draws every surfel that the high level left into the picture of indices. Each surfel is tested
+/// against the depth of pass 1.
 pub(super) fn indices<R: Exact>(
     job: &Job<'_>,
     settings: &SplatSettings,
@@ -46,8 +47,8 @@ pub(super) fn indices<R: Exact>(
     kept
 }
 
-/// Calls `draw` with id, pixel and depth of each surfel whose centre is in the picture and that is
-/// drawn, in ascending id.
+/// Calls `draw` with the id, pixel and depth of each drawn surfel whose centre is in the picture,
+/// in ascending id.
 pub(crate) fn each_centre<R: Exact>(
     job: &Job<'_>,
     settings: &SplatSettings,
@@ -72,7 +73,7 @@ pub(crate) fn each_centre<R: Exact>(
     }
 }
 
-/// Pixel and depth of a surfel that is drawn.
+/// The pixel and the depth of a surfel, if the surfel is drawn.
 fn centre<R: Exact>(
     points: &PointProjector<R>,
     surfels: &Surfels,
@@ -84,9 +85,9 @@ fn centre<R: Exact>(
     (fate == Fate::Visible).then(|| (placed.pixel(), placed.t + R::ZERO))
 }
 
-/// B(i): the surfels that are kept, ascending.
+/// B(i): the kept surfels, ascending.
 pub(super) fn selected<R: Exact>(kept: &Tiled<Kept<R>>) -> Vec<u64> {
-    // A surfel has one centre, so that none is there twice.
+    // A surfel has one centre, so no surfel is there twice.
     let mut ids: Vec<u64> = kept.iter().map(|pixel| pixel.id).filter(|&id| id != NONE).collect();
     ids.sort_unstable();
     ids

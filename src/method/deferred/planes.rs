@@ -1,8 +1,8 @@
-//! The planes of the stages: where they leave, and where they come in.
+//! List the planes that each stage leaves, and read them back from a client.
 //!
-//! Planes of ids hold the lowest 32 bits of each; a polygon has none, and is `0xFFFF_FFFF` with a depth. Of
-//! ids of 40 bits the highest 8 have planes of their own, beside those of the others, as \[GBP04, 4.2\] has
-//! them in the stencil buffer.
+//! Planes of ids hold the lowest 32 bits of each id. A polygon has no id: its pixel holds
+//! `0xFFFF_FFFF` and a depth. The highest 8 bits of ids of 40 bits have planes of their own, beside
+//! the planes of the lowest bits, because \[GBP04, 4.2\] has them in the stencil buffer.
 
 use super::indices::Kept;
 use super::part::Whole;
@@ -32,7 +32,7 @@ const fn high(name: &'static str) -> PlaneRow {
 }
 
 impl<R> Nearest<R> {
-    /// What the first pass of visibility splatting leaves.
+    /// The planes that the first pass of visibility splatting leaves.
     pub(crate) const BEFORE: [Field<Self, R>; 3] = Self::planes([
         PlaneRow::new(
             "visibility.Z",
@@ -43,7 +43,7 @@ impl<R> Nearest<R> {
         surfel("visibility.id", "surfel of that fragment; 0xFFFF_FFFF where there is none"),
         high("visibility.stencil"),
     ]);
-    /// What both passes leave.
+    /// The planes that both passes of visibility splatting leave.
     pub(crate) const BOTH: [Field<Self, R>; 3] = Self::planes([
         PlaneRow::new(
             "difference.Z",
@@ -65,7 +65,7 @@ impl<R> Nearest<R> {
 }
 
 impl<R> Kept<R> {
-    /// What the pass of indices leaves.
+    /// The planes that the pass of indices leaves.
     pub(crate) const PLANES: [Field<Self, R>; 3] = [
         Field::new("indices.Z", Depth, Number(|p: &mut Self| &mut p.depth))
             .says("depth of the nearest centre in the pixel that passes the test of depth; +inf where there is \
@@ -84,7 +84,7 @@ const fn shown_planes<R>() -> [Field<u64, R>; 1] {
     [high("stencil").at(HighId(|id| id))]
 }
 
-/// The stages; the planes of the last two are those of every picture.
+/// The stages. Every picture has the planes of the last two stages.
 pub(super) const STAGES: &[Stage] = &[
     Stage { name: "visibility", reads: &[], leaves: &rows(&Nearest::<f32>::BEFORE) },
     Stage { name: "indices", reads: &["visibility"], leaves: &rows(&Kept::<f32>::PLANES) },
@@ -106,12 +106,13 @@ pub(super) const STAGES: &[Stage] = &[
     surface::shading(&["normalization"]),
 ];
 
-/// The highest bits of the ids that a picture shows, if there are any.
+/// The highest bits of the ids that a picture shows, if ids have such bits.
 pub(super) fn shown<R: Exact>(job: &Job<'_>, ids: &Tiled<u64>) -> Vec<NamedPlane<R>> {
     ids.planes(&shown_planes(), 0, &job.there(Keep::Stages))
 }
 
-/// Somebody's visibility, of the first pass or of both; nearness is that of the depth, rounded.
+/// Reads a client's visibility, of the first pass or of both. Nearness is computed from the
+/// client's depth, rounded.
 pub(super) fn given_visibility<R: Exact>(
     job: &Job<'_>,
     given: &InputPlanes<'_, R>,
@@ -129,7 +130,7 @@ pub(super) fn given_visibility<R: Exact>(
     }))
 }
 
-/// B(i) as somebody selected it, ascending, each surfel once.
+/// Reads the surfels B(i) that a client selected, ascending, each surfel once.
 pub(super) fn given_selected<R: Exact>(
     job: &Job<'_>,
     given: &InputPlanes<'_, R>,
@@ -145,7 +146,7 @@ pub(super) fn given_selected<R: Exact>(
     Ok(selected)
 }
 
-/// Whether the scene has all ids; those of 32 bits were checked as they were read.
+/// Checks that the scene has all ids. Ids of 32 bits were checked when they were read.
 fn check_ids<T, R>(
     job: &Job<'_>,
     mut ids: impl Iterator<Item = u64>,

@@ -1,4 +1,5 @@
-//! Passes 1 and 3: visibility splatting of the surfels that were seen, and of those that were not.
+//! Passes 1 and 3: visibility splatting of the surfels that the last frame saw, and of the selected
+//! surfels that it did not see.
 
 use super::part::Part;
 use crate::composite::decide;
@@ -13,7 +14,7 @@ use crate::splat::SplatSettings;
 /// The id of no surfel; its lowest 32 bits are [`NO_ID`].
 pub(crate) const NONE: u64 = u64::MAX;
 
-/// The id of a polygon, higher than that of a surfel; its lowest 32 bits are [`NO_ID`].
+/// The id of a polygon, higher than the id of any surfel. Its lowest 32 bits are [`NO_ID`].
 pub(super) const POLYGON: u64 = NONE - (1 << 32);
 
 /// The nearest fragment of a pixel.
@@ -22,7 +23,7 @@ pub(crate) struct Nearest<R> {
     pub(super) nearness: R,
     /// Depth in world units; +inf where there is none.
     pub(super) depth: R,
-    /// [`NONE`] where there is none, [`POLYGON`] of a polygon.
+    /// Id of the surfel; [`NONE`] where there is no fragment, [`POLYGON`] for a polygon.
     pub(super) id: u64,
 }
 
@@ -33,13 +34,14 @@ pub(super) fn empty<R: Exact>(perspective: bool) -> Nearest<R> {
 }
 
 impl<R: Exact> Nearest<R> {
-    /// As attribute splatting reads it; an index of a surfel has no meaning there.
+    /// The fragment as attribute splatting reads it. It names no surfel, because an index has no
+    /// meaning there.
     pub(super) fn foremost(&self) -> Foremost<R> {
         Foremost { nearness: self.nearness, depth: self.depth, id: NO_ID }
     }
 }
 
-/// Visibility splatting of a part of the scene, the pass of `ewa`.
+/// Runs visibility splatting, the pass of `ewa`, on a part of the scene.
 pub(super) fn nearest<R: Exact>(
     job: &Job<'_>,
     settings: &SplatSettings,
@@ -50,7 +52,7 @@ pub(super) fn nearest<R: Exact>(
     found.map(|&Foremost { nearness, depth, id }| Nearest { nearness, depth, id: part.id(id) })
 }
 
-/// What two passes into one depth buffer leave: the nearer fragment, ties: the lower id.
+/// Combines two passes into one depth buffer: the nearer fragment stays. Ties: the lower id.
 pub(super) fn both<R: Exact>(
     job: &Job<'_>,
     first: &Tiled<Nearest<R>>,

@@ -1,4 +1,4 @@
-//! The planes of the stages: where they leave, and where they come in.
+//! List the planes that each stage leaves, and read them back from a client.
 
 use super::attributes::Sums;
 use super::visibility::Foremost;
@@ -17,7 +17,7 @@ use crate::number::Exact;
 use crate::splat::View;
 
 impl<R> Foremost<R> {
-    /// What visibility splatting leaves.
+    /// The planes that visibility splatting leaves.
     pub(crate) const PLANES: [Field<Self, R>; 2] = [
         Field::new("visibility.Z", Depth, Number(|p: &mut Self| &mut p.depth))
             .says("depth of the nearest fragment; +inf where there is none"),
@@ -28,7 +28,7 @@ impl<R> Foremost<R> {
 }
 
 impl<R> Sums<R> {
-    /// What attribute splatting leaves, but for the margin.
+    /// The planes that attribute splatting leaves, without the margin.
     pub(crate) const PLANES: [Field<Self, R>; 4] = [
         Field::new("attributes", Color, Triple(|p: &mut Self| &mut p.color))
             .when(Colored)
@@ -45,7 +45,7 @@ impl<R> Sums<R> {
     ];
 }
 
-/// Of the margins of attribute splatting.
+/// The plane of the margins of attribute splatting.
 pub(super) const MARGIN: PlaneRow = PlaneRow::new(
     "margin",
     Diagnostic,
@@ -56,7 +56,7 @@ pub(super) const MARGIN: PlaneRow = PlaneRow::new(
             .unit("radii")
             .when(Whole);
 
-/// The stages; the planes of the last two are those of every picture.
+/// The stages. Every picture has the planes of the last two stages.
 pub(crate) const STAGES: &[Stage] = &[
     Stage { name: "projection", reads: &[], leaves: &[] },
     Stage { name: "visibility", reads: &["projection"], leaves: &rows(&Foremost::<f32>::PLANES) },
@@ -73,7 +73,7 @@ pub(crate) const STAGES: &[Stage] = &[
     surface::shading(&["normalization"]),
 ];
 
-/// Somebody's visibility; nearness is that of the depth, rounded.
+/// Reads a client's visibility. Nearness is computed from the client's depth, rounded.
 pub(crate) fn given_visibility<R: Exact>(
     job: &Job<'_>,
     given: &InputPlanes<'_, R>,
@@ -84,7 +84,7 @@ pub(crate) fn given_visibility<R: Exact>(
     Ok(visible.map(|pixel| Foremost { nearness: view.nearness(pixel.depth), ..*pixel }))
 }
 
-/// Somebody's sums; opacities and counts play no part in this method.
+/// Reads a client's sums. This method does not use opacities and counts.
 pub(crate) fn given_attributes<R: Exact>(given: &InputPlanes<'_, R>) -> Result<Tiled<Sums<R>>> {
     let [read @ .., _] = &Sums::PLANES;
     given.pixels(read, 0, Sums::NONE)

@@ -1,4 +1,4 @@
-//! The planes of the stages: where they leave, and where they come in.
+//! List the planes that each stage leaves, and read them back from a client.
 
 use super::layers::{PeeledLayer, PeeledPixel};
 use crate::composite::{decide, under::Under};
@@ -14,7 +14,7 @@ use crate::method::surface::{ALPHA, DEPTH, ID, SHADED};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 
-/// How many layers leave planes.
+/// The number of layers that leave planes.
 pub const STAGES: u32 = 8;
 
 impl<R> PeeledLayer<R> {
@@ -34,7 +34,7 @@ impl<R> PeeledLayer<R> {
             .unit("fragments")
             .says("how many fragments layer j averages, up to 255; 0 where there is no layer");
 
-    /// What a layer leaves, counted from 1.
+    /// The planes that a layer leaves. Layers are counted from 1.
     pub(crate) const PLANES: [Field<Self, R>; 4] =
         [Self::COLOR, Self::ALPHA, Self::DEPTH, Self::COUNT];
 }
@@ -55,7 +55,7 @@ pub(super) const ROWS: &[Stage] = &[
     Stage { name: "blending", reads: &["layers"], leaves: &[SHADED, ALPHA] },
 ];
 
-/// The planes of all layers together.
+/// Makes the planes of all layers together.
 pub(super) fn pixels<R: Exact>(pixels: &Tiled<PeeledPixel<R>>) -> [NamedPlane<R>; 3] {
     pixel_planes(
         pixels.plane(|pixel| pixel.depth),
@@ -64,7 +64,7 @@ pub(super) fn pixels<R: Exact>(pixels: &Tiled<PeeledPixel<R>>) -> [NamedPlane<R>
     )
 }
 
-/// The same of planes.
+/// Makes the same planes from planes of depths, ids and counts.
 pub(super) fn pixel_planes<R: Exact>(
     depth: Plane<R>,
     id: Plane<u32>,
@@ -78,13 +78,15 @@ pub(super) fn shown<R: Exact>((color, alpha): (Plane<[R; 3]>, Plane<R>)) -> [Nam
     [SHADED.triple(0, color), ALPHA.scalar(0, alpha)]
 }
 
-/// How many of somebody's layers there are, one after the other from the first.
+/// Counts a client's layers, one after the other from the first, up to the first layer that is
+/// missing.
 pub(super) fn given_layers<R: Exact>(given: &InputPlanes<'_, R>) -> usize {
     let depth = PeeledLayer::<R>::DEPTH.row;
     (1..=STAGES as usize).take_while(|&number| given.has(&depth, number)).count()
 }
 
-/// `limit_j` of somebody's layer j at each pixel; +inf where there is no layer, as none follows.
+/// `limit_j` of a client's layer j at each pixel. It is +inf where there is no layer, because no
+/// layer follows.
 pub(super) fn given_limits<R: Exact>(
     given: &InputPlanes<'_, R>,
     number: usize,
@@ -94,9 +96,9 @@ pub(super) fn given_limits<R: Exact>(
     Ok(given.tiled(|x, y| decide::limit(*depth.at(x, y), epsilon)))
 }
 
-/// Somebody's layers, blended: as many as some pixel has.
+/// Blends a client's layers, as many as any pixel has.
 ///
-/// A pixel with fewer has an opacity of 0 there, which changes nothing.
+/// A pixel with fewer layers has an opacity of 0 in the others, which changes nothing.
 pub(super) fn given_blends<R: Exact>(given: &InputPlanes<'_, R>) -> Result<Tiled<Under<R>>> {
     let counts = given.count(&LAYERS, 0)?.values();
     let most = counts.iter().copied().max().unwrap_or(0);

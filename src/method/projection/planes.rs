@@ -1,4 +1,4 @@
-//! The planes of the projection.
+//! List the planes that the projection leaves.
 
 use super::{PixelSample, Projected};
 use crate::frame::NamedPlane;
@@ -10,7 +10,7 @@ use crate::method::stage::When::{Colored, StagesOfTubes};
 use crate::method::stage::{Keep, Stage};
 use crate::number::Real;
 
-/// The stage, with which several methods begin.
+/// The stage with which several methods begin.
 pub const STAGE: Stage =
     Stage { name: "projection", reads: &[], leaves: &rows(&PixelSample::<f32>::PLANES) };
 
@@ -27,7 +27,7 @@ impl<R> PixelSample<R> {
             .unit("px")
             .says("the centre's row");
 
-    /// The planes; where a pixel is empty, those of [`PixelSample::empty`].
+    /// The planes. An empty pixel holds the values of [`PixelSample::empty`].
     pub(crate) const PLANES: [Field<Self, R>; 10] = [
         Field::new("projection.id", Index, Id(|p: &mut Self| &mut p.id))
             .says("which, see the ids of the projection; 0xFFFF_FFFF where there is none"),
@@ -54,7 +54,7 @@ impl<R> PixelSample<R> {
 }
 
 impl<R: Real> Projected<R> {
-    /// The planes of the samples.
+    /// Makes the planes of the samples.
     pub(crate) fn planes(&self, job: &Job<'_>) -> Vec<NamedPlane<R>> {
         let at = |x, y| *self.samples.at(x, y);
         let there = job.there(Keep::Stages);

@@ -1,4 +1,4 @@
-//! What the tests of both image-space methods ask of stages and planes.
+//! Check the stages and planes of both image-space methods.
 
 use crate::error::Error;
 use crate::frame::{Exec, Frame, NamedPlane, Plane, Samples};
@@ -6,21 +6,22 @@ use crate::method::{Holds, Method, Session};
 use crate::number::Exact;
 use crate::scene::{Camera, Light, Scene};
 
-/// The planes in the order of their names; the shortest decimals of floats tell floats apart to the
-/// last bit, and the signs of zeros.
+/// The planes in the order of their names. Floats are written as their shortest decimals, which
+/// tell floats apart to the last bit, and the signs of zeros too.
 fn text<R: Exact>(frame: &Frame<R>) -> Vec<String> {
     let mut planes: Vec<String> = frame.planes.iter().map(|p| format!("{p:?}")).collect();
     planes.sort();
     planes
 }
 
-/// A lit scene.
+/// Adds a light to a scene.
 pub(crate) fn lit(scene: Scene) -> Scene {
     Scene { lights: vec![Light::DEFAULT], ..scene }
 }
 
-/// Every stage, on the planes of all stages and on those of the stages that it reads alone, leaves
-/// what it leaves in the picture; and every plane of a picture is of one row.
+/// Asserts that every stage, run alone, leaves the same planes as in the picture. The stage runs on
+/// the planes of all stages, and on the planes of only the stages that it reads. Every plane of a
+/// picture must belong to one row.
 pub(crate) fn every_stage_runs_alone<R: Exact>(scene: &Scene, camera: &Camera, method: Method) {
     let exec = Exec::new(2, 16).unwrap();
     let session = Session::new(scene, method, &exec).unwrap();
@@ -49,7 +50,7 @@ pub(crate) fn every_stage_runs_alone<R: Exact>(scene: &Scene, camera: &Camera, m
     }
 }
 
-/// A stage on the planes of a picture, of which one is changed.
+/// Runs a stage on the planes of a picture after `change` has changed them.
 pub(crate) fn stage_with(
     scene: &Scene,
     camera: &Camera,
@@ -64,13 +65,13 @@ pub(crate) fn stage_with(
     session.stage(camera, stage, &frame)
 }
 
-/// The samples of a plane, to be changed.
+/// The samples of a plane, mutable.
 pub(crate) fn samples_mut<'a>(frame: &'a mut Frame<f32>, name: &str) -> &'a mut Samples<f32> {
     &mut frame.planes.iter_mut().find(|plane| plane.name == name).unwrap().samples
 }
 
-/// Planes that are missing, of another type or of another size are refused in one line that names
-/// the plane.
+/// Asserts that planes that are missing, of another type or of another size are refused in one line
+/// that names the plane.
 pub(crate) fn wrong_planes_are_refused(scene: &Scene, camera: &Camera, method: Method) {
     let invalid = |stage: &str, change: &dyn Fn(&mut Frame<f32>), says: &str| {
         let error = stage_with(scene, camera, method, stage, change).unwrap_err();

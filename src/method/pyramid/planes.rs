@@ -1,6 +1,6 @@
-//! The planes of the stages.
+//! List the planes that each stage leaves.
 //!
-//! A level lies in the upper left corner of its planes, which have the size of the picture; outside
+//! A level lies in the upper left corner of its planes, which have the size of the picture. Outside
 //! the level they hold an [empty cell](Cell::empty).
 
 use super::Cell;
@@ -15,7 +15,7 @@ use crate::method::stage::Keep;
 use crate::method::stage::When::{Always, Colored, Lit, StagesOfTubes, Tubes};
 use crate::number::Exact;
 
-/// The planes of [`Cell`]s of a level: `##` is the level.
+/// The planes of the [`Cell`]s of a level. `##` is the level.
 macro_rules! level {
     ($level:literal) => {
         [
@@ -64,10 +64,10 @@ macro_rules! level {
 pub(crate) type CellFields<R> = [Field<Cell<R>, R>; 9];
 
 impl<R> Cell<R> {
-    /// The planes of the levels 1 to the last as the pull phase left them.
+    /// The planes of the levels 1 to the last, as the pull phase left them.
     pub(crate) const PULL: CellFields<R> = level!("pull##");
-    /// The planes of the levels 0 to the last but one as the push phase left them; the push leaves
-    /// the last as it is.
+    /// The planes of the levels 0 to the last but one, as the push phase left them. The push does
+    /// not change the last level.
     pub(crate) const PUSH: CellFields<R> = level!("push##");
 }
 
@@ -81,7 +81,7 @@ pub(crate) const TANGENT: PlaneRow =
     PlaneRow::new("tangent", Vector, "of a tube, unit vector in world space; else 0").when(Tubes);
 pub(crate) const KIND: PlaneRow = PlaneRow::new("kind", Count, "as in the levels").when(Always);
 
-/// The planes of a level that leave a stage, of the size of the picture.
+/// Makes the planes that a stage leaves for a level, with the size of the picture.
 pub(super) fn write_level<R: Exact>(
     fields: &CellFields<R>,
     level: usize,
@@ -93,7 +93,7 @@ pub(super) fn write_level<R: Exact>(
     record::planes(fields, level, (size, &|x, y| *whole.at(x, y)), &job.there(Keep::Stages))
 }
 
-/// The planes of the picture.
+/// Makes the planes of the picture.
 pub(super) fn write_picture<R: Exact>(shaded: GBuffer<R>) -> Vec<NamedPlane<R>> {
     let mut planes = vec![
         SHADED.triple(0, shaded.color),

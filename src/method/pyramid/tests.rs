@@ -1,4 +1,4 @@
-//! Stages, planes and explanations of the pyramid.
+//! Test the stages, planes and explanations of the pyramid.
 
 use super::explain::explain;
 use super::planes::CellFields;
@@ -15,7 +15,7 @@ use crate::scene::indexed::{Indexed, Vertices};
 use crate::scene::{Camera, Primitives, Scene};
 use glam::Vec3;
 
-/// Primitives between random points; their vertices are the surfels of another seed.
+/// Primitives between random points. Their vertices are surfels made from another seed.
 pub(crate) fn indexed<const N: usize>(count: u32, seed: u64) -> Indexed<N> {
     let points = surfels(u64::from(count), 0.05, true, seed);
     let vertices = Vertices {
@@ -29,7 +29,7 @@ pub(crate) fn indexed<const N: usize>(count: u32, seed: u64) -> Indexed<N> {
     Indexed::new(vertices, corners).unwrap().0
 }
 
-/// Surfels with triangles, ribbons and tubes among them.
+/// Surfels, with triangles, ribbons and tubes among them.
 fn hybrid(color: bool) -> Scene {
     let primitives = Primitives {
         triangles: indexed(9, 100),
@@ -65,10 +65,10 @@ fn planes_that_do_not_fit_are_refused() {
     wrong_planes_are_refused(&hybrid(true), &cameras()[4], Method::Pyramid(Settings::default()));
 }
 
-/// A level is computed from what the planes have, so that a wrong one shows in the next alone.
+/// Every level is computed from the given planes, so a wrong level changes only the next.
 #[test]
 fn a_wrong_level_spoils_the_next_alone() {
-    // Large, so that coarse levels are not empty.
+    // The surfels are large, so that coarse levels are not empty.
     let (scene, camera) = (scene(surfels(400, 0.4, true, 3)), cameras()[6]);
     let method = Method::Pyramid(Settings::default());
     let wrong = |frame: &mut Frame<f32>, level: &str| {
@@ -92,7 +92,7 @@ fn a_wrong_level_spoils_the_next_alone() {
     }
 }
 
-/// The explanation of every pixel is the picture's.
+/// Asserts that the explanation of every pixel has the values of the picture.
 fn assert_explained<R: Exact>(scene: &Scene, camera: &Camera, settings: &Settings) {
     let exec = Exec::sequential();
     let index = Index::default();

@@ -1,4 +1,4 @@
-//! The planes of the stages: where they leave, and where they come in.
+//! List the planes that each stage leaves, and read them back from a client.
 
 use super::DepthTest;
 use super::compositing::Composite;
@@ -17,7 +17,7 @@ use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::splat::View;
 
-/// The planes of a depth-image: `##` is the group.
+/// The planes of a depth-image. `##` is the group.
 macro_rules! image {
     ($group:literal) => {
         [
@@ -47,7 +47,7 @@ pub(crate) type ImageFields<R> = [Field<ImagePixel<R>, R>; 6];
 impl<R> ImagePixel<R> {
     /// The planes of the depth-images of this method.
     pub(crate) const GROUPS: ImageFields<R> = image!("group##");
-    /// The planes of those of [`mod@crate::method::transparent_hq`].
+    /// The planes of the depth-images of [`mod@crate::method::transparent_hq`].
     pub(crate) const NEAREST: ImageFields<R> = image!("nearest.group##");
 }
 
@@ -66,7 +66,7 @@ impl<R> WeightedFragment<R> {
     ];
 }
 
-/// Of the compositing pass.
+/// The count of visible groups in the compositing pass.
 pub(crate) const COUNT: PlaneRow = PlaneRow::new(
     "sums.count",
     Count,
@@ -90,7 +90,7 @@ pub(super) const STAGES: &[Stage] = &[
     surface::shading(&["compositing"]),
 ];
 
-/// The depth-image of each group.
+/// Makes the planes of the depth-image of each group.
 pub(crate) fn image_planes<R: Exact>(
     job: &Job<'_>,
     fields: &ImageFields<R>,
@@ -109,16 +109,17 @@ pub(crate) fn image_planes<R: Exact>(
     images.iter().enumerate().flat_map(planes).collect()
 }
 
-/// Adding 0 turns a -0 into +0.
+/// Turns -0 into +0 by adding 0.
 fn unsigned<R: Exact>(vector: [R; 3]) -> [R; 3] {
     vector.map(|part| part + R::ZERO)
 }
 
-/// Somebody's depth-image of each group of the scene.
+/// Reads a client's depth-image of each group of the scene.
 ///
-/// The opacity is that of the surfel, times the weight. Nearness is that of the depth, rounded: so
-/// of two images of the same depth the one of the lower surfel is the nearest, where the definition
-/// may have told their nearnesses apart. The Voronoi-enhanced depth has done its work.
+/// The opacity is the opacity of the surfel, times the weight. Nearness is computed from the
+/// client's depth, rounded. So if two images have the same depth, the image of the lower surfel is
+/// the nearest. The definition may have told their nearnesses apart. The Voronoi-enhanced depth is
+/// not needed any more.
 pub(crate) fn given_images<R: Exact>(
     job: &Job<'_>,
     fields: &ImageFields<R>,
@@ -146,7 +147,7 @@ pub(crate) fn given_images<R: Exact>(
     (0..job.index.groups()?.len()).map(image).collect()
 }
 
-/// The sums of the compositing pass.
+/// Makes the planes of the sums of the compositing pass.
 pub(super) fn sums<R: Exact>(
     job: &Job<'_>,
     composites: &Tiled<Composite<R>>,
@@ -157,7 +158,7 @@ pub(super) fn sums<R: Exact>(
     };
     let there = job.there(Keep::Stages);
     let mut planes = record::planes(&WeightedFragment::SUMS, 0, (job.camera.size(), &at), &there);
-    // At most MAX_GROUPS.
+    // The count is at most MAX_GROUPS, so a `u8` holds it.
     planes.push(COUNT.count(0, composites.plane(|pixel| pixel.count as u8)));
     planes
 }

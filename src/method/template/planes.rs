@@ -1,6 +1,6 @@
-//! The planes of the stages, out and in.
+//! List the planes that each stage leaves, and read them back from a client.
 //!
-//! A level lies in the upper left corner of its planes, which have the size of the picture; outside
+//! A level lies in the upper left corner of its planes, which have the size of the picture. Outside
 //! the level they hold an [empty cell](Center::empty).
 
 use super::Center;
@@ -20,8 +20,8 @@ use crate::method::stage::When::{Always, Colored, Lit};
 use crate::number::Exact;
 
 impl<R> Center<R> {
-    /// The planes of the levels 1 to the top; `##` is the level. Level 0 is the planes of the
-    /// projection.
+    /// The planes of the levels 1 to the top. `##` is the level. The planes of level 0 are the
+    /// planes of the projection.
     pub(crate) const PLANES: [Field<Self, R>; 8] = [
         Field::new("level##.id", Index, Id(|p: &mut Self| &mut p.id))
             .says("the surfel, of several that were merged the foremost; 0xFFFF_FFFF if empty"),
@@ -63,7 +63,7 @@ impl<R> Gathered<R> {
             .when(Colored)
             .says("weighted sum of colours");
 
-    /// What the reconstruction leaves; the id, the last, is a plane of the picture.
+    /// The planes that the reconstruction leaves. The last, the id, is a plane of the picture.
     pub(crate) const PLANES: [Field<Self, R>; 8] = [
         Field::new("gathered.count", Holds::Count, Count(|p: &mut Self| &mut p.count))
             .says("centres in the sums, up to 255"),
@@ -94,7 +94,7 @@ pub(crate) const SHADED: PlaneRow = PlaneRow::new("", Color, "the shaded colour"
 pub(crate) const ALPHA: PlaneRow =
     PlaneRow::new("A", Scalar, "1 where a surfel or the environment is seen, else 0").when(Always);
 
-/// The planes of a level that leave the propagation, of the size of the picture.
+/// Makes the planes that the propagation leaves for a level, with the size of the picture.
 pub(super) fn write_level<R: Exact>(
     level: usize,
     cells: &Plane<Center<R>>,
@@ -106,7 +106,7 @@ pub(super) fn write_level<R: Exact>(
     record::planes(&Center::PLANES, level, (size, &|x, y| *whole.at(x, y)), &there)
 }
 
-/// The planes of what was gathered.
+/// Makes the planes that the reconstruction leaves.
 pub(super) fn write_gathered<R: Exact>(
     pixels: &Plane<Gathered<R>>,
     job: &Job<'_>,
@@ -115,7 +115,7 @@ pub(super) fn write_gathered<R: Exact>(
     record::planes(&Gathered::PLANES, 0, (job.camera.size(), &at), &job.there(Keep::Stages))
 }
 
-/// What was gathered as it comes in.
+/// Reads the planes that the reconstruction left.
 ///
 /// # Errors
 /// As [`InputPlanes::records`].
@@ -127,7 +127,7 @@ pub(super) fn read_gathered<R: Exact>(
     given.records(&Gathered::PLANES, 0, Plane::filled(width, height, Gathered::empty()))
 }
 
-/// The planes that leave the normalization; the colour is shaded before it leaves.
+/// Makes the planes that the normalization leaves. The colour is shaded before it leaves.
 pub(super) fn write_normalized<R: Exact>(target: Framebuffer<R>) -> Vec<NamedPlane<R>> {
     let mut planes = vec![DEPTH.scalar(0, target.depth)];
     planes.extend(target.normal.map(|plane| NORMAL.triple(0, plane)));
@@ -135,7 +135,7 @@ pub(super) fn write_normalized<R: Exact>(target: Framebuffer<R>) -> Vec<NamedPla
     planes
 }
 
-/// What the shading reads as it comes in: the planes of the normalization, and the sums of colours.
+/// Reads the planes for the shading: the planes of the normalization, and the sums of colours.
 ///
 /// # Errors
 /// As [`InputPlanes::records`].

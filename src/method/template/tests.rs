@@ -1,4 +1,4 @@
-//! Stages, planes and explanations of the templates.
+//! Test the stages, planes and explanations of the templates.
 
 use super::explain::explain;
 use super::*;
@@ -37,7 +37,7 @@ fn planes_that_do_not_fit_are_refused() {
     wrong_planes_are_refused(&scene, &cameras()[4], Method::Template(Settings::default()));
 }
 
-/// A level is computed from what the planes have, so that a wrong one shows in the next alone.
+/// Every level is computed from the given planes, so a wrong level changes only the next.
 #[test]
 fn a_wrong_level_spoils_the_next_alone() {
     let (scene, camera) = (scene(surfels(400, 0.4, true, 1)), cameras()[6]);
@@ -55,7 +55,7 @@ fn a_wrong_level_spoils_the_next_alone() {
     assert!(found != right, "nothing of level02 has changed");
 }
 
-/// The explanation of every pixel is the picture's.
+/// Asserts that the explanation of every pixel has the values of the picture.
 fn assert_explained<R: Exact>(scene: &Scene, camera: &Camera, settings: &Settings) {
     let exec = Exec::sequential();
     let index = Index::default();
@@ -85,7 +85,8 @@ fn assert_explained<R: Exact>(scene: &Scene, camera: &Camera, settings: &Setting
         assert_eq!(frame.scalar("gathered.Z").unwrap().at(x, y), &gathered.depth);
         assert_eq!(frame.scalar("Z").unwrap().at(x, y), &found.depth);
         most = most.max(gathered.count);
-        // The text says of as many centres that they add to the sums, from the last new start on.
+        // From the last new start on, the text must list as many centres that add to the sums as
+        // were counted.
         let text = found.to_string();
         let lines: Vec<_> = text.lines().filter(|line| line.contains(", weight ")).collect();
         let anew = |line: &&str| line.contains("the first") || line.contains("starts anew");

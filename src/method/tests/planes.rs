@@ -1,4 +1,4 @@
-//! The page of planes lists exactly the planes that pictures hold.
+//! Test that the page of planes lists exactly the planes that pictures hold.
 
 use super::sphere_of_groups;
 use crate::frame::{Exec, pyramid};
@@ -8,7 +8,7 @@ use crate::scene::{Camera, Cloud, Light, Primitives, Scene, Surfels, Vertices};
 use crate::source::Shape;
 use glam::Vec3;
 
-/// The page in the documentation.
+/// The page of planes in the documentation.
 const PAGE: &str = include_str!("../planes.md");
 
 /// The line of the page for a row.
@@ -22,7 +22,7 @@ fn line(stage: &Stage, row: &PlaneRow) -> String {
     format!("| {} | {name} | {holds} | {unit} | {when} | {meaning} |\n", stage.name)
 }
 
-/// The page as the rows of the stages write it.
+/// The page that follows from the rows of the stages.
 fn page() -> String {
     let mut page = String::new();
     for method in Method::all() {
@@ -44,7 +44,7 @@ fn the_page_has_every_row() {
     assert_eq!(PAGE, page);
 }
 
-/// The planes of a method that the page lists, and when a picture has each.
+/// The planes of a method that the page lists, each with the column *when*.
 fn listed(method: &Method) -> Vec<(&'static str, &'static str)> {
     let heading = format!("\n# `{}`\n", method.name());
     let (_, section) = PAGE.split_once(&heading).expect("a section");
@@ -57,7 +57,7 @@ fn listed(method: &Method) -> Vec<(&'static str, &'static str)> {
     rows.map(row).map(|(name, when)| (if name == "no name" { "" } else { name }, when)).collect()
 }
 
-/// Whether a picture has a plane, by the words of the page.
+/// Whether a picture has a plane, by the column *when* of the page.
 fn is_there(when: &str, session: &Session<'_>, stages: bool) -> bool {
     let (scene, method) = (session.scene(), session.method());
     let tubes = !scene.primitives.tubes.is_empty();
@@ -75,7 +75,7 @@ fn is_there(when: &str, session: &Session<'_>, stages: bool) -> bool {
         "stages, colours" => stages && colors,
         "stages, tubes" => stages && tubes,
         "stages, setting" => stages && !plain,
-        // Ids of scenes without objects have 32 bits.
+        // Scenes without objects have ids of 32 bits.
         "stages, wide ids" | "alone" => false,
         other => panic!("{other}"),
     }
@@ -100,7 +100,7 @@ fn numbers(name: &str, session: &Session<'_>, camera: &Camera) -> std::ops::Rang
     }
 }
 
-/// A picture has the planes of the page, each once, and no others.
+/// Asserts that a picture has the planes of the page, each once, and no others.
 fn agrees(session: &Session<'_>, camera: &Camera, stages: bool, found: Vec<&str>) {
     let mut expected = Vec::new();
     for (name, when) in listed(session.method()) {

@@ -1,4 +1,4 @@
-//! The planes of the stages: where they leave, and where they come in.
+//! List the planes that each stage leaves, and read them back from a client.
 
 use super::averaging::GroupAverage;
 use super::blending::GroupLayers;
@@ -60,7 +60,7 @@ impl<R> GroupLayers<R> {
 }
 
 impl<R> GroupAverage<R> {
-    /// What the average of the groups leaves, whatever is done with it.
+    /// The planes that the average of the groups leaves, whatever reads the average.
     pub(crate) const PLANES: [Field<Self, R>; 5] = [
         Field::new("blended", Color, Triple(|p: &mut Self| &mut p.blend.color))
             .says("average of the groups' colours over black, before the environment"),
@@ -93,7 +93,7 @@ pub(crate) const LAYERS: PlaneRow = PlaneRow::new(
 
 const BLENDED: [PlaneRow; GroupLayers::<f32>::PLANES.len()] = rows(&GroupLayers::<f32>::PLANES);
 
-/// The stage of blending, after some others.
+/// The stage of blending, which reads the stages `reads`.
 pub(crate) const fn blending(reads: &'static [&'static str]) -> Stage {
     Stage { name: "blending", reads, leaves: &BLENDED }
 }
@@ -109,7 +109,7 @@ pub(super) const STAGES: &[Stage] = &[
     },
 ];
 
-/// The image of each group.
+/// Makes the planes of the image of each group.
 pub(crate) fn images<R: Exact>(
     images: &[Tiled<GroupLayers<R>>],
     there: &Conditions,
@@ -118,7 +118,7 @@ pub(crate) fn images<R: Exact>(
     images.iter().enumerate().flat_map(planes).collect()
 }
 
-/// Somebody's image of each group of the scene.
+/// Reads a client's image of each group of the scene.
 pub(crate) fn given_images<R: Exact>(
     job: &Job<'_>,
     given: &InputPlanes<'_, R>,
@@ -127,12 +127,13 @@ pub(crate) fn given_images<R: Exact>(
     (0..job.index.groups()?.len()).map(image).collect()
 }
 
-/// The colour and the opacity of the picture: what each pixel shows before the environment.
+/// Makes the colour and the opacity of the picture: what each pixel shows, in front of the
+/// environment.
 pub(crate) fn shown<R: Exact>(job: &Job<'_>, shown: &Tiled<Blend<R>>) -> [NamedPlane<R>; 2] {
     before(job, shown.plane(|pixel| pixel.color), shown.plane(|pixel| pixel.alpha))
 }
 
-/// The same of planes.
+/// Makes the same planes from planes of colour and opacity.
 pub(crate) fn before<R: Exact>(
     job: &Job<'_>,
     color: Plane<[R; 3]>,
@@ -142,7 +143,7 @@ pub(crate) fn before<R: Exact>(
     [SHADED.triple(0, color), ALPHA.scalar(0, alpha)]
 }
 
-/// The planes of every picture beside its colour.
+/// Makes the planes that every picture has beside its colour and opacity.
 pub(super) fn nearest<R: Exact>(averages: &Tiled<GroupAverage<R>>) -> [NamedPlane<R>; 3] {
     nearest_planes(
         averages.plane(|pixel| pixel.depth),
@@ -151,7 +152,7 @@ pub(super) fn nearest<R: Exact>(averages: &Tiled<GroupAverage<R>>) -> [NamedPlan
     )
 }
 
-/// The same of planes.
+/// Makes the same planes from planes of depth, id and layers.
 pub(super) fn nearest_planes<R: Exact>(
     depth: Plane<R>,
     id: Plane<u32>,

@@ -1,4 +1,4 @@
-//! The planes of the stages: where they leave, and where they come in.
+//! List the planes that each stage leaves, and read them back from a client.
 
 use super::compositing::{count, count_by_opacity};
 use super::nearest::FrontLayer;
@@ -20,7 +20,7 @@ use crate::method::transparent::planes::{blending, shown};
 use crate::number::Exact;
 
 impl<R> FrontLayer<R> {
-    /// What the nearest layer leaves with the planes of the stages.
+    /// The planes of the nearest layer that only pictures with stages have.
     pub(crate) const STAGES: [Field<Self, R>; 3] = [
         Field::new("nearest", Color, Triple(|p: &mut Self| &mut p.color))
             .says("shaded colour C_F of the nearest layer, not multiplied by its opacity; black where there is \
@@ -30,7 +30,7 @@ impl<R> FrontLayer<R> {
         Field::new("nearest.mask", Holds::Count, Count(|p: &mut Self| &mut p.mask))
             .says("the stencil: 1 where the nearest layer is, else 0"),
     ];
-    /// What it leaves in every picture.
+    /// The planes of the nearest layer that every picture has.
     pub(super) const PICTURE: [Field<Self, R>; 4] = [
         DEPTH.at(Number(|pixel| &mut pixel.depth)),
         NORMAL.at(Triple(|pixel| &mut pixel.normal)),
@@ -74,7 +74,7 @@ pub(super) const STAGES: &[Stage] = &[
     },
 ];
 
-/// The planes of the nearest layer that every picture has.
+/// Makes the planes of the nearest layer that every picture has.
 pub(super) fn nearest_planes<R: Exact>(
     depth: Plane<R>,
     normal: Plane<[R; 3]>,
@@ -84,7 +84,7 @@ pub(super) fn nearest_planes<R: Exact>(
     [DEPTH.scalar(0, depth), NORMAL.triple(0, normal), WEIGHT.scalar(0, weight), ID.index(0, id)]
 }
 
-/// Somebody's nearest layer, as the other layers need it: without surfel and weight.
+/// Reads a client's nearest layer, as the other layers need it: without surfel and weight.
 pub(super) fn given_nearest<R: Exact>(given: &InputPlanes<'_, R>) -> Result<Tiled<FrontLayer<R>>> {
     let empty = FrontLayer {
         depth: R::INFINITY,
@@ -104,7 +104,7 @@ pub(super) fn given_nearest<R: Exact>(given: &InputPlanes<'_, R>) -> Result<Tile
     }))
 }
 
-/// l, with the planes of the stages.
+/// Makes the plane of l, which belongs to the planes of the stages.
 pub(super) fn layers_by_opacity<R: Exact>(
     nearest: &Tiled<FrontLayer<R>>,
     others: &Tiled<GroupAverage<R>>,
@@ -112,7 +112,7 @@ pub(super) fn layers_by_opacity<R: Exact>(
     LAYERS_BY_OPACITY.scalar(0, nearest.with(others, count_by_opacity).plane(|count| *count))
 }
 
-/// What the last pass leaves in every picture.
+/// Makes the planes that the last pass leaves in every picture.
 pub(super) fn compositing<R: Exact>(
     job: &Job<'_>,
     blends: &Tiled<Blend<R>>,
@@ -124,7 +124,7 @@ pub(super) fn compositing<R: Exact>(
     planes
 }
 
-/// The counts of layers.
+/// Makes the plane of the counts of layers.
 pub(super) fn layers<R: Exact>(layers: Plane<R>) -> NamedPlane<R> {
     LAYERS.scalar(0, layers)
 }
