@@ -12,7 +12,7 @@
 //! | stages, tubes | the same, if the scene has tubes |
 //! | stages, wide ids | the same, if ids have [more than 32 bits](crate::scene::objects::ids) |
 //! | stages, setting | the same, under the setting that the last column names |
-//! | stages, whole | with the planes of the stages of a whole picture; not where the stage runs alone |
+//! | stages, whole | the same, in a whole picture; not where the stage runs alone |
 //! | alone | where the stage runs alone: the next stage reads the plane, and no picture keeps it |
 //!
 //! To keep the planes of the stages, call [`Session::define`] with `stages`. A scene has colours if
@@ -29,7 +29,7 @@
 //! | name | number |
 //! |---|---|
 //! | `group##`, `blended.group##`, `nearest.group##` | the group, 0 to K - 1 of K groups |
-//! | `layer#` | the layer, 1 to the setting `layers`, at most [`peeling::STAGES`]; also those that no pixel has |
+//! | `layer#` | the layer, 1 to the setting `layers`, at most [`peeling::STAGES`]; some empty |
 //! | `pull##` | the level, 1 to L, the last of [`crate::frame::pyramid::sizes`] |
 //! | `push##` | the level, 0 to L - 1 |
 //! | `level##` | the level, 1 to the top of [`mod@super::template`] |

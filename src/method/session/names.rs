@@ -59,7 +59,7 @@ impl<'a> Names<'a> {
     }
 
     /// Replaces ids by indices in a client's planes. Planes of ids of 40 bits without the planes of
-    /// their highest 8 bits are left out, because they do not identify the surfel.
+    /// their highest 8 bits are left out, because 32 bits do not identify the surfel.
     pub(crate) fn number_given<R>(&self, frame: &mut Frame<R>, stages: &[Stage]) -> Result<()> {
         if !self.ids.is_wide() {
             return self.number(frame);

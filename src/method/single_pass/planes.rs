@@ -158,7 +158,7 @@ pub(super) fn sums<R: Exact>(
     };
     let there = job.there(Keep::Stages);
     let mut planes = record::planes(&WeightedFragment::SUMS, 0, (job.camera.size(), &at), &there);
-    // The count is at most MAX_GROUPS, so a `u8` holds it.
+    // The count is at most MAX_GROUPS, which fits the count's type.
     planes.push(COUNT.count(0, composites.plane(|pixel| pixel.count as u8)));
     planes
 }
