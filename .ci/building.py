@@ -101,11 +101,10 @@ def code():
     """Bytes of machine code of each room of src/, and of everything else."""
     symbols = subprocess.run(["nm", "-C", "-S", PROGRAM], capture_output=True, text=True, check=True)
     rooms = Counter()
-    for line in symbols.stdout.splitlines():
-        parts = line.split(" ", 3)
-        if len(parts) == 4 and parts[2] in "tTwW":
-            room = re.search(r"splatref::(\w+)", parts[3])
-            rooms[room.group(1) if room else "dependencies and std"] += int(parts[1], 16)
+    # Address, size, kind and name; symbols without a size are no functions.
+    for size, name in re.findall(r"^[0-9a-f]+ ([0-9a-f]+) [tTwW] (.*)$", symbols.stdout, re.M):
+        room = re.search(r"splatref::(\w+)", name)
+        rooms[room.group(1) if room else "dependencies and std"] += int(size, 16)
     return rooms
 
 
