@@ -26,7 +26,7 @@ STATE = ROOT / "target" / "building.json"
 PAGE = ROOT / "docs" / "building.md"
 PROGRAM = ROOT / "target" / "release" / "splatref"
 GROWTH = 1.1
-# Two runs of one commit differed by 6 %; the machine is shared.
+# Four runs of nearly the same code differed by 8 %; the machine is shared.
 NOISE = 1.1
 TOTAL = ".ci/run but for what takes turns"
 
@@ -109,7 +109,7 @@ def code():
 
 
 def figures(state):
-    """Each figure that `check` compares, with its unit and the noise that it may have."""
+    """Each figure that `check` compares, with the factor of noise that it may have."""
     yardstick = sum(dependencies(state).values())
     rooms = code()
     own = sum(size for room, size in rooms.items() if room != "dependencies and std")

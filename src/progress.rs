@@ -1,4 +1,4 @@
-//! How far long work is.
+//! Report the progress of long work.
 
-/// Who is told how far long work is: the name of the step, how much of the step is done, and of how much.
+/// Receives the progress of long work: the name of the step, the units that are done, and the units in all.
 pub type Progress<'a> = &'a dyn Fn(&str, u64, u64);

@@ -33,7 +33,7 @@ pub(crate) trait Search {
     /// Looks at the point of a rank.
     fn look(&mut self, rank: usize);
 
-    /// Whether to look at points that are at least so far from the place of the search along each axis.
+    /// Whether the search reaches points that are at least this far away along each axis.
     fn reaches(&self, offset: [f64; 3]) -> bool;
 }
 
@@ -68,10 +68,11 @@ impl PointTree {
         &self.entries
     }
 
-    /// Shows a search all points that it reaches from a place, and others; the nearer half of a range first.
+    /// Shows a search every point that it reaches from a place, and some others. The nearer half of a
+    /// range comes first.
     ///
-    /// Where distances are computed of coordinates in the same way as of offsets, rounding is monotone: no
-    /// point behind a plane is nearer than the plane.
+    /// The search must compute distances to points and to planes by the same operations. Because
+    /// rounding is monotone, no point behind a plane is then nearer than the plane.
     pub(crate) fn search(&self, from: Vec3, search: &mut impl Search) {
         self.descend(0..self.entries.len(), from, [0.0; 3], search);
     }
