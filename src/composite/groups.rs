@@ -26,6 +26,7 @@
 //!   before the nearest depth was known. So a backend may not composite images as they come.
 
 use super::{decide, sum};
+use crate::number::MapInline;
 use crate::number::{Exact, Real};
 
 /// The content of a depth-image at a pixel: the attributes of one fragment, times its weight.
@@ -71,7 +72,7 @@ impl<R: Real> WeightedFragment<R> {
     #[inline(always)]
     #[must_use]
     pub fn new(depth: R, weight: R, normal: [R; 3], color: [R; 3], opacity: R) -> Self {
-        let weighted = |value: [R; 3]| value.map(|component| weight * component);
+        let weighted = |value: [R; 3]| value.map_inline(|component| weight * component);
         let (normal, color) = (weighted(normal), weighted(color));
         Self { depth, weight, normal, color, opacity: weight * opacity }
     }

@@ -21,6 +21,7 @@
 //! For 1, 2 or 4 terms of weight 1 the average is the plain mean.
 
 use super::decide;
+use crate::number::MapInline;
 use crate::number::{Exact, Real};
 
 /// The neighbours that take part, and their weights.
@@ -37,7 +38,7 @@ impl<R: Real> Mean<R> {
     #[inline(always)]
     #[must_use]
     pub fn new(takes: [bool; 4], weights: [R; 4]) -> Self {
-        let w = [0, 1, 2, 3].map(|j| if takes[j] { weights[j] } else { R::ZERO });
+        let w = [0, 1, 2, 3].map_inline(|j| if takes[j] { weights[j] } else { R::ZERO });
         Self { takes, weights: w, scale: R::ONE / ((w[0] + w[1]) + (w[2] + w[3])) }
     }
 
@@ -92,7 +93,7 @@ pub fn foremost<R: Exact>(
             (nearest, end, first) = (front[j], back[j], j);
         }
     }
-    ([0, 1, 2, 3].map(|j| candidates[j] & decide::overlaps(front[j], end)), first)
+    ([0, 1, 2, 3].map_inline(|j| candidates[j] & decide::overlaps(front[j], end)), first)
 }
 
 #[cfg(test)]

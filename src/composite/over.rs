@@ -4,6 +4,7 @@
 //! is blended in at the end, times what the layers let through.
 
 use super::sum;
+use crate::number::MapInline;
 use crate::number::Real;
 
 /// Blended layers: their colour over black, and their opacity.
@@ -39,7 +40,7 @@ impl<R: Real> Blend<R> {
     #[must_use]
     pub fn before(self, behind: [R; 3]) -> Self {
         let through = R::ONE - self.alpha;
-        Self { color: sum::plus(self.color, behind.map(|c| through * c)), alpha: R::ONE }
+        Self { color: sum::plus(self.color, behind.map_inline(|c| through * c)), alpha: R::ONE }
     }
 
     /// Blends the next nearer layer, from back to front: `alpha c + (1 - alpha) below`, for the

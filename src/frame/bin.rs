@@ -1,6 +1,7 @@
 //! Sort screen bounds into tiles, by counting sort, at the resolution that suits the bounds.
 
 use super::{Grid, Rect};
+use crate::number::MapInline;
 
 /// The bounds that touch each tile: for each tile, indices in ascending order.
 ///
@@ -38,7 +39,7 @@ struct Level {
 #[inline(always)]
 fn tiles(grid: &Grid, r: &Rect) -> Rect {
     // Tiles are powers of two wide and high; a shift is much faster than a division.
-    coarser(r, grid.side.map(u32::trailing_zeros))
+    coarser(r, grid.side.map_inline(u32::trailing_zeros))
 }
 
 /// The cells of 2^x by 2^y that a rectangle touches; the rectangle is not empty.

@@ -2,6 +2,7 @@
 
 use super::Plane;
 use crate::error::{Error, Result};
+use crate::number::MapInline;
 use crate::number::Real;
 
 /// The most bytes of a channel's name: a reader of EXR without its long-names flag takes no more.
@@ -62,8 +63,8 @@ impl<R> Samples<R> {
     /// The names that the channels of a plane called `name` have in a file.
     fn channel_names(&self, name: &str) -> Vec<String> {
         match self {
-            Self::Color(_) => COLOR.map(|letter| component(name, letter)).to_vec(),
-            Self::Vector(_) => VECTOR.map(|letter| component(name, letter)).to_vec(),
+            Self::Color(_) => COLOR.map_inline(|letter| component(name, letter)).to_vec(),
+            Self::Vector(_) => VECTOR.map_inline(|letter| component(name, letter)).to_vec(),
             Self::Scalar(_) | Self::Index(_) | Self::Count(_) => vec![name.to_owned()],
         }
     }
@@ -275,8 +276,8 @@ impl<R: Real> Frame<R> {
             name: plane.name.clone(),
             samples: match &plane.samples {
                 Samples::Scalar(p) => Samples::Scalar(p.map(|v| v.to_f32())),
-                Samples::Color(p) => Samples::Color(p.map(|v| v.map(R::to_f32))),
-                Samples::Vector(p) => Samples::Vector(p.map(|v| v.map(R::to_f32))),
+                Samples::Color(p) => Samples::Color(p.map(|v| v.map_inline(R::to_f32))),
+                Samples::Vector(p) => Samples::Vector(p.map(|v| v.map_inline(R::to_f32))),
                 Samples::Index(p) => Samples::Index(p.clone()),
                 Samples::Count(p) => Samples::Count(p.clone()),
             },
@@ -325,7 +326,7 @@ pub(crate) fn component(name: &str, letter: &str) -> String {
 
 /// The three channels of a colour or a vector.
 fn components<'a>(name: &str, plane: &'a Plane<[f32; 3]>, letters: [&str; 3]) -> [Channel<'a>; 3] {
-    [0, 1, 2].map(|offset| Channel {
+    [0, 1, 2].map_inline(|offset| Channel {
         name: component(name, letters[offset]),
         data: ChannelData::Float { values: plane.values().as_flattened(), stride: 3, offset },
     })

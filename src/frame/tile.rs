@@ -238,6 +238,7 @@ impl Grid {
 
     /// The tile of a pixel, and the index of the pixel in its tile, both counted row by row.
     #[must_use]
+    #[inline]
     pub fn place(&self, x: u32, y: u32) -> (usize, usize) {
         let (column, row) = (x / self.side[0], y / self.side[1]);
         let Rect { x0, y0, x1, .. } = self.rect(column, row);

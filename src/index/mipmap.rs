@@ -51,6 +51,7 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::point_tree::{Entry, PointTree, Search};
 use crate::memory;
+use crate::number::MapInline;
 use crate::progress::Progress;
 use crate::scene::mipmap::check_levels;
 use crate::scene::{Mipmap, Surfels};
@@ -130,7 +131,7 @@ fn size(surfels: &Surfels, i: usize) -> f64 {
     match surfels.tangents() {
         None => surfels.radius()[i].into(),
         Some(tangents) => {
-            let [u, v] = tangents[i].map(Vec3::as_dvec3);
+            let [u, v] = tangents[i].map_inline(Vec3::as_dvec3);
             let across = u.cross(v);
             dot(across, across).sqrt().sqrt()
         }
@@ -276,7 +277,7 @@ impl Sample {
 
 /// The cell of a position, as integers in the order of the cell's coordinates.
 fn cell(position: Vec3, side: f64) -> [u64; 3] {
-    position.to_array().map(|x| {
+    position.to_array().map_inline(|x| {
         let bits = ((f64::from(x) / side).floor() + 0.0).to_bits();
         // The bits of numbers >= 0 ascend with the numbers; the bits of negative numbers descend.
         if bits >> 63 == 0 { bits | 1 << 63 } else { !bits }

@@ -47,6 +47,7 @@
 use super::point_tree::PointTree;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::number::MapInline;
 use crate::scene::{Camera, Projection, Surfels};
 use std::ops::Range;
 
@@ -165,7 +166,7 @@ fn eye(camera: &Camera) -> [f64; 3] {
         Projection::Perspective => camera.eye().to_array(),
         Projection::Orthographic => {
             let towards = camera.view_from_world.row(2).truncate().to_array();
-            towards.map(|c| if c > 0.0 { f64::INFINITY } else { f64::NEG_INFINITY })
+            towards.map_inline(|c| if c > 0.0 { f64::INFINITY } else { f64::NEG_INFINITY })
         }
     }
 }

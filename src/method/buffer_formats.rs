@@ -66,6 +66,7 @@ use crate::composite::bins::DepthBins;
 use crate::composite::over::Blend;
 use crate::composite::under::Under;
 use crate::frame::{Frame, NamedPlane, Samples};
+use crate::number::MapInline;
 use crate::number::{Exact, Real};
 use crate::scene::{Camera, Projection, Scene};
 use crate::setting::Words;
@@ -200,7 +201,7 @@ impl Buffers {
         if self == Self::F32 {
             v
         } else {
-            v.map(|v| R::from_f32(self.signed(v.to_f64()) as f32 + 0.0))
+            v.map_inline(|v| R::from_f32(self.signed(v.to_f64()) as f32 + 0.0))
         }
     }
 
@@ -228,7 +229,7 @@ pub(crate) struct DepthRange {
 impl DepthRange {
     pub(crate) fn new(scene: &Scene, camera: &Camera) -> Self {
         let (center, radius) = scene.bounding_sphere();
-        let [m0, m1, m2, m3] = camera.view_from_world.row(2).to_array().map(f64::from);
+        let [m0, m1, m2, m3] = camera.view_from_world.row(2).to_array().map_inline(f64::from);
         let t = -(((m0 * center.x + m1 * center.y) + m2 * center.z) + m3);
         let least = f64::from(camera.near);
         let near = if t - radius > least { t - radius } else { least };

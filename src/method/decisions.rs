@@ -7,6 +7,7 @@ use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::Rect;
 use crate::number::Exact;
+use crate::number::MapInline;
 use crate::splat::{Shared, Splat};
 use std::fmt;
 
@@ -37,7 +38,7 @@ impl<R: Exact> Decision<R> {
         signs: [&'static str; 2],
         words: [&'static str; 2],
     ) -> Self {
-        let [sign, word] = [signs, words].map(|of| if holds { of[0] } else { of[1] });
+        let [sign, word] = [signs, words].map_inline(|of| if holds { of[0] } else { of[1] });
         Self { quantity, own, against, holds, sign, word }
     }
 

@@ -5,6 +5,7 @@ use super::surface::{ALPHA, DEPTH, ID, NORMAL, SHADED, WEIGHT};
 use crate::composite::over::Blend;
 use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Pool, Wanted};
 use crate::index::seen::Seen;
+use crate::number::MapInline;
 use crate::number::{Exact, Real, Truth};
 use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
@@ -95,7 +96,7 @@ pub(crate) fn before_light<R: Real>(layers: Blend<R>, light: impl FnOnce() -> [R
         return layers;
     }
     let whole = layers.before(light());
-    let color = [0, 1, 2].map(|c| R::select(open, whole.color[c], layers.color[c]));
+    let color = [0, 1, 2].map_inline(|c| R::select(open, whole.color[c], layers.color[c]));
     Blend { color, alpha: R::select(open, whole.alpha, layers.alpha) }
 }
 
@@ -125,7 +126,7 @@ pub(crate) fn wall_shares<const N: usize>(
 ) -> [Duration; N] {
     let sums: [Duration; N] = std::array::from_fn(|i| tiles.iter().map(|tile| tile[i]).sum());
     let total: Duration = sums.iter().sum();
-    sums.map(|part| match total.as_secs_f64() {
+    sums.map_inline(|part| match total.as_secs_f64() {
         0.0 => Duration::ZERO,
         total => wall.mul_f64(part.as_secs_f64() / total),
     })

@@ -13,6 +13,7 @@
 //!   `libm` in another way ([`powers_f32`]).
 
 use super::lanes::{LANES, any, each, mask};
+use crate::number::MapInline;
 
 /// e^x in f64.
 #[must_use]
@@ -57,7 +58,7 @@ pub fn powers_f32(x: &[f32; LANES], y: f32) -> [f32; LANES] {
     let parts = (y - whole) * 16_777_216.0;
     // Other exponents need more squares or roots than the bound covers.
     if !(0.0..=65_536.0).contains(&whole) || parts.floor() != parts {
-        return x.map(|x| pow_f32(x, y));
+        return x.map_inline(|x| pow_f32(x, y));
     }
     let product = product(x, whole as u32, parts as u32);
     let error = (f64::from(whole) + 128.0) * f64::EPSILON;

@@ -111,36 +111,38 @@ pub(crate) fn select_u32(
 }
 
 // -- Rows in memory
+//
+// Chunks are assigned, because `copy_from_slice` is a call where a crate is compiled in several
+// units.
 
 /// Reads the values of a row from an index on.
 #[inline(always)]
-pub(crate) fn load<T: Copy + Default>(row: &[T], at: usize) -> [T; LANES] {
-    let mut lanes = [T::default(); LANES];
-    lanes.copy_from_slice(&row[at..at + LANES]);
-    lanes
+pub(crate) fn load<T: Copy>(row: &[T], at: usize) -> [T; LANES] {
+    row[at..at + LANES].as_chunks().0[0]
 }
 
 /// Overwrites the values of a row from an index on.
 #[inline(always)]
 pub(crate) fn store<T: Copy>(row: &mut [T], at: usize, lanes: &[T; LANES]) {
-    row[at..at + LANES].copy_from_slice(lanes);
+    row[at..at + LANES].as_chunks_mut().0[0] = *lanes;
 }
 
 /// Overwrites a row with the first lanes, as many as the row has: a whole copy is one instruction.
 #[inline(always)]
 pub(crate) fn store_first<T: Copy>(row: &mut [T], lanes: &[T; LANES]) {
     if row.len() == LANES {
-        row.copy_from_slice(lanes);
+        store(row, 0, lanes);
     } else {
-        row.copy_from_slice(&lanes[..row.len()]);
+        for (value, lane) in row.iter_mut().zip(lanes) {
+            *value = *lane;
+        }
     }
 }
 
 /// Reads twice [`LANES`] values of a row from an index on, and separates the even and the odd ones.
 #[inline(always)]
 pub(crate) fn load_halves<T: Copy + Default>(row: &[T], at: usize) -> [[T; LANES]; 2] {
-    let mut pairs = [T::default(); 2 * LANES];
-    pairs.copy_from_slice(&row[at..at + 2 * LANES]);
+    let pairs: [T; 2 * LANES] = row[at..at + 2 * LANES].as_chunks().0[0];
     let (mut even, mut odd) = ([T::default(); LANES], [T::default(); LANES]);
     for i in 0..LANES {
         even[i] = pairs[2 * i];
@@ -160,7 +162,7 @@ pub(crate) fn store_halves<T: Copy + Default>(
     for i in 0..LANES {
         (pairs[2 * i], pairs[2 * i + 1]) = (even[i], odd[i]);
     }
-    row[at..at + 2 * LANES].copy_from_slice(&pairs);
+    row[at..at + 2 * LANES].as_chunks_mut().0[0] = pairs;
 }
 
 // -- Vectors, component by component

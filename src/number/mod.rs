@@ -22,6 +22,7 @@
 pub mod ball;
 pub mod elementary;
 pub mod lanes;
+mod map_inline;
 pub mod random;
 pub mod real;
 pub mod srgb;
@@ -29,6 +30,7 @@ pub mod truth;
 pub mod vector;
 
 pub use ball::Ball;
+pub(crate) use map_inline::MapInline;
 pub use real::{Exact, Real};
 pub use truth::{Pixel, Truth};
 pub use vector::{Vector2, Vector3};

@@ -3,6 +3,7 @@
 use super::elementary;
 use super::lanes::LANES;
 use super::{Pixel, Truth};
+use crate::number::MapInline;
 use std::fmt::Debug;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 
@@ -106,7 +107,7 @@ pub trait Exact: Real<Truth = bool, Pixel = u32> + PartialOrd {
     #[inline(always)]
     #[must_use]
     fn powers(bases: &[Self; LANES], exponent: Self) -> [Self; LANES] {
-        bases.map(|base| base.pow(exponent))
+        bases.map_inline(|base| base.pow(exponent))
     }
     /// The angle of the point (x, `self`) from the x axis, in radians, see [`elementary::atan2`].
     fn atan2(self, x: Self) -> Self;

@@ -1,6 +1,7 @@
 //! Points as a file holds them: nothing derived, nothing checked except the lengths of the arrays.
 
 use super::{Coordinates, Groups, Mipmap, Paint};
+use crate::number::MapInline;
 use glam::{DVec3, Vec3};
 
 /// A named number for each point, such as `roughness`, for your own shading.
@@ -178,5 +179,5 @@ pub fn half_axes(normal: Vec3, radius: f32) -> [Vec3; 2] {
     };
     let u = axis.cross(n).normalize();
     let v = n.cross(u);
-    [u, v].map(|half| (half * f64::from(radius)).as_vec3())
+    [u, v].map_inline(|half| (half * f64::from(radius)).as_vec3())
 }

@@ -1,5 +1,6 @@
 //! Where the points of a mesh are in its texture.
 
+use crate::number::MapInline;
 use glam::Vec2;
 
 /// Texture coordinates (u, v), see [`super::texture`] for what they mean. Values are unchecked: a
@@ -25,7 +26,7 @@ impl Coordinates {
     #[must_use]
     pub fn corners(&self, triangle: usize, corners: [u32; 3]) -> [Vec2; 3] {
         match self {
-            Self::Points(points) => corners.map(|corner| points[corner as usize]),
+            Self::Points(points) => corners.map_inline(|corner| points[corner as usize]),
             Self::Corners(all) => all[triangle],
         }
     }

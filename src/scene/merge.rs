@@ -1,6 +1,7 @@
 //! Join several models into one: their clouds, and their primitives.
 
 use crate::error::{Error, Result};
+use crate::number::MapInline;
 use crate::scene::cloud::half_axes;
 use crate::scene::indexed::Indexed;
 use crate::scene::{Cloud, Mipmap, Primitives, Property, Vertices};
@@ -95,7 +96,9 @@ fn join_kind<const N: usize>(mut parts: Vec<Indexed<N>>, color: Vec3) -> Result<
         let (vertices, corners) = part.into_parts();
         // An overflow is refused below, where the vertices are counted.
         let first = all.position.len() as u32;
-        joined.extend(corners.into_iter().map(|corners| corners.map(|i| first.wrapping_add(i))));
+        joined.extend(
+            corners.into_iter().map(|corners| corners.map_inline(|i| first.wrapping_add(i))),
+        );
         let n = vertices.position.len();
         append(&mut all.color, vertices.color, n, color);
         append(&mut all.opacity, vertices.opacity, n, 1.0);

@@ -1,5 +1,6 @@
 //! Rotations between two rotations, as [`crate::scene::objects::motion`] writes them out.
 
+use crate::number::MapInline;
 use crate::number::elementary;
 use glam::{DMat3, DVec3};
 
@@ -9,7 +10,7 @@ pub(crate) fn slerp(a: &DMat3, b: &DMat3, s: f64) -> DMat3 {
     let mut c = dot(p, q);
     // q and -q are the same rotation; the closer one gives the shorter way.
     if c < 0.0 {
-        (q, c) = (q.map(|part| -part), -c);
+        (q, c) = (q.map_inline(|part| -part), -c);
     }
     // Between nearly equal rotations the division by k would lose the digits.
     let turned: [f64; 4] = if c >= 1.0 - 1.0 / 1_099_511_627_776.0 {
@@ -21,7 +22,7 @@ pub(crate) fn slerp(a: &DMat3, b: &DMat3, s: f64) -> DMat3 {
         std::array::from_fn(|i| p[i] * of_p + q[i] * of_q)
     };
     let length = dot(turned, turned).sqrt();
-    matrix(turned.map(|part| part / length))
+    matrix(turned.map_inline(|part| part / length))
 }
 
 fn dot(p: [f64; 4], q: [f64; 4]) -> f64 {
@@ -39,8 +40,8 @@ fn quaternion(m: &DMat3) -> [f64; 4] {
     ];
     let greatest = (1..4).fold(0, |most, i| if squares[i] > squares[most] { i } else { most });
     let g = 2.0 * squares[greatest].sqrt();
-    let (own, [x, y, z]) = (g / 4.0, [m21 - m12, m02 - m20, m10 - m01].map(|part| part / g));
-    let [xy, xz, yz] = [m10 + m01, m02 + m20, m21 + m12].map(|part| part / g);
+    let (own, [x, y, z]) = (g / 4.0, [m21 - m12, m02 - m20, m10 - m01].map_inline(|part| part / g));
+    let [xy, xz, yz] = [m10 + m01, m02 + m20, m21 + m12].map_inline(|part| part / g);
     match greatest {
         0 => [own, x, y, z],
         1 => [x, own, xy, xz],

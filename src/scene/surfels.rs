@@ -1,5 +1,6 @@
 //! Surfels: the checked structure of arrays that every method takes.
 
+use crate::number::MapInline;
 mod arrays;
 
 pub(super) use arrays::Arrays;
@@ -199,7 +200,7 @@ impl Surfels {
     /// Whether two surfels have the same place and shape, by all bits: everything drawn for one is
     /// then drawn for the other.
     pub(crate) fn are_equal(&self, a: u32, b: u32) -> bool {
-        let [a, b] = [a, b].map(|i| i as usize);
+        let [a, b] = [a, b].map_inline(|i| i as usize);
         a < self.len()
             && b < self.len()
             && self.position[a] == self.position[b]
@@ -343,7 +344,7 @@ impl Surfels {
             let reach = match &self.tangents {
                 None => f64::from(self.radius[i]),
                 Some(tangents) => {
-                    let [u, v] = tangents[i].map(Vec3::as_dvec3);
+                    let [u, v] = tangents[i].map_inline(Vec3::as_dvec3);
                     (u.length_squared() + v.length_squared()).sqrt()
                 }
             };

@@ -74,6 +74,7 @@ use super::{Coordinates, camera::MAX_EXTENT};
 use crate::error::{Error, Result};
 use crate::frame::Plane;
 use crate::memory;
+use crate::number::MapInline;
 use crate::number::Real;
 use glam::{DVec2, DVec3, Vec3};
 use std::fmt;
@@ -157,7 +158,7 @@ impl Texture {
         let side = (1_u64 << level) as f64;
         let [xx, xy, yy] = [ellipse.xx + side * side, ellipse.xy, ellipse.yy + side * side];
         let det = xx * yy - xy * xy;
-        let axes = [0, 1].map(|i| Axis {
+        let axes = [0, 1].map_inline(|i| Axis {
             texels: self.size()[i].into(),
             side: 1 << level,
             repeats: repeats[i],
@@ -182,7 +183,7 @@ impl Texture {
                 if q < 1.0 {
                     let w = (width * height) * ((1.0 - q) * (1.0 - q));
                     let color = *cells.at(axes[0].index(column), axes[1].index(row));
-                    sum += DVec3::from_array(color.map(f64::from)) * w;
+                    sum += DVec3::from_array(color.map_inline(f64::from)) * w;
                     weight += w;
                 }
             }
@@ -197,14 +198,14 @@ impl Texture {
 /// The level after one, for a picture of this size.
 fn coarser(fine: &Plane<[f32; 3]>, level: u32, size: [u32; 2]) -> Plane<[f32; 3]> {
     let [columns, rows] =
-        size.map(|texels| Axis { texels: texels.into(), side: 1 << level, repeats: false });
+        size.map_inline(|texels| Axis { texels: texels.into(), side: 1 << level, repeats: false });
     let half = |n: u32| n.div_ceil(2);
     Plane::from_pixels([half(fine.width()), half(fine.height())], |x, y| {
         let (mut sum, mut area) = (DVec3::ZERO, 0.0);
         for j in 2 * y..fine.height().min(2 * y + 2) {
             for i in 2 * x..fine.width().min(2 * x + 2) {
                 let own = columns.cell(i.into()).1 * rows.cell(j.into()).1;
-                sum += DVec3::from_array(fine.at(i, j).map(f64::from)) * own;
+                sum += DVec3::from_array(fine.at(i, j).map_inline(f64::from)) * own;
                 area += own;
             }
         }
@@ -242,14 +243,14 @@ impl Axis {
     /// The first cell between two places, and the cell after the last; one more on each side.
     fn range(self, from: f64, to: f64) -> [i64; 2] {
         let tiles = if self.repeats { [-REPEATS, REPEATS + 1] } else { [0, 1] };
-        let [low, high] = tiles.map(|tile| tile * self.texels);
+        let [low, high] = tiles.map_inline(|tile| tile * self.texels);
         let cell = |place: f64| {
             // Held within the tiles, so that nothing overflows.
             let place = place.clamped(low as f64, high as f64).floor() as i64;
             let (tile, own) = (place.div_euclid(self.texels), place.rem_euclid(self.texels));
             tile * self.cells() + own / self.side
         };
-        let [low, high] = tiles.map(|tile| tile * self.cells());
+        let [low, high] = tiles.map_inline(|tile| tile * self.cells());
         [low.max(cell(from) - 1), high.min(cell(to) + 2)]
     }
 }
@@ -310,7 +311,7 @@ impl Paint {
 
     /// The mean around (u, v) within an ellipse of that plane; NaN unless both are finite.
     pub(crate) fn color(&self, at: DVec2, ellipse: Ellipse) -> Vec3 {
-        let [width, height] = self.texture.size().map(f64::from);
+        let [width, height] = self.texture.size().map_inline(f64::from);
         let tile = |place: f64, repeats: bool| if repeats { place - place.floor() } else { place };
         let [column, row] = self.repeats;
         let at = DVec2::new(tile(at.x, column) * width, tile(1.0 - at.y, row) * height);

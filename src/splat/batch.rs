@@ -3,6 +3,7 @@
 use super::disc_lanes::DiscLanes;
 use super::{Disc, FOOTPRINT, Fate, Footprint, Outline, Projector, Splat, project};
 use crate::frame::Rect;
+use crate::number::MapInline;
 use crate::number::lanes::{LANES, Lanes, vectorized};
 use crate::number::{Exact, Real, Vector3};
 use crate::scene::Surfels;
@@ -56,7 +57,7 @@ pub fn disc<R: Real>(surfels: &Surfels, i: usize) -> Disc<R> {
         position: Vector3::from_glam(surfels.position()[i]),
         normal: Vector3::from_glam(surfels.normal()[i]),
         radius: R::from_f32(surfels.radius()[i]),
-        tangents: surfels.tangents().map(|t| t[i].map(Vector3::from_glam)),
+        tangents: surfels.tangents().map(|t| t[i].map_inline(Vector3::from_glam)),
     }
 }
 

@@ -42,12 +42,13 @@
 
 use super::shape::PlacedDisc;
 use super::{Disc, View};
+use crate::number::MapInline;
 use crate::number::{Real, Truth, Vector2, Vector3};
 
 /// Two half axes of a disc or ellipse in view space.
 fn basis<R: Real>(view: &View<R>, placed: &PlacedDisc<R>, disc: &Disc<R>) -> [Vector3<R>; 2] {
     if let Some(tangents) = disc.tangents {
-        return tangents.map(|t| view.direction(t));
+        return tangents.map_inline(|t| view.direction(t));
     }
     let n = placed.n;
     // Any axis that is not along the normal gives a basis of the plane.

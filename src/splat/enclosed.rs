@@ -16,6 +16,7 @@
 use super::disc_lanes::DiscLanes;
 use super::{FOOTPRINT, Footprint, Projector, Reasons, Splat};
 use crate::frame::Rect;
+use crate::number::MapInline;
 use crate::number::ball::{BallLanes, Common, Profile, Three};
 use crate::number::lanes::{LANES, vectorized_avx2};
 use crate::number::{Ball, Truth};
@@ -55,7 +56,7 @@ vectorized_avx2!(
             return range.for_each(|surfel| draw(surfel, None));
         }
         let projector = *projector;
-        let picture = [projector.view.width, projector.view.height].map(|n| n.middle as u32);
+        let picture = [projector.view.width, projector.view.height].map_inline(|n| n.middle as u32);
         for some in seen::<TANGENTS, P>(&projector, surfels, range).chunks(LANES) {
             // The last lanes may repeat one surfel.
             let one = |i: usize| (some[i.min(some.len() - 1)], 1.0);

@@ -225,6 +225,7 @@ impl<R: Real> Shared<R> {
     }
 
     /// The nearness of an empty pixel, whose depth is +inf.
+    #[inline]
     #[must_use]
     pub fn empty(&self) -> R {
         if self.perspective { R::ZERO } else { -R::INFINITY }

@@ -4,6 +4,7 @@
 //! difference in its picture comes from its rasterization or its compositing.
 
 use super::{Footprint, Kernel, Projector, Shared, Splat, Tally, View, batch};
+use crate::number::MapInline;
 use crate::number::Vector2;
 use crate::scene::{Camera, Surfels};
 use std::mem::{offset_of, size_of};
@@ -98,7 +99,7 @@ impl SplatRecord {
             amplitude: f.amplitude,
             surfel: splat.surfel,
             bounds: [b.x0, b.y0, b.x1, b.y1],
-            normal: if splat.back { normal.map(|component| -component) } else { normal },
+            normal: if splat.back { normal.map_inline(|component| -component) } else { normal },
             opacity: surfels.opacity_of(i),
             color: surfels.color().map_or([0.0; 3], |color| color[i].to_array()),
             back: splat.back.into(),
@@ -154,9 +155,9 @@ impl SplatRecord {
         let ([nx, ny, nz], [r, g, b]) = (self.normal, self.color);
         let [x0, y0, x1, y1] = self.bounds;
         let footprint = [cx, cy, ux, uy, vy, w0, wx, wy, w_far, w_near, self.amplitude];
-        let attributes = [nx, ny, nz, self.opacity, r, g, b].map(f32::to_bits);
+        let attributes = [nx, ny, nz, self.opacity, r, g, b].map_inline(f32::to_bits);
         let mut words = [0; Self::SIZE / 4];
-        words[..11].copy_from_slice(&footprint.map(f32::to_bits));
+        words[..11].copy_from_slice(&footprint.map_inline(f32::to_bits));
         words[11..16].copy_from_slice(&[self.surfel, x0, y0, x1, y1]);
         words[16..23].copy_from_slice(&attributes);
         words[23] = self.back;

@@ -1,5 +1,6 @@
 //! The camera in the numbers of the arithmetic.
 
+use crate::number::MapInline;
 use crate::number::{Real, Vector3};
 use crate::scene::{Camera, Projection};
 
@@ -31,7 +32,7 @@ impl<R: Real> View<R> {
     #[must_use]
     pub fn new(camera: &Camera) -> Self {
         let m = camera.view_from_world;
-        let row = |i: usize| m.row(i).to_array().map(R::from_f32);
+        let row = |i: usize| m.row(i).to_array().map_inline(R::from_f32);
         Self {
             rows: [row(0), row(1), row(2)],
             perspective: camera.projection == Projection::Perspective,

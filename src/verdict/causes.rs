@@ -7,6 +7,7 @@
 //! several mistakes qualify, the one that leaves the fewest wrong pixels in all stages is named.
 //! The rarer mistakes are tried only where no common one explains everything.
 
+use crate::number::MapInline;
 mod epsilon;
 
 use super::client::{Band, Client, Storage, Ties};
@@ -68,12 +69,14 @@ impl Change {
                 // Even an encoding in f32 loses this much, because a shading language's power does.
                 let lost = 1.0 / 262_144.0;
                 let storage = Storage::Srgb { relative: lost, least: lost };
-                let decoded = client.colors(&[""], |color, _| color.map(srgb::to_linear));
+                let decoded = client.colors(&[""], |color, _| color.map_inline(srgb::to_linear));
                 as_if(decoded.stored("", storage))
             }
-            Self::Divided => as_if(
-                client.colors(&["", "resolved"], |color, weight| color.map(|part| part / weight)),
-            ),
+            Self::Divided => {
+                as_if(client.colors(&["", "resolved"], |color, weight| {
+                    color.map_inline(|part| part / weight)
+                }))
+            }
         }
     }
 }

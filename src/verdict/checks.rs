@@ -5,6 +5,7 @@ use crate::frame::named::{COLOR, VECTOR, component};
 use crate::method::Job;
 use crate::method::picture::before_light;
 use crate::method::stage::{Conditions, Holds, PlaneRow};
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Vector3};
 use crate::scene::Environment;
@@ -70,13 +71,14 @@ pub(crate) fn input<P: Profile>(plane: &StoredPlane<'_, f64>, at: (u32, u32)) ->
 }
 
 /// The three numbers that the next stage reads at a pixel.
+#[inline]
 pub(crate) fn inputs<P: Profile>(
     plane: &StoredPlane<'_, [f64; 3]>,
     at: (u32, u32),
 ) -> [Ball<P>; 3] {
     let balls = plane.balls(at);
     let exact = |ball: Ball<P>| read(ball.middle, plane.storage).unwrap_or(ball);
-    if plane.radii.is_some() { balls } else { balls.map(exact) }
+    if plane.radii.is_some() { balls } else { balls.map_inline(exact) }
 }
 
 /// Compares one number with the numbers that are allowed.
@@ -92,6 +94,7 @@ pub(crate) fn number<P: Profile>(
 
 /// Compares three numbers with the numbers that are allowed. Their letters follow from the kind of
 /// the plane.
+#[inline]
 pub(crate) fn triple<P: Profile>(
     part: usize,
     plane: &StoredPlane<'_, [f64; 3]>,
@@ -126,6 +129,7 @@ fn component_of<P: Profile>(
 }
 
 /// Compares an index or a count with the required value.
+#[inline]
 pub(crate) fn whole<T: Copy + Into<u32>>(
     part: usize,
     plane: &StoredPlane<'_, T>,

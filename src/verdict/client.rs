@@ -1,6 +1,7 @@
 //! Hand in the planes of your renderer: planes by the names of a method's rows, and how exactly
 //! each is stored.
 
+use crate::number::MapInline;
 mod storage;
 
 pub use storage::Storage;
@@ -173,8 +174,8 @@ impl From<&Frame<f32>> for Client {
             name: name.clone(),
             samples: match samples {
                 Samples::Scalar(p) => Samples::Scalar(p.map(|&v| v.into())),
-                Samples::Color(p) => Samples::Color(p.map(|v| v.map(f64::from))),
-                Samples::Vector(p) => Samples::Vector(p.map(|v| v.map(f64::from))),
+                Samples::Color(p) => Samples::Color(p.map(|v| v.map_inline(f64::from))),
+                Samples::Vector(p) => Samples::Vector(p.map(|v| v.map_inline(f64::from))),
                 Samples::Index(p) => Samples::Index(p.clone()),
                 Samples::Count(p) => Samples::Count(p.clone()),
             },

@@ -9,6 +9,7 @@
 //! - Where it is undecided whether the foremost joins itself, it does so by law.
 
 use crate::composite::decide;
+use crate::number::MapInline;
 use crate::number::{Real, Truth};
 use crate::verdict::Doubt;
 
@@ -45,7 +46,7 @@ pub(crate) fn outcomes<R: Real>(
                 add(&mut found, None);
                 continue;
             }
-            let with = [0, 1, 2, 3].map(|j| match present[j] {
+            let with = [0, 1, 2, 3].map_inline(|j| match present[j] {
                 true if j == first => true.into(),
                 true => joins(j, first),
                 false => false.into(),
@@ -74,7 +75,7 @@ fn open<T: Truth>(truth: T) -> bool {
 
 /// The sets that four truths allow.
 fn subsets<T: Truth>(truths: [T; 4]) -> impl Iterator<Item = [bool; 4]> {
-    let all = (0..16).map(|bits: u32| [0, 1, 2, 3].map(|j| bits >> j & 1 == 1));
+    let all = (0..16).map(|bits: u32| [0, 1, 2, 3].map_inline(|j| bits >> j & 1 == 1));
     all.filter(move |set| {
         let allows = |j: usize| if set[j] { truths[j].possibly() } else { !truths[j].certainly() };
         (0..4).all(allows)

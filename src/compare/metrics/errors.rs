@@ -29,6 +29,7 @@ use super::{
 };
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Frame, Plane, Samples};
+use crate::number::MapInline;
 
 /// All errors of one picture.
 ///
@@ -76,14 +77,15 @@ impl Errors {
         let compared: Vec<bool> = pairs
             .map(|((covered, _), region)| *covered > 0.0 && region == Region::Interior)
             .collect();
-        let depths = [picture.scalar("Z")?, truth.scalar("Z")?].map(Plane::values);
-        let normals = [picture, truth].map(|frame| match frame.plane("normal") {
+        let depths = [picture.scalar("Z")?, truth.scalar("Z")?].map_inline(Plane::values);
+        let normals = [picture, truth].map_inline(|frame| match frame.plane("normal") {
             Some(Samples::Vector(plane)) => Some(plane.values()),
             _ => None,
         });
         let normal = normals[0].zip(normals[1]).and_then(|(a, b)| normal(a, b, &compared));
         let distances = exec.ordered(vec![0, 1, 2], |c: usize| {
-            let [a, b] = colors.map(|p| p.values().iter().map(|v| v[c]).collect::<Vec<f32>>());
+            let [a, b] =
+                colors.map_inline(|p| p.values().iter().map(|v| v[c]).collect::<Vec<f32>>());
             if wanted.ssim { channel(&a, &b, width) } else { (mean_square(&a, &b), None) }
         });
         let flip = if wanted.flip {
@@ -221,7 +223,7 @@ impl Metric {
     /// [`Error::Usage`] with all names, if no metric has this name.
     pub fn named(name: &str) -> Result<&'static Self> {
         const { &METRICS }.iter().find(|metric| metric.name == name).ok_or_else(|| {
-            let names = METRICS.map(|metric| metric.name).join(", ");
+            let names = METRICS.map_inline(|metric| metric.name).join(", ");
             Error::Usage(format!("no metric is called {name}; give one of: {names}"))
         })
     }

@@ -32,6 +32,7 @@ use super::same_size;
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Plane};
 use crate::memory;
+use crate::number::MapInline;
 use crate::number::elementary;
 use std::f64::consts::PI;
 
@@ -95,7 +96,8 @@ impl Flicker {
             )));
         }
         let errors = picture.values().iter().zip(truth.values()).map(|(p, q)| {
-            let [r, g, b] = [0, 1, 2].map(|c| LUMINANCE[c] * (f64::from(p[c]) - f64::from(q[c])));
+            let [r, g, b] =
+                [0, 1, 2].map_inline(|c| LUMINANCE[c] * (f64::from(p[c]) - f64::from(q[c])));
             (r + g + b) as f32
         });
         self.frames.push(Plane::from_values(self.width, self.height, errors.collect()));

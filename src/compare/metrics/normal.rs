@@ -1,6 +1,7 @@
 //! Measure how far the normal of a surface is off.
 
 use super::percentile;
+use crate::number::MapInline;
 use crate::number::elementary;
 
 /// Angles between the normals of some pixels, in degrees; see [`normal`].
@@ -51,8 +52,8 @@ fn points(v: &[f32; 3]) -> bool {
 }
 
 fn angle(a: [f32; 3], b: [f32; 3]) -> f64 {
-    let (a, b) = (a.map(f64::from), b.map(f64::from));
-    let [x, y, z] = [1, 2, 0].map(|i| {
+    let (a, b) = (a.map_inline(f64::from), b.map_inline(f64::from));
+    let [x, y, z] = [1, 2, 0].map_inline(|i| {
         let (j, k) = (i, (i + 1) % 3);
         a[j] * b[k] - a[k] * b[j]
     });

@@ -1,5 +1,6 @@
 //! SSIM, the structural similarity of two planes \[WBSS04\].
 
+use crate::number::MapInline;
 use crate::number::elementary;
 
 /// The side of the window of \[WBSS04\], in pixels.
@@ -75,7 +76,7 @@ fn each_similarity(a: &[f32], b: &[f32], width: usize, mut visit: impl FnMut(f64
             let rows: [&[Vec<f64>; 5]; WINDOW] =
                 std::array::from_fn(|k| &blurred[(top + k) % WINDOW]);
             let [m_a, m_b, m_aa, m_bb, m_ab] = std::array::from_fn(|moment| {
-                blur_columns(rows.map(|row| row[moment].as_slice()), &weights)
+                blur_columns(rows.map_inline(|row| row[moment].as_slice()), &weights)
             });
             for x in 0..columns {
                 visit(similarity([m_a[x], m_b[x], m_aa[x], m_bb[x], m_ab[x]]));
@@ -91,7 +92,7 @@ fn gaussian() -> [f64; WINDOW] {
         elementary::exp(-offset * offset / (2.0 * SIGMA * SIGMA))
     });
     let sum: f64 = weights.iter().sum();
-    weights.map(|weight| weight / sum)
+    weights.map_inline(|weight| weight / sum)
 }
 
 /// a, b, a^2, b^2, a b along a row.

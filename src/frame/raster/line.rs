@@ -28,6 +28,7 @@
 
 use super::snap::{Snap, not_negative};
 use crate::frame::Rect;
+use crate::number::MapInline;
 
 /// A segment on the screen in fixed point.
 #[derive(Clone, Debug)]
@@ -55,8 +56,8 @@ impl Line {
     #[must_use]
     pub fn bounds(&self, width: u32, height: u32) -> Rect {
         let (a, b) = (self.snap.pixel(self.a), self.snap.pixel(self.b));
-        let low = [0, 1].map(|i| a[i].min(b[i]));
-        let high = [0, 1].map(|i| a[i].max(b[i]) + 1);
+        let low = [0, 1].map_inline(|i| a[i].min(b[i]));
+        let high = [0, 1].map_inline(|i| a[i].max(b[i]) + 1);
         let picture = Rect { x0: 0, y0: 0, x1: width, y1: height };
         not_negative(low, high).intersection(&picture)
     }
@@ -67,7 +68,7 @@ impl Line {
     pub fn for_each(&self, rect: &Rect, mut visit: impl FnMut(u32, u32, i64, i64)) {
         let (snap, a, b, major) = (&self.snap, self.a, self.b, self.major);
         let mut visit_inside = |pixel: [i64; 2], numerator: i64, denominator: i64| {
-            if let [Ok(x), Ok(y)] = pixel.map(u32::try_from)
+            if let [Ok(x), Ok(y)] = pixel.map_inline(u32::try_from)
                 && rect.contains(x, y)
             {
                 visit(x, y, numerator, denominator);

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::frame::Rect;
 use crate::number::Exact;
+use crate::number::MapInline;
 
 /// How far coordinates may reach in either direction, in pixels: 2^17.
 pub const GUARD_BAND: u32 = 1 << 17;
@@ -57,14 +58,15 @@ impl Snap {
     }
 
     /// Holds a point in the guard band, which [`Snap::fixed`] never leaves.
+    #[inline]
     pub(super) fn held(&self, point: [i64; 2]) -> [i64; 2] {
         let guard = i64::from(GUARD_BAND) << self.bits;
-        point.map(|c| c.clamp(-guard, guard))
+        point.map_inline(|c| c.clamp(-guard, guard))
     }
 
     /// The pixel that contains a point; its left and upper borders are part of it.
     pub(super) fn pixel(&self, point: [i64; 2]) -> [i64; 2] {
-        point.map(|c| c >> self.bits)
+        point.map_inline(|c| c >> self.bits)
     }
 
     /// The first pixel, along one axis, whose centre is not before `halves` half units of fixed
@@ -82,9 +84,10 @@ impl Snap {
 }
 
 /// The part of columns and rows `low .. high` that is at or beyond 0.
+#[inline]
 pub(super) fn not_negative(low: [i64; 2], high: [i64; 2]) -> Rect {
     // The guard band keeps these at 2^17 or less.
-    let [x0, y0] = low.map(|c| c.max(0) as u32);
-    let [x1, y1] = high.map(|c| c.max(0) as u32);
+    let [x0, y0] = low.map_inline(|c| c.max(0) as u32);
+    let [x1, y1] = high.map_inline(|c| c.max(0) as u32);
     Rect { x0, y0, x1, y1 }
 }

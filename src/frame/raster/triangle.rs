@@ -25,6 +25,7 @@
 
 use super::snap::{Snap, not_negative};
 use crate::frame::Rect;
+use crate::number::MapInline;
 
 /// A triangle on the screen in fixed point; its area is not 0.
 #[derive(Clone, Debug)]
@@ -56,7 +57,7 @@ impl Edge {
         let first = snap.center(0);
         let origin = gradient[0] * (first - 2 * q[0]) + gradient[1] * (first - 2 * q[1]);
         let top_or_left = gradient[0] > 0 || (gradient[0] == 0 && gradient[1] > 0);
-        let step = gradient.map(|g| g << (snap.bits + 1));
+        let step = gradient.map_inline(|g| g << (snap.bits + 1));
         Self { origin, step, least: i64::from(!top_or_left) }
     }
 
@@ -74,7 +75,7 @@ impl Triangle {
     /// coordinates.
     #[must_use]
     pub fn new(snap: &Snap, corners: [[i64; 2]; 3]) -> Option<Self> {
-        let [a, b, c] = corners.map(|p| snap.held(p));
+        let [a, b, c] = corners.map_inline(|p| snap.held(p));
         let cross = (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0]);
         if cross == 0 {
             return None;
@@ -91,8 +92,8 @@ impl Triangle {
     pub(crate) fn around(snap: &Snap, [a, b, c]: [[i64; 2]; 3]) -> Rect {
         // The ends are exclusive, because a centre on the right or the lower border is on no left
         // or top edge.
-        let low = [0, 1].map(|i| snap.first_center_from(2 * a[i].min(b[i]).min(c[i])));
-        let high = [0, 1].map(|i| snap.first_center_from(2 * a[i].max(b[i]).max(c[i])));
+        let low = [0, 1].map_inline(|i| snap.first_center_from(2 * a[i].min(b[i]).min(c[i])));
+        let high = [0, 1].map_inline(|i| snap.first_center_from(2 * a[i].max(b[i]).max(c[i])));
         not_negative(low, high)
     }
 
@@ -122,10 +123,10 @@ impl Triangle {
         if rect.is_empty() {
             return;
         }
-        let [e0, e1, e2] = self.edges.map(|e| e.step[0]);
+        let [e0, e1, e2] = self.edges.map_inline(|e| e.step[0]);
         for y in rect.y0..rect.y1 {
             let (x0, x1) = self.span(y, rect.x0, rect.x1);
-            let [mut w0, mut w1, mut w2] = self.edges.map(|e| e.at(x0, y));
+            let [mut w0, mut w1, mut w2] = self.edges.map_inline(|e| e.at(x0, y));
             for x in x0..x1 {
                 visit(x, y, [w0, w1, w2]);
                 (w0, w1, w2) = (w0 + e0, w1 + e1, w2 + e2);
@@ -134,6 +135,7 @@ impl Triangle {
     }
 
     /// The covered columns of row `y` among `x0 .. x1`: one run, because a triangle is convex.
+    #[inline]
     fn span(&self, y: u32, x0: u32, x1: u32) -> (u32, u32) {
         // Columns are counted from x0.
         let (mut first, mut end) = (0, i64::from(x1 - x0));

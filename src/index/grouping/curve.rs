@@ -2,6 +2,7 @@
 //! in the list.
 
 use crate::frame::Exec;
+use crate::number::MapInline;
 use crate::number::Real;
 use glam::{DVec3, Vec3};
 
@@ -99,7 +100,7 @@ impl Cells {
     /// The position of a point's cell along the curve.
     fn place(&self, point: Vec3) -> u64 {
         let at = self.scale * (point.as_dvec3() - self.low);
-        let [x, y, z] = at.to_array().map(|at| (at as u64).min(self.count - 1));
+        let [x, y, z] = at.to_array().map_inline(|at| (at as u64).min(self.count - 1));
         spread(x) | spread(y) << 1 | spread(z) << 2
     }
 }

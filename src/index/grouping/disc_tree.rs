@@ -11,6 +11,7 @@ use super::curve;
 use super::disc::{SpaceDisc, are_near};
 use super::samples::DiscSamples;
 use crate::frame::Exec;
+use crate::number::MapInline;
 use crate::scene::Surfels;
 use glam::{DVec3, Vec3};
 
@@ -269,7 +270,7 @@ pub(super) fn radii(surfels: &Surfels) -> impl Fn(u32) -> f64 {
     move |id| match surfels.tangents() {
         None => f64::from(surfels.radius()[id as usize]),
         Some(tangents) => {
-            let [u, v] = tangents[id as usize].map(length);
+            let [u, v] = tangents[id as usize].map_inline(length);
             if v > u { v } else { u }
         }
     }

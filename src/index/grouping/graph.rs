@@ -7,6 +7,7 @@ use super::parts::Parts;
 use super::rules::{Coplanar, Rules};
 use crate::error::Result;
 use crate::frame::Exec;
+use crate::number::MapInline;
 use crate::number::lanes::vectorized;
 use crate::progress::Progress;
 use crate::scene::Surfels;
@@ -152,7 +153,7 @@ impl Rows {
             (end - before, end)
         };
         for row in self.starts.windows(2) {
-            let [from, to] = [row[0].at, row[1].at].map(|at| at as usize);
+            let [from, to] = [row[0].at, row[1].at].map_inline(|at| at as usize);
             let middle = from + row[0].lower as usize;
             let (lower, _) = keep(from..middle);
             let (_, end) = keep(middle..to);
@@ -263,14 +264,14 @@ pub(super) fn relaxed(
 
 fn are_coplanar(surfels: &Surfels, tree: &DiscTree, rule: &Coplanar, i: usize, j: usize) -> bool {
     let cosine = tree.discs[i].cosine(&tree.discs[j]);
-    let [i, j] = [i, j].map(|place| tree.surfel[place] as usize);
+    let [i, j] = [i, j].map_inline(|place| tree.surfel[place] as usize);
     cosine >= f64::from(rule.cosine)
         && within_planes(surfels, rule, i, j)
         && of_one_color(surfels, rule, i, j)
 }
 
 fn within_planes(surfels: &Surfels, rule: &Coplanar, i: usize, j: usize) -> bool {
-    let [p, q] = [i, j].map(|i| surfels.position()[i].as_dvec3());
+    let [p, q] = [i, j].map_inline(|i| surfels.position()[i].as_dvec3());
     let d = p - q;
     let radius = super::disc_tree::radii(surfels);
     let most = f64::from(rule.offset) * (radius(i as u32) + radius(j as u32));
@@ -279,7 +280,7 @@ fn within_planes(surfels: &Surfels, rule: &Coplanar, i: usize, j: usize) -> bool
 
 fn of_one_color(surfels: &Surfels, rule: &Coplanar, i: usize, j: usize) -> bool {
     surfels.color().is_none_or(|color| {
-        let [a, b] = [i, j].map(|i| color[i].as_dvec3().to_array());
+        let [a, b] = [i, j].map_inline(|i| color[i].as_dvec3().to_array());
         a.into_iter().zip(b).all(|(a, b)| (a - b).abs() <= f64::from(rule.color))
     })
 }

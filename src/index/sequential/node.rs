@@ -2,6 +2,7 @@
 
 use super::{larger, longer, up};
 use crate::frame::Exec;
+use crate::number::MapInline;
 use crate::number::Real;
 use crate::scene::Surfels;
 use crate::scene::cloud::half_axes;
@@ -91,7 +92,7 @@ impl Leaves {
         let (radius, weight) = match &self.tangents {
             None => (r, r * r),
             Some(tangents) => {
-                let [u, v] = tangents[place].map(Vec3::as_dvec3);
+                let [u, v] = tangents[place].map_inline(Vec3::as_dvec3);
                 (longer_half_axis(u, v), u.cross(v).length())
             }
         };
@@ -147,7 +148,7 @@ impl Leaves {
             }
             _ => measure(range),
         };
-        let [perpendicular, slabs @ ..] = measured.extents.map(|[low, high]| high - low);
+        let [perpendicular, slabs @ ..] = measured.extents.map_inline(|[low, high]| high - low);
         let width = slabs.into_iter().fold(f64::INFINITY, Real::at_most);
         let diameter = 2.0 * f64::from(disc.radius);
         let tangential = larger(diameter - width, 0.0);
@@ -196,7 +197,7 @@ impl Measured {
 /// The normal, and four directions in its plane, 45 degrees from one to the next.
 fn axes(normal: Vec3) -> [DVec3; 5] {
     const HALF_ROOT: f64 = std::f64::consts::FRAC_1_SQRT_2;
-    let [u, v] = half_axes(normal, 1.0).map(Vec3::as_dvec3);
+    let [u, v] = half_axes(normal, 1.0).map_inline(Vec3::as_dvec3);
     [normal.as_dvec3(), u, v, (u + v) * HALF_ROOT, (u - v) * HALF_ROOT]
 }
 
@@ -207,7 +208,7 @@ fn half_extent(disc: &Disc, tangents: Option<[Vec3; 2]>, axis: DVec3) -> f64 {
     match tangents {
         None => f64::from(disc.radius) * disc.normal.as_dvec3().cross(axis).length(),
         Some(tangents) => {
-            let [u, v] = tangents.map(|half| half.as_dvec3().dot(axis));
+            let [u, v] = tangents.map_inline(|half| half.as_dvec3().dot(axis));
             (u * u + v * v).sqrt()
         }
     }

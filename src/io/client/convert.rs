@@ -232,7 +232,11 @@ impl Scaled {
 
     /// Applies `value` to each number.
     fn map(mut self, value: impl Fn(f64) -> f64) -> Vec<Vec<f64>> {
-        self.components.iter_mut().flatten().for_each(|number| *number = value(*number));
+        for component in &mut self.components {
+            for number in component {
+                *number = value(*number);
+            }
+        }
         self.components
     }
 }
@@ -283,6 +287,7 @@ fn depths(keys: &PlaneKeys, numbers: Scaled) -> Reason<(Vec<Vec<f64>>, Storage)>
 }
 
 /// Maps a number from [0, 1] to its range, if there is one.
+#[inline]
 fn ranged(v: f64, range: Option<[f64; 2]>) -> f64 {
     range.map_or(v, |[low, high]| low + v * (high - low))
 }

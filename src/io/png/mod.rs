@@ -9,6 +9,7 @@ pub use read::{Stored, read};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Plane};
 use crate::io::replace::{Pending, write_atomically};
+use crate::number::MapInline;
 use crate::number::srgb;
 use image::codecs::png::PngEncoder;
 use image::{ExtendedColorType, ImageEncoder, ImageError};
@@ -85,7 +86,7 @@ fn pending(
             let mut pixels = vec![0; 4 * color.values().len()];
             let values = color.values().iter().zip(alpha.values());
             for (pixel, (color, &a)) in pixels.as_chunks_mut().0.iter_mut().zip(values) {
-                let [r, g, b] = color.map(|v| srgb.encode(value(v, a)));
+                let [r, g, b] = color.map_inline(|v| srgb.encode(value(v, a)));
                 *pixel = [r, g, b, quantize(f64::from(a), 255) as u8];
             }
             (pixels, ExtendedColorType::Rgba8)

@@ -7,6 +7,7 @@ use crate::method::Job;
 use crate::method::fragment::facing;
 use crate::method::surface::SurfacePixel;
 use crate::method::tiled::Tiled;
+use crate::number::MapInline;
 use crate::number::{Exact, Real};
 use crate::splat::View;
 
@@ -106,15 +107,15 @@ pub(crate) fn shown<R: Exact>(job: &Job<'_>, kept: &Kept<R>, colored: bool) -> S
         return SurfacePixel::EMPTY;
     }
     let (scene, i) = (job.scene, kept.surfel as usize);
-    let normal = scene.surfels.normal()[i].to_array().map(R::from_f32);
+    let normal = scene.surfels.normal()[i].to_array().map_inline(R::from_f32);
     let color = scene.surfels.color().map_or(scene.material.color, |color| color[i]);
     SurfacePixel {
         depth: kept.depth,
         id: kept.surfel,
         weight: R::ONE,
-        normal: facing(normal, kept.back).map(|part| part + R::ZERO),
+        normal: facing(normal, kept.back).map_inline(|part| part + R::ZERO),
         color: if colored {
-            color.to_array().map(|part| R::from_f32(part) + R::ZERO)
+            color.to_array().map_inline(|part| R::from_f32(part) + R::ZERO)
         } else {
             [R::ZERO; 3]
         },

@@ -8,6 +8,7 @@ use crate::frame::{Framebuffer, Plane};
 use crate::method::Job;
 use crate::method::projection::{self, PixelSample};
 use crate::number::Exact;
+use crate::number::MapInline;
 use crate::splat::View;
 
 /// The nearest triangle of each pixel.
@@ -54,7 +55,7 @@ impl<R: Exact> Polygons<R> {
                     row[x] = projection::world(&self.view, sample.normal);
                 }
                 if let Some(row) = &mut color {
-                    row[x] = sample.color.map(|part| part + R::ZERO);
+                    row[x] = sample.color.map_inline(|part| part + R::ZERO);
                 }
             }
         });

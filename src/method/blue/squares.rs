@@ -4,6 +4,7 @@ use crate::frame::{Bins, Grid, Rect};
 use crate::method::Job;
 use crate::method::prepare::batch_size;
 use crate::method::projection::surfels::PointProjector;
+use crate::number::MapInline;
 use crate::number::{Exact, Real, Vector3};
 use crate::scene::{Sides, Surfels};
 use crate::splat::{Fate, Reasons, Tally, View, ellipse};
@@ -70,7 +71,7 @@ impl<'a, R: Real> SquareProjector<'a, R> {
     pub(crate) fn place(&self, i: usize) -> PlacedSquare<R> {
         let side = R::from_f32(self.side(i));
         let [position, normal] =
-            [self.surfels.position()[i], self.surfels.normal()[i]].map(Vector3::from_glam);
+            [self.surfels.position()[i], self.surfels.normal()[i]].map_inline(Vector3::from_glam);
         self.square(position, normal, R::from_f32(self.surfels.radius()[i]), side)
     }
 

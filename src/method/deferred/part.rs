@@ -237,6 +237,7 @@ impl<'a> Range<'a> {
 }
 
 impl Range<'_> {
+    #[inline]
     pub(super) fn id(&self, surfel: usize) -> u64 {
         self.first + surfel as u64
     }
@@ -247,6 +248,7 @@ impl Range<'_> {
     }
 
     /// Position and normal of a surfel in its place.
+    #[inline]
     pub(super) fn surfel(&self, i: usize) -> (Vec3, Vec3) {
         let (position, normal) = (self.of.position()[i], self.of.normal()[i]);
         self.place.map_or((position, normal), |place| place.surfel(position, normal))

@@ -34,6 +34,7 @@ use crate::method::Job;
 use crate::method::projection::{self, PixelSample, SampleKind};
 use crate::method::surface::SurfacePixel;
 use crate::number::Exact;
+use crate::number::MapInline;
 use crate::scene::{Scene, Surfels};
 use crate::splat::View;
 
@@ -73,7 +74,7 @@ impl<R: Exact> Polygons<R> {
         let Some((scene, paint)) = alone(job, whole)? else { return Ok(None) };
         let (cull, snap) = (settings.splats.cull, Snap::default());
         let drawn = projection::project::<R>(&Job { scene: &scene, ..*job }, cull, snap)?;
-        let paint = paint.map(|color| color.map(R::from_f32));
+        let paint = paint.map(|color| color.map_inline(R::from_f32));
         Ok(Some(Self { samples: drawn.samples, view: View::new(job.camera), paint }))
     }
 

@@ -13,6 +13,7 @@
 //! pixel of its centre even where the faces of the box do not cover the centre of that pixel.
 
 use crate::frame::Rect;
+use crate::number::MapInline;
 use crate::number::Vector3;
 use crate::scene::{Camera, Similarity};
 use crate::splat::View;
@@ -81,7 +82,7 @@ impl<'a> Queries<'a> {
             largest = greater(largest, greater(p.length(), seen.length()));
         }
         let lost = largest / 1_048_576.0;
-        let depths = seen.map(|p| -p.z);
+        let depths = seen.map_inline(|p| -p.z);
         let [mut nearest, mut farthest] = [depths[0]; 2];
         for t in depths {
             (nearest, farthest) = (-greater(-nearest, -t), greater(farthest, t));

@@ -2,6 +2,7 @@
 
 use super::tile::{BlockGrid, Record, SIDE};
 use crate::frame::Rect;
+use crate::number::MapInline;
 use crate::number::Real;
 use crate::number::lanes::{LANES, Lanes, each};
 use crate::splat::{Footprint, Shared};
@@ -123,7 +124,8 @@ pub(super) fn touches<A>(record: &Record<A>, tile: &Rect, shared: &Shared<f32>) 
         return true;
     }
     let [left, right] = span(&record.footprint, tile.y0, tile.y1 - tile.y0, shared.limit);
-    let [first, last] = [tile.x0, tile.x1 - 1].map(|x| x as f32 + 0.5 - record.footprint.center.x);
+    let [first, last] =
+        [tile.x0, tile.x1 - 1].map_inline(|x| x as f32 + 0.5 - record.footprint.center.x);
     // Comparisons that NaN fails, so that such a splat keeps its bounds.
     !((left > last) | (right < first))
 }

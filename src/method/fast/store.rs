@@ -29,8 +29,14 @@ pub(super) fn store(tile: &Tile, pixels: &mut FramebufferTile<'_, f32>) {
 }
 
 /// Writes one value into a tile of a plane.
+#[inline(always)]
 pub(crate) fn clear_plane<T: Copy>(plane: &mut TileMut<'_, T>, value: T) {
-    plane.rows().for_each(|row| row.fill(value));
+    for row in plane.rows() {
+        // A loop, because `fill` is compiled for a value that is not known there.
+        for pixel in row {
+            *pixel = value;
+        }
+    }
 }
 
 /// Copies the blocks of a tile into its rows of a plane; `pixel` returns the value of a lane.

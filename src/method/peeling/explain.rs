@@ -10,6 +10,7 @@ use crate::method::Job;
 use crate::method::decisions::{Place, Touch};
 use crate::method::ewa::explain::{TwoPasses, two_passes};
 use crate::number::Exact;
+use crate::number::MapInline;
 use std::fmt;
 
 /// The replay of one pixel.
@@ -104,7 +105,7 @@ impl<R: Exact> fmt::Display for PeelingReplay<R> {
             )?;
             visible.iter().try_for_each(|touch| writeln!(f, "  {touch}"))?;
             let PeeledLayer { count, alpha, color, .. } = layer;
-            let color = color.map(n);
+            let color = color.map_inline(n);
             writeln!(f, "  gives opacity {} and colour {color:?} of {count}", n(*alpha))?;
         }
         let Under { color, alpha, through } = self.blend;
@@ -113,7 +114,7 @@ impl<R: Exact> fmt::Display for PeelingReplay<R> {
             f,
             "\nblending of {count} layers: opacity {}, colour {:?} over black, {} of what is behind",
             n(alpha),
-            color.map(n),
+            color.map_inline(n),
             n(through)
         )
     }

@@ -14,6 +14,7 @@ use crate::method::ewa::visibility::{Foremost, foremost};
 use crate::method::fragment::TileSplats;
 use crate::method::prepare::Prepared;
 use crate::method::tiled::pixels;
+use crate::number::MapInline;
 use crate::number::{Exact, Vector3};
 use crate::scene::Surfels;
 use crate::shade::phong::Shader;
@@ -77,7 +78,7 @@ impl<'a, R: Exact> Peeling<'a, R> {
     pub(super) fn project(job: &Job<'a>, settings: &Settings) -> Self {
         let scene = job.scene;
         let shader = Shader::new(View::new(job.camera), &scene.lights, scene.material);
-        let own = scene.material.color.to_array().map(R::from_f32);
+        let own = scene.material.color.to_array().map_inline(R::from_f32);
         let splats = Prepared::splats(job, &settings.splats);
         let Job { buffers, key, .. } = *job;
         Self { surfels: &scene.surfels, splats, shader, own, buffers, key }

@@ -36,6 +36,7 @@ use super::surfels::{PlacedPoint, PointProjector};
 use super::{PixelSample, SampleKind, SceneProjector};
 use crate::frame::Rect;
 use crate::frame::raster::{Line, Triangle};
+use crate::number::MapInline;
 use crate::number::{Exact, Real, Vector2, Vector3};
 use crate::scene::Vertices;
 use crate::scene::indexed::Indexed;
@@ -164,7 +165,7 @@ pub(crate) fn triangle_within<R: Real>(
     if bounds.is_empty() || (projector.points.cull && back) {
         return None;
     }
-    let (m, raster) = (ends.map(|(_, m)| m), Raster::Triangle(raster));
+    let (m, raster) = (ends.map_inline(|(_, m)| m), Raster::Triangle(raster));
     Some(Piece { bounds, kind: SampleKind::Polygon, id, index, back, raster, m, weights, p })
 }
 
@@ -178,7 +179,7 @@ fn line<R: Exact>(
 ) {
     let p = corners(of, &projector.points, index);
     let Some([a, b]) = projector.clip.segment(p) else { return };
-    let ends = [a, b].map(|end| placed(projector, end.position));
+    let ends = [a, b].map_inline(|end| placed(projector, end.position));
     let weights = [a.weights, b.weights];
     line_piece(projector, kind, (id, index), ends, weights, p).into_iter().for_each(draw);
 }
@@ -195,7 +196,7 @@ pub(crate) fn line_piece<R: Real>(
     let raster = Line::new(&projector.snap, from, to);
     let [width, height] = projector.size;
     let bounds = raster.bounds(width, height);
-    let weights = weights.map(|[a, b]| [a, b, R::ZERO]);
+    let weights = weights.map_inline(|[a, b]| [a, b, R::ZERO]);
     (!bounds.is_empty()).then_some(Piece {
         bounds,
         kind,
@@ -217,11 +218,11 @@ impl<R: Real> Piece<R> {
             Raster::Triangle(triangle) => {
                 let area = R::from_i64(triangle.area());
                 triangle.for_each(&rect, |x, y, w| {
-                    visit(self.at(x, y, w.map(|w| R::from_i64(w) / area)));
+                    visit(self.at(x, y, w.map_inline(|w| R::from_i64(w) / area)));
                 });
             }
             Raster::Line(line) => line.for_each(&rect, |x, y, num, den| {
-                let w = [den - num, num, 0].map(|w| R::from_i64(w) / R::from_i64(den));
+                let w = [den - num, num, 0].map_inline(|w| R::from_i64(w) / R::from_i64(den));
                 visit(self.at(x, y, w));
             }),
         }
@@ -231,19 +232,21 @@ impl<R: Real> Piece<R> {
     fn at(&self, x: u32, y: u32, w: [R; 3]) -> PiecePixel<R> {
         let q = [w[0] * self.m[0], w[1] * self.m[1], w[2] * self.m[2]];
         let whole = (q[0] + q[1]) + q[2];
-        let b = q.map(|q| q / whole);
+        let b = q.map_inline(|q| q / whole);
         let of = &self.weights;
-        let c = [0, 1, 2].map(|k| (b[0] * of[0][k] + b[1] * of[1][k]) + b[2] * of[2][k]);
+        let c = [0, 1, 2].map_inline(|k| (b[0] * of[0][k] + b[1] * of[1][k]) + b[2] * of[2][k]);
         self.with(x, y, c)
     }
 
     /// A pixel with these weights of the primitive's corners.
+    #[inline]
     pub(crate) fn with(&self, x: u32, y: u32, c: [R; 3]) -> PiecePixel<R> {
         let p = (self.p[0] * c[0] + self.p[1] * c[1]) + self.p[2] * c[2];
         PiecePixel { x, y, c, p }
     }
 
     /// The sample that a pixel keeps of the piece.
+    #[inline]
     pub(crate) fn sample(
         &self,
         projector: &SceneProjector<'_, R>,
@@ -270,7 +273,7 @@ impl<R: Real> Piece<R> {
             _ => (direction, Vector3::ZERO),
         };
         let zero = |v: Vector3<R>| v + Vector3::ZERO;
-        let own = || scene.material.color.to_array().map(R::from_f32);
+        let own = || scene.material.color.to_array().map_inline(R::from_f32);
         PixelSample {
             kind: self.kind,
             id: self.id,
@@ -298,8 +301,9 @@ fn attributes<R: Real, const N: usize>(
     let corner = |k: usize| corners[k.min(N - 1)] as usize;
     let sum =
         |a: &dyn Fn(usize) -> R| (c[0] * a(corner(0)) + c[1] * a(corner(1))) + c[2] * a(corner(2));
-    let vector = |of: &[glam::Vec3]| [0, 1, 2].map(|axis| sum(&|i| R::from_f32(of[i][axis])));
-    let mut a: [Vector3<R>; 3] = [0, 1, 2].map(|k| Vector3::from_glam(direction[corner(k)]));
+    let vector =
+        |of: &[glam::Vec3]| [0, 1, 2].map_inline(|axis| sum(&|i| R::from_f32(of[i][axis])));
+    let mut a: [Vector3<R>; 3] = [0, 1, 2].map_inline(|k| Vector3::from_glam(direction[corner(k)]));
     if kind == SampleKind::Tube {
         let opposite = a[0].dot(a[1]).lt(R::ZERO);
         a[1] = a[1].map(|part| R::select(opposite, -part, part));

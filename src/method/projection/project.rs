@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
 use crate::frame::{Bins, Plane, Rect};
 use crate::method::Job;
+use crate::number::MapInline;
 use crate::number::{Exact, Vector3};
 use crate::splat::{Fate, Tally};
 use std::ops::Range;
@@ -122,7 +123,8 @@ fn surfel<R: Exact>(
         return;
     }
     let color = surfels.color().map_or(projector.scene.material.color, |color| color[i]);
-    let color = if projector.has.color { color.to_array().map(R::from_f32) } else { [R::ZERO; 3] };
+    let color =
+        if projector.has.color { color.to_array().map_inline(R::from_f32) } else { [R::ZERO; 3] };
     let radius = R::from_f32(surfels.radius()[i]);
     let sample = points.sample(i as u32, &placed, n, g, radius, color);
     drawn.push(DrawnItem::Pixel(placed.pixel(), sample));

@@ -7,6 +7,7 @@ use super::{PixelSample, SceneProjector};
 use crate::composite::decide;
 use crate::frame::raster::{Snap, Triangle};
 use crate::frame::{Exec, NO_ID, Rect};
+use crate::number::MapInline;
 use crate::number::{Exact, Vector3};
 use crate::scene::{Camera, Scene};
 use std::ops::Range;
@@ -62,6 +63,7 @@ impl<'a, R: Exact> VisibleTriangles<'a, R> {
 
     /// The sample that [`super::project`] keeps of a triangle at a pixel, and the weights c of the
     /// corners there, see [`super::primitives`]; none if the triangle does not cover the pixel.
+    #[inline]
     pub(crate) fn sample(&self, id: u32, pixel: (u32, u32)) -> Option<(PixelSample<R>, [R; 3])> {
         let (mut nearest, mut found) = (R::INFINITY, None);
         // Snapping the corners can turn a piece of a clipped triangle over another piece.
@@ -84,7 +86,7 @@ impl<'a, R: Exact> VisibleTriangles<'a, R> {
             self.projector.clip.keeps(&[p]).then(|| {
                 let (at, m) = placed(&self.projector, p);
                 // Held in the guard band, below 2^30.
-                Placed { at: at.map(|coordinate| coordinate as i32), m, z: p.z }
+                Placed { at: at.map_inline(|coordinate| coordinate as i32), m, z: p.z }
             })
         });
         vertices
@@ -109,7 +111,7 @@ impl<'a, R: Exact> VisibleTriangles<'a, R> {
         for id in triangles {
             let corners = projector.scene.primitives.triangles.corners()[id];
             let [Some(a), Some(b), Some(c)] =
-                corners.map(|corner| vertices[corner as usize].as_ref())
+                corners.map_inline(|corner| vertices[corner as usize].as_ref())
             else {
                 // A triangle with a clipped corner takes the general way, piece by piece.
                 pieces(projector, id, |piece| {
@@ -117,7 +119,7 @@ impl<'a, R: Exact> VisibleTriangles<'a, R> {
                 });
                 continue;
             };
-            let places = [a, b, c].map(|vertex| vertex.at.map(i64::from));
+            let places = [a, b, c].map_inline(|vertex| vertex.at.map_inline(i64::from));
             let around = Triangle::around(&projector.snap, places).intersection(&whole);
             if around.is_empty() {
                 continue;
@@ -127,9 +129,9 @@ impl<'a, R: Exact> VisibleTriangles<'a, R> {
             triangle.for_each(&around, |x, y, w| {
                 // As for a piece that is the whole triangle: its c is b.
                 let q = [(w[0], a), (w[1], b), (w[2], c)];
-                let q = q.map(|(w, vertex)| R::from_i64(w) / area * vertex.m);
+                let q = q.map_inline(|(w, vertex)| R::from_i64(w) / area * vertex.m);
                 let sum = (q[0] + q[1]) + q[2];
-                let [u, v, w] = q.map(|q| q / sum);
+                let [u, v, w] = q.map_inline(|q| q / sum);
                 keep(x, y, id as u32, -((a.z * u + b.z * v) + c.z * w));
             });
         }

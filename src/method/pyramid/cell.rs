@@ -2,6 +2,7 @@
 
 use crate::composite::mean::Mean;
 use crate::method::projection::{PixelSample, SampleKind};
+use crate::number::MapInline;
 use crate::number::{Exact, Real, Vector2, Vector3};
 use crate::splat::Ellipse;
 
@@ -88,7 +89,7 @@ impl<R: Real> Cell<R> {
     /// Which of four cells are valid and hold the centre of a new cell; `offsets` are measured from
     /// that centre.
     pub fn inside(cells: &[Self; 4], offsets: &[Vector2<R>; 4]) -> [R::Truth; 4] {
-        [0, 1, 2, 3].map(|j| {
+        [0, 1, 2, 3].map_inline(|j| {
             let ellipse = Ellipse::new(cells[j].normal, cells[j].extent);
             let holds = ellipse.holds(ellipse.form(offsets[j].x, offsets[j].y));
             holds & R::Truth::from(cells[j].is_valid())
@@ -104,26 +105,30 @@ impl<R: Real> Cell<R> {
         first: usize,
     ) -> Self {
         let vector = |v: [Vector3<R>; 4]| {
-            Vector3::new(mean.of(v.map(|v| v.x)), mean.of(v.map(|v| v.y)), mean.of(v.map(|v| v.z)))
+            Vector3::new(
+                mean.of(v.map_inline(|v| v.x)),
+                mean.of(v.map_inline(|v| v.y)),
+                mean.of(v.map_inline(|v| v.z)),
+            )
         };
         let front = cells[first].tangent;
-        let tangents = cells.map(|cell| {
+        let tangents = cells.map_inline(|cell| {
             let (own, opposite) = (cell.tangent, cell.tangent.dot(front).lt(R::ZERO));
             let turned = |v: R| R::select(opposite, -v, v);
             Vector3::new(turned(own.x), turned(own.y), turned(own.z))
         });
         Self {
             kind: cells[first].kind,
-            front: mean.of(cells.map(|cell| cell.front)),
-            back: mean.of(cells.map(|cell| cell.back)),
-            extent: mean.of(cells.map(|cell| cell.extent)),
+            front: mean.of(cells.map_inline(|cell| cell.front)),
+            back: mean.of(cells.map_inline(|cell| cell.back)),
+            extent: mean.of(cells.map_inline(|cell| cell.extent)),
             displacement: Vector2::new(
-                mean.of(displacements.map(|d| d.x)),
-                mean.of(displacements.map(|d| d.y)),
+                mean.of(displacements.map_inline(|d| d.x)),
+                mean.of(displacements.map_inline(|d| d.y)),
             ),
-            normal: vector(cells.map(|cell| cell.normal)),
+            normal: vector(cells.map_inline(|cell| cell.normal)),
             tangent: vector(tangents),
-            color: [0, 1, 2].map(|c| mean.of(cells.map(|cell| cell.color[c]))),
+            color: [0, 1, 2].map_inline(|c| mean.of(cells.map_inline(|cell| cell.color[c]))),
         }
     }
 }
@@ -135,9 +140,10 @@ impl<R: Exact> Cell<R> {
     /// [`crate::composite::mean::foremost`]. If the foremost is a tube, cells that are not tubes
     /// take no part; if it is none, tubes take no part.
     pub(super) fn foremost(cells: &[Self; 4], inside: [bool; 4]) -> ([bool; 4], usize) {
-        let (fronts, backs) = (cells.map(|cell| cell.front), cells.map(|cell| cell.back));
+        let (fronts, backs) =
+            (cells.map_inline(|cell| cell.front), cells.map_inline(|cell| cell.back));
         let (takes, first) = crate::composite::mean::foremost(inside, fronts, backs);
         let tube = |j: usize| cells[j].kind == SampleKind::Tube;
-        ([0, 1, 2, 3].map(|j| takes[j] & (tube(j) == tube(first))), first)
+        ([0, 1, 2, 3].map_inline(|j| takes[j] & (tube(j) == tube(first))), first)
     }
 }

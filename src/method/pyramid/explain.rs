@@ -8,6 +8,7 @@ use crate::frame::raster::Snap;
 use crate::method::Job;
 use crate::method::projection::explain::{PixelProjection, compared, outside, replay};
 use crate::method::projection::{self, SampleKind};
+use crate::number::MapInline;
 use crate::number::{Exact, Vector2};
 use crate::splat::Ellipse;
 use std::fmt;
@@ -112,7 +113,8 @@ fn four_of_push<R: Exact>(
     let even = (x.is_multiple_of(2), y.is_multiple_of(2));
     let offsets = push::offsets(&cells, even, side(level));
     let (takes, first) = Cell::foremost(&cells, Cell::inside(&cells, &offsets));
-    let weights = [0, 1, 2, 3].map(|j| push::weight(&cells[j], offsets[j], settings.weights));
+    let weights =
+        [0, 1, 2, 3].map_inline(|j| push::weight(&cells[j], offsets[j], settings.weights));
     let found = if takes[first] {
         push::merge(&cells, &offsets, settings.weights, takes, first)
     } else {
@@ -173,7 +175,7 @@ impl<R: Exact> fmt::Display for CellWords<'_, R> {
         if *kind == SampleKind::Empty {
             return write!(f, "nothing");
         }
-        let [front, back, extent] = [front, back, extent].map(|v| v.to_f64());
+        let [front, back, extent] = [front, back, extent].map_inline(|v| v.to_f64());
         write!(f, "a {} from {front} to {back}, radius {extent} px", kind.name())
     }
 }

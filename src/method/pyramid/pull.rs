@@ -31,6 +31,7 @@ use super::Cell;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
 use crate::method::projection::PixelSample;
+use crate::number::MapInline;
 use crate::number::{Exact, Real, Vector2};
 
 /// The side of a cell of a level in pixels, 2^level.
@@ -67,7 +68,7 @@ pub fn pull<R: Exact>(fine: &Plane<Cell<R>>, side: R, exec: &Exec) -> Plane<Cell
 
 /// The four finer cells of a cell.
 pub(crate) fn four<R: Real>(fine: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
-    [0, 1, 2, 3].map(|j| {
+    [0, 1, 2, 3].map_inline(|j| {
         let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
         let exists = x < fine.width() && y < fine.height();
         if exists { *fine.at(x, y) } else { Cell::empty() }
@@ -85,7 +86,7 @@ fn one<R: Exact>(finer: &[Cell<R>; 4], side: R) -> Cell<R> {
 /// side of the finer cells.
 pub fn offsets<R: Real>(finer: &[Cell<R>; 4], side: R) -> [Vector2<R>; 4] {
     let half = side * R::from_f32(0.5);
-    [0, 1, 2, 3].map(|j| {
+    [0, 1, 2, 3].map_inline(|j| {
         let d = finer[j].displacement;
         let x = if j % 2 == 0 { d.x - half } else { d.x + half };
         let y = if j / 2 == 0 { d.y - half } else { d.y + half };
@@ -103,8 +104,8 @@ pub fn merge<R: Real>(
 ) -> Cell<R> {
     let mean = Mean::plain(takes);
     Cell {
-        front: mean.least(finer.map(|cell| cell.front)),
-        back: mean.greatest(finer.map(|cell| cell.back)),
+        front: mean.least(finer.map_inline(|cell| cell.front)),
+        back: mean.greatest(finer.map_inline(|cell| cell.back)),
         ..Cell::average(finer, *offsets, &mean, first)
     }
 }

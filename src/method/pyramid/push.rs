@@ -32,6 +32,7 @@ use super::{Cell, Occlusion, Settings, Weights};
 use crate::composite::decide;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
+use crate::number::MapInline;
 use crate::number::{Exact, Real, Vector2};
 use crate::splat::Ellipse;
 
@@ -85,8 +86,9 @@ pub(crate) fn four<R: Real>(coarse: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>
     };
     let (px, py) = (i64::from(x / 2), i64::from(y / 2));
     let (nx, ny) = (beside(x), beside(y));
-    [(px, py), (nx, py), (px, ny), (nx, ny)]
-        .map(|(x, y)| if exists(x, y) { *coarse.at(x as u32, y as u32) } else { Cell::empty() })
+    [(px, py), (nx, py), (px, ny), (nx, ny)].map_inline(|(x, y)| {
+        if exists(x, y) { *coarse.at(x as u32, y as u32) } else { Cell::empty() }
+    })
 }
 
 /// The column or row of the parent's neighbour.
@@ -127,7 +129,7 @@ pub fn offsets<R: Real>(
         let far = side * R::from_f32(if neighbour { 1.5 } else { 0.5 });
         if neighbour == even { -far } else { far }
     };
-    [0, 1, 2, 3].map(|j| {
+    [0, 1, 2, 3].map_inline(|j| {
         let d = coarser[j].displacement;
         Vector2::new(d.x + shift(j % 2 == 1, even_x), d.y + shift(j / 2 == 1, even_y))
     })
@@ -155,6 +157,6 @@ pub fn merge<R: Real>(
     first: usize,
 ) -> Cell<R> {
     let of = |j: usize| if takes[j] { weight(&coarser[j], offsets[j], weights) } else { R::ONE };
-    let mean = Mean::new(takes, [0, 1, 2, 3].map(of));
+    let mean = Mean::new(takes, [0, 1, 2, 3].map_inline(of));
     Cell::average(coarser, *offsets, &mean, first)
 }

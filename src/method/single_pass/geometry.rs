@@ -10,6 +10,7 @@ use crate::method::Job;
 use crate::method::buffer_formats::DepthKey;
 use crate::method::fragment::{TileSplats, facing};
 use crate::method::prepare::Prepared;
+use crate::number::MapInline;
 use crate::number::{Exact, Real};
 use crate::scene::{Groups, Surfels};
 use crate::splat::{Shared, Splat};
@@ -147,8 +148,9 @@ impl<'a, R: Exact> Geometry<'a, R> {
             return ImagePixel { sample: WeightedFragment::EMPTY, nearness, z, surfel };
         }
         let (surfels, i) = (self.surfels, surfel as usize);
-        let normal = facing(surfels.normal()[i].to_array().map(R::from_f32), back);
-        let color = surfels.color().map_or([R::ZERO; 3], |c| c[i].to_array().map(R::from_f32));
+        let normal = facing(surfels.normal()[i].to_array().map_inline(R::from_f32), back);
+        let color =
+            surfels.color().map_or([R::ZERO; 3], |c| c[i].to_array().map_inline(R::from_f32));
         let depth = self.shared().depth(nearness);
         let sample = WeightedFragment::new(depth, weight, normal, color, opacity(surfels, surfel));
         ImagePixel { sample, nearness, z, surfel }

@@ -15,6 +15,7 @@ use crate::method::stage::{Keep, PlaneRow, Stage, When};
 use crate::method::surface::{self, SurfacePixel};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
+use crate::number::MapInline;
 use crate::splat::View;
 
 /// The planes of a depth-image. `##` is the group.
@@ -111,7 +112,7 @@ pub(crate) fn image_planes<R: Exact>(
 
 /// Turns -0 into +0 by adding 0.
 fn unsigned<R: Exact>(vector: [R; 3]) -> [R; 3] {
-    vector.map(|part| part + R::ZERO)
+    vector.map_inline(|part| part + R::ZERO)
 }
 
 /// Reads a client's depth-image of each group of the scene.

@@ -11,6 +11,7 @@ use crate::method::Job;
 use crate::method::projection::explain::{PixelProjection, compared, outside, replay};
 use crate::method::projection::{self, Has};
 use crate::number::Exact;
+use crate::number::MapInline;
 use std::fmt;
 
 /// The replay of one pixel and of the cells over it.
@@ -116,10 +117,10 @@ pub(super) fn explain<R: Exact>(
 
 impl<R: Exact> Merged<R> {
     fn new(level: usize, cell: (u32, u32), finer: [Center<R>; 4], reach: R) -> Self {
-        let moving = finer.map(|center| propagation::moves(&center, reach));
+        let moving = finer.map_inline(|center| propagation::moves(&center, reach));
         let first = propagation::foremost(&finer, moving);
         let near = first.map_or([false; 4], |first| propagation::near(&finer, first));
-        let takes = [0, 1, 2, 3].map(|j| moving[j] && near[j]);
+        let takes = [0, 1, 2, 3].map_inline(|j| moving[j] && near[j]);
         let found = first.map_or(Center::empty(), |first| propagation::merge(&finer, takes, first));
         Self { level, cell, finer, reach, moving, near, first, found }
     }
@@ -162,7 +163,7 @@ impl<R: Exact> fmt::Display for Merged<R> {
         if !self.found.is_valid() {
             return writeln!(f, "    gives nothing");
         }
-        let [depth, radius, extent] = [depth, radius, extent].map(|v| v.to_f64());
+        let [depth, radius, extent] = [depth, radius, extent].map_inline(|v| v.to_f64());
         writeln!(f, "    gives {id} at depth {depth}, radius {radius}, extent {extent} px")
     }
 }
@@ -221,7 +222,7 @@ impl<R: Exact> fmt::Display for TemplateReplay<R> {
         if *count == 0 {
             return writeln!(f, "\nthe pixel is empty");
         }
-        let [depth, weight, average] = [depth, weight, &self.depth].map(|v| v.to_f64());
+        let [depth, weight, average] = [depth, weight, &self.depth].map_inline(|v| v.to_f64());
         writeln!(f, "\nthe pixel blends {count} centres, the nearest {id} at depth {depth}")?;
         writeln!(f, "  sum of weights {weight}, average depth {average}")
     }

@@ -25,6 +25,7 @@ use crate::composite::decide;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
 use crate::method::projection::PixelSample;
+use crate::number::MapInline;
 use crate::number::{Exact, Real, Vector2, Vector3};
 
 /// The top level, whose cells every pixel searches whole: the first level whose sides are at most
@@ -71,7 +72,7 @@ pub(super) fn coarser<R: Exact>(
     exec.ordered((0..).zip(rows).collect(), |(y, row): (u32, &mut [Center<R>])| {
         for (x, center) in (0..).zip(row) {
             let finer = four(fine, x, y);
-            *center = merged(&finer, finer.map(|center| moves(&center, reach)));
+            *center = merged(&finer, finer.map_inline(|center| moves(&center, reach)));
         }
     });
     coarse
@@ -79,7 +80,7 @@ pub(super) fn coarser<R: Exact>(
 
 /// The four finer cells of a cell.
 pub(crate) fn four<R: Real>(fine: &Plane<Center<R>>, x: u32, y: u32) -> [Center<R>; 4] {
-    [0, 1, 2, 3].map(|j| {
+    [0, 1, 2, 3].map_inline(|j| {
         let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
         let exists = x < fine.width() && y < fine.height();
         if exists { *fine.at(x, y) } else { Center::empty() }
@@ -90,7 +91,7 @@ pub(crate) fn four<R: Real>(fine: &Plane<Center<R>>, x: u32, y: u32) -> [Center<
 fn merged<R: Exact>(finer: &[Center<R>; 4], moving: [bool; 4]) -> Center<R> {
     let Some(first) = foremost(finer, moving) else { return Center::empty() };
     let near = near(finer, first);
-    merge(finer, [0, 1, 2, 3].map(|j| moving[j] && near[j]), first)
+    merge(finer, [0, 1, 2, 3].map_inline(|j| moving[j] && near[j]), first)
 }
 
 /// The foremost of the centres that move; ties to the lower index.
@@ -107,14 +108,14 @@ pub(super) fn foremost<R: Exact>(finer: &[Center<R>; 4], moving: [bool; 4]) -> O
 /// Which of four centres are near enough to the foremost to be merged with it.
 pub fn near<R: Real>(finer: &[Center<R>; 4], first: usize) -> [R::Truth; 4] {
     let front = &finer[first];
-    finer.map(|c| decide::meets([c.depth, c.radius], [front.depth, front.radius]))
+    finer.map_inline(|c| decide::meets([c.depth, c.radius], [front.depth, front.radius]))
 }
 
 /// The new centre from four centres, if the centres in `takes` take part and `first` is the
 /// foremost of them.
 pub fn merge<R: Real>(finer: &[Center<R>; 4], takes: [bool; 4], first: usize) -> Center<R> {
     let mean = Mean::plain(takes);
-    let number = |of: fn(&Center<R>) -> R| mean.of([0, 1, 2, 3].map(|j| of(&finer[j])));
+    let number = |of: fn(&Center<R>) -> R| mean.of([0, 1, 2, 3].map_inline(|j| of(&finer[j])));
     Center {
         id: finer[first].id,
         depth: number(|c| c.depth),

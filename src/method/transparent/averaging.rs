@@ -5,6 +5,7 @@ use super::blending::GroupLayers;
 use crate::composite::decide;
 use crate::composite::over::Blend;
 use crate::frame::NO_ID;
+use crate::number::MapInline;
 use crate::number::{Exact, Real};
 
 /// The average of all groups at a pixel.
@@ -57,7 +58,7 @@ impl<R: Real> GroupAverage<R> {
     pub(crate) fn divided(self, count: R) -> Self {
         Self {
             blend: Blend {
-                color: self.blend.color.map(|c| c / count),
+                color: self.blend.color.map_inline(|c| c / count),
                 alpha: self.blend.alpha / count,
             },
             opacity: self.opacity / count,

@@ -12,6 +12,7 @@ use crate::method::Job;
 use crate::method::buffer_formats::Buffers;
 use crate::method::fragment::{each_in_bounds, each_inside, facing};
 use crate::method::prepare::Prepared;
+use crate::number::MapInline;
 use crate::number::{Exact, Real, Vector3};
 use crate::scene::Scene;
 use crate::shade::phong::Shader;
@@ -193,9 +194,10 @@ pub(crate) fn appearance<R: Real>(
 ) -> ([R; 3], R) {
     let (surfels, i) = (&scene.surfels, splat.surfel as usize);
     let color = surfels.color().map_or(scene.material.color, |colors| colors[i]);
-    let normal = surfels.normal()[i].to_array().map(R::from_f32);
+    let normal = surfels.normal()[i].to_array().map_inline(R::from_f32);
     let [x, y, z] = facing(normal, splat.back);
     let place = Vector3::from_glam(surfels.position()[i]);
-    let color = shader.surfel(place, Vector3::new(x, y, z), color.to_array().map(R::from_f32));
+    let color =
+        shader.surfel(place, Vector3::new(x, y, z), color.to_array().map_inline(R::from_f32));
     (color, R::from_f32(surfels.opacity_of(i)))
 }

@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::method::Job;
 use crate::method::decisions::{Decision, Place, Touch, touch};
 use crate::number::Exact;
+use crate::number::MapInline;
 use std::fmt;
 
 /// The replay of one pixel.
@@ -142,7 +143,7 @@ impl<R: Exact> fmt::Display for TransparentReplay<R> {
                 f,
                 "    gives opacity {} and colour {:?} of {} layers, whose opacities sum to {}",
                 n(at.alpha),
-                at.color.map(n),
+                at.color.map_inline(n),
                 at.count,
                 n(at.opacity)
             )?;
@@ -156,7 +157,7 @@ impl<R: Exact> fmt::Display for TransparentReplay<R> {
             "\ncompositing pass: opacity {}, colour {:?} over black, {} layers on average (nearest \
              {}, surfel {})",
             n(self.alpha),
-            self.color.map(n),
+            self.color.map_inline(n),
             n(self.layers),
             n(self.nearest),
             self.id

@@ -6,6 +6,7 @@ use crate::composite::over::Blend;
 use crate::method::Job;
 use crate::method::tiled::{Tiled, pixels};
 use crate::method::transparent::averaging::GroupAverage;
+use crate::number::MapInline;
 use crate::number::{Exact, Real, Truth, Vector3};
 use crate::scene::{Environment, Scene};
 use crate::shade::optics::{self, Behind, NearestLayer};
@@ -64,7 +65,7 @@ impl<'a, R: Real> Through<'a, R> {
         let shown = self.before((x, y), near, others);
         let part = |c: usize| R::select(there, shown.color[c], others.blend.color[c]);
         let alpha = R::select(there, shown.alpha, others.blend.alpha);
-        Blend { color: [0, 1, 2].map(part), alpha }
+        Blend { color: [0, 1, 2].map_inline(part), alpha }
     }
 
     /// The nearest layer before the others.

@@ -14,6 +14,7 @@ use crate::method::single_pass::explain::{GroupsReplay, explain as explain_neare
 use crate::method::single_pass::geometry::Geometry;
 use crate::method::transparent::explain::{TransparentReplay, replay};
 use crate::number::Exact;
+use crate::number::MapInline;
 use crate::scene::Environment;
 use std::fmt;
 
@@ -66,14 +67,14 @@ impl<R: Exact> fmt::Display for HighQualityReplay<R> {
         if self.nearest.nearest == R::INFINITY {
             return Ok(());
         }
-        writeln!(f, "  gives opacity {} and colour {:?}", n(self.alpha), self.color.map(n))?;
+        writeln!(f, "  gives opacity {} and colour {:?}", n(self.alpha), self.color.map_inline(n))?;
         write!(f, "\nother layers, behind depth {}: {}", n(self.band), self.others)?;
         let Blend { color, alpha } = self.shown;
         writeln!(
             f,
             "\nthe nearest layer before the others: opacity {}, colour {:?}",
             n(alpha),
-            color.map(n)
+            color.map_inline(n)
         )
     }
 }

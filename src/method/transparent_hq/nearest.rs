@@ -8,6 +8,7 @@ pub(crate) use crate::method::single_pass;
 use crate::method::single_pass::compositing::Composite;
 use crate::method::surface::SurfacePixel;
 use crate::method::tiled::{Tiled, pixels};
+use crate::number::MapInline;
 use crate::number::{Exact, Vector3};
 use crate::shade::phong::Shader;
 use crate::splat::View;
@@ -67,7 +68,7 @@ impl<R: Exact> Shading<R> {
     pub(super) fn new(job: &Job<'_>) -> Self {
         let scene = job.scene;
         let colored = scene.surfels.color().is_some();
-        let own = (!colored).then(|| scene.material.color.to_array().map(R::from_f32));
+        let own = (!colored).then(|| scene.material.color.to_array().map_inline(R::from_f32));
         Self { shader: Shader::new(View::new(job.camera), &scene.lights, scene.material), own }
     }
 

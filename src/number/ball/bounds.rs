@@ -1,6 +1,7 @@
 //! Bounds and hulls: computed from the ends of an interval, without rounding.
 
 use super::{Ball, Profile, SLACK, larger};
+use crate::number::MapInline;
 
 /// The ball about `middle` that holds an interval; unbounded if an end is infinite.
 #[inline(always)]
@@ -58,6 +59,6 @@ impl<P: Profile> Ball<P> {
 
     /// The hulls of two triples.
     pub(crate) fn either_of(a: [Self; 3], b: [Self; 3]) -> [Self; 3] {
-        [0, 1, 2].map(|c| a[c].either(b[c]))
+        [0, 1, 2].map_inline(|c| a[c].either(b[c]))
     }
 }

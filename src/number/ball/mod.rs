@@ -70,6 +70,7 @@
 //! that round by the toss of a coin. They also run variants of this ball that round too little,
 //! which the tests must catch.
 
+use crate::number::MapInline;
 mod angle;
 mod arithmetic;
 mod bounds;
@@ -344,7 +345,7 @@ impl<P: Profile> Real for Ball<P> {
             return Self::unbounded(middle, true);
         }
         // The base is not negative, so an end below 0 is only an effect of the radius.
-        let bases = ends.map(|end| larger(end, 0.0));
+        let bases = ends.map_inline(|end| larger(end, 0.0));
         let spread =
             powers::power(middle, (self.middle, self.radius * SLACK), bases, exponent.middle);
         Self::rounded(middle, spread, P::power(bases, exponent.middle), P::TINY)

@@ -1,6 +1,7 @@
 //! How the operands' errors spread through exponentials and powers.
 
 use super::{Ball, Profile, SLACK, larger};
+use crate::number::MapInline;
 use crate::number::Real;
 
 /// More than the relative error of the functions of [`elementary`](crate::number::elementary).
@@ -34,7 +35,7 @@ pub(super) fn power(middle: f64, (m, reach): (f64, f64), ends: [f64; 2], y: f64)
         let more = z + z * z;
         middle * (more + 2.0 * z * part) + middle * (1.0 + more) * LOST
     } else {
-        let [least, most] = ends.map(|end| end.pow(y));
+        let [least, most] = ends.map_inline(|end| end.pow(y));
         larger(middle - least, most - middle) + most * LOST
     }
 }
@@ -47,7 +48,7 @@ pub(super) fn between<P: Profile>(base: Ball<P>, exponent: Ball<P>) -> Ball<P> {
     if !(ends[0] >= 0.0 && ends[1].is_finite()) {
         return Ball::unbounded(middle, true);
     }
-    let [a, b] = ends.map(|end| {
+    let [a, b] = ends.map_inline(|end| {
         let power = base.pow(Ball::exact(end));
         (power.middle - middle).abs() + power.radius
     });

@@ -1,6 +1,7 @@
 //! Light in balls: all values that a correct implementation may compute for a direction.
 
 use super::{Environment, Map, scaled, sky};
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Vector3};
 use std::f64::consts::PI;
@@ -51,7 +52,7 @@ fn ends<P: Profile>(x: Ball<P>) -> Option<[i64; 2]> {
     if !(2.0 * reach < MOST as f64 - 1.0) {
         return None;
     }
-    Some([x.middle - reach, x.middle + reach].map(|end| end.floor() as i64))
+    Some([x.middle - reach, x.middle + reach].map_inline(|end| end.floor() as i64))
 }
 
 /// How far a number is above this integer, if this is its integer part. The result is in [0, 1],

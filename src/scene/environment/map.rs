@@ -17,6 +17,7 @@
 
 use crate::error::{Error, Result};
 use crate::frame::Plane;
+use crate::number::MapInline;
 use crate::number::{Exact, Real, Vector3};
 use crate::scene::camera::MAX_EXTENT;
 use crate::scene::light::MAX_RADIANCE;
@@ -109,7 +110,7 @@ impl Map {
         let Vector3 { x, y, z } = direction;
         let half = R::from_f32(0.5);
         let [width, height] =
-            [self.0.width(), self.0.height()].map(|size| R::from_f32(size as f32));
+            [self.0.width(), self.0.height()].map_inline(|size| R::from_f32(size as f32));
         // 0 - z is +0 for either zero, so the angle does not depend on the sign of z.
         let u = angle(x, R::ZERO - z) / (pi + pi);
         let v = angle((x * x + z * z).root_of_squares(), y) / pi;
@@ -122,11 +123,12 @@ impl Map {
         let lower = if upper < self.0.height() - 1 { upper + 1 } else { upper };
         let mix = |a: R, b: R, by: R| a + (b - a) * by;
         let row = |row: u32| {
-            let [a, b] = columns.map(|column| self.0.at(column, row).map(R::from_f32));
+            let [a, b] =
+                columns.map_inline(|column| self.0.at(column, row).map_inline(R::from_f32));
             [mix(a[0], b[0], f), mix(a[1], b[1], f), mix(a[2], b[2], f)]
         };
         let (upper, lower) = (row(upper), row(lower));
-        [0, 1, 2].map(|c| mix(upper[c], lower[c], g))
+        [0, 1, 2].map_inline(|c| mix(upper[c], lower[c], g))
     }
 }
 

@@ -4,6 +4,7 @@
 //! Decided, all of it: no paper prescribes a sky. It is smooth, uses only + - * /, and all of its
 //! constants are exact in `f32`.
 
+use crate::number::MapInline;
 use crate::number::{Real, Vector3};
 
 /// Linear RGB straight above.
@@ -50,7 +51,7 @@ pub fn radiance<R: Real>(direction: Vector3<R>) -> [R; 3] {
         .at_least(R::ZERO);
     let sun = smooth((k - c(1.0 - 1.0 / 1024.0)) * c(2048.0));
     let glow = (0..5).fold(k, |power, _| power * power);
-    [0, 1, 2].map(|i| {
+    [0, 1, 2].map_inline(|i| {
         let [zenith, horizon, ground] = [c(ZENITH[i]), c(HORIZON[i]), c(GROUND[i])];
         let sky = zenith + (horizon - zenith) * towards_horizon;
         let base = ground + (sky - ground) * above;

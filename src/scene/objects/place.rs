@@ -3,6 +3,7 @@
 use super::{Geometry, Objects};
 use crate::error::Result;
 use crate::frame::Exec;
+use crate::number::MapInline;
 use crate::scene::cloud::half_axes;
 use crate::scene::degenerate::unit;
 use crate::scene::surfels::Arrays;
@@ -211,7 +212,7 @@ impl Objects {
             let radius = disc.unwrap_or(radius);
             if let Some(tangents) = &mut to.tangents {
                 tangents.push(match surfels.tangents().filter(|_| disc.is_none()) {
-                    Some(own) if moves => own[i].map(|half| place.stretch(half)),
+                    Some(own) if moves => own[i].map_inline(|half| place.stretch(half)),
                     Some(own) => own[i],
                     None => half_axes(normal, radius),
                 });

@@ -34,6 +34,7 @@
 //! that send what they absorb, `C_O` = 1 - (1 - alpha)^(l - 1). The surface sends 1, whatever the
 //! angle and the ratios.
 
+use crate::number::MapInline;
 #[cfg(test)]
 mod tests;
 
@@ -257,7 +258,7 @@ pub(crate) fn shade_before<R: Real>(
     let clear = R::ONE - alpha;
     let through = seen * absorption(alpha, count);
     let reflected = light(reflect(view, normal));
-    [0, 1, 2].map(|c| {
+    [0, 1, 2].map_inline(|c| {
         let ratio = R::from_f32(refraction.ratio[c]);
         let (there, direction) = bent(view, normal, ratio, count);
         // Where there certainly is no refracted direction, there is no light to look up.

@@ -4,9 +4,10 @@
 //! definition becomes a choice between two results; only the powers differ, see [`Exact::powers`].
 
 use super::{Answer, Form, Shader, mirrored};
+use crate::number::MapInline;
 use crate::number::ball::{BallLanes, Common, Profile};
 use crate::number::lanes::{
-    LANES, Lanes, any, components, mask, put_vector, transposed, vector, vectorized,
+    LANES, Lanes, any, components, load, mask, put_vector, transposed, vector, vectorized,
 };
 use crate::number::{Ball, Exact, Real, Vector3};
 
@@ -55,15 +56,14 @@ fn group<R: Exact>(
     first: usize,
     pixels: &mut [[R; 3]; LANES],
 ) {
-    let mut depth = [R::ZERO; LANES];
-    depth.copy_from_slice(&row.depth[first..first + LANES]);
+    let depth = load(row.depth, first);
     // Empty stretches of a picture are common and need no shading.
     if !any(&mask(|i| depth[i].is_finite())) {
         *pixels = [[R::ZERO; 3]; LANES];
         return;
     }
     let surface = match row.own {
-        Some(own) => own.map(|s| [s; LANES]),
+        Some(own) => own.map_inline(|s| [s; LANES]),
         None => transposed(pixels),
     };
     let mut color = surface;

@@ -46,6 +46,7 @@
 //!   up to 1.
 //! - As in the paper, n always turns towards the light: a light behind the tube lights it too.
 
+use crate::number::MapInline;
 mod lanes;
 #[cfg(test)]
 mod tests;
@@ -90,7 +91,7 @@ impl<R: Real> Shader<R> {
     pub fn new(view: View<R>, lights: &[Light], material: Phong) -> Self {
         // Adding 0 turns -0 into 0.
         let material = Phong { color: material.color + Vec3::ZERO, ..material };
-        let radiance = |color: Vec3| (color + Vec3::ZERO).to_array().map(R::from_f32);
+        let radiance = |color: Vec3| (color + Vec3::ZERO).to_array().map_inline(R::from_f32);
         let place = |light: &Light| match *light {
             Light::Directional { towards, color } => {
                 let towards = view.direction(Vector3::from_glam(towards)).normalized();
@@ -182,14 +183,14 @@ impl<R: Real> Shader<R> {
                 PlacedLight::Towards(l) => PlacedLight::Towards(vector(l)),
                 PlacedLight::At(position) => PlacedLight::At(vector(position)),
             };
-            (place, light.map(&number))
+            (place, light.map_inline(&number))
         };
         Shader { view, lights: self.lights.iter().map(light).collect(), material: self.material }
     }
 
     /// The colour of surfaces in a scene without colours.
     pub(crate) fn plain(&self) -> [R; 3] {
-        self.material.color.to_array().map(R::from_f32)
+        self.material.color.to_array().map_inline(R::from_f32)
     }
 
     /// p: the point at depth t of a pixel.

@@ -80,6 +80,7 @@
 //! - Both sides of a triangle are seen, because meshes of leaves and of sheet metal are not closed.
 //! - Lines have no area and give no candidates; a scene of nothing but lines is refused.
 
+use crate::number::MapInline;
 mod painted;
 mod properties;
 
@@ -307,7 +308,7 @@ fn seen(mesh: &Mesh<'_>, side: f64, camera: &Camera, exec: &Exec) -> Vec<Seen> {
     exec.extend(&mut all, covered.len(), |at| {
         let (i, (_, id)) = (covered[at], foremost[covered[at]]);
         let corners = triangles.corners()[id as usize];
-        let [a, b, c] = corners.map(|corner| triangles.vertices().position[corner as usize]);
+        let [a, b, c] = corners.map_inline(|corner| triangles.vertices().position[corner as usize]);
         let pixel = ((i % columns) as u32, (i / columns) as u32);
         // The nearest triangle of a pixel covers it, so the fallback is never used.
         let (sample, w) = visible.sample(id, pixel).unwrap_or((PixelSample::empty(), [0.0; 3]));
@@ -323,7 +324,7 @@ fn seen(mesh: &Mesh<'_>, side: f64, camera: &Camera, exec: &Exec) -> Vec<Seen> {
 fn turned(view: &DMat4, v: Vector3<f32>) -> Vec3 {
     let v = v.map(f64::from);
     let column = |c: DVec4| (((c.x * v.x + c.y * v.y) + c.z * v.z) + 0.0) as f32;
-    let [x, y, z] = [view.x_axis, view.y_axis, view.z_axis].map(column);
+    let [x, y, z] = [view.x_axis, view.y_axis, view.z_axis].map_inline(column);
     Vec3::new(x, y, z)
 }
 

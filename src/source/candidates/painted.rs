@@ -4,6 +4,7 @@ use super::{Candidates, Directions, Mesh};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
+use crate::number::MapInline;
 use crate::progress::Progress;
 use crate::scene::texture::Ellipse;
 use crate::scene::{Cloud, Paint, Primitives, Scene, Surfels};
@@ -46,7 +47,7 @@ pub fn of_cloud(
         let position = &triangles.vertices().position;
         let painted = corners.iter().zip(at).filter_map(|(corners, at)| {
             kept.next_if_eq(&corners)?;
-            let places = corners.map(|corner| position[corner as usize]);
+            let places = corners.map_inline(|corner| position[corner as usize]);
             Some(Painted { at, disc: stretch(places, at) })
         });
         Painting { paint, painted: painted.collect() }
@@ -102,7 +103,8 @@ impl Painting {
     /// have these weights.
     pub(super) fn color(&self, triangle: u32, weights: [f32; 3], radius: f64) -> Vec3 {
         let Painted { at, disc } = &self.painted[triangle as usize];
-        let [a, b, c]: [DVec2; 3] = [0, 1, 2].map(|i| at[i].as_dvec2() * f64::from(weights[i]));
+        let [a, b, c]: [DVec2; 3] =
+            [0, 1, 2].map_inline(|i| at[i].as_dvec2() * f64::from(weights[i]));
         self.paint.color((a + b) + c, disc.times(radius * radius))
     }
 }

@@ -1,5 +1,6 @@
 //! Interpolate opacity and further properties of the vertices of a mesh.
 
+use crate::number::MapInline;
 use crate::scene::{Cloud, Property, Scene};
 
 /// The numbers that vertices of a mesh have beside normals and colours.
@@ -33,7 +34,7 @@ impl<'a> Properties<'a> {
     /// Interpolates the numbers with these weights of the corners, and replaces the contents of
     /// `to`: opacity first, if there is one.
     pub(super) fn at(&self, corners: [u32; 3], weights: [f32; 3], to: &mut Vec<f32>) {
-        let [a, b, c] = corners.map(|corner| corner as usize);
+        let [a, b, c] = corners.map_inline(|corner| corner as usize);
         let mixed =
             |of: &[f32]| ((weights[0] * of[a] + weights[1] * of[b]) + weights[2] * of[c]) + 0.0;
         to.clear();

@@ -1,5 +1,6 @@
 //! Find distinct positions, because neighbours treat points at one place as one.
 
+use crate::number::MapInline;
 use glam::Vec3;
 
 /// The distinct places of some points.
@@ -14,7 +15,7 @@ pub(super) struct Distinct {
 impl Distinct {
     /// The places of fewer than 2^32 finite positions; -0 and +0 are equal.
     pub(super) fn new(points: &[Vec3]) -> Self {
-        let key = |i: u32| points[i as usize].to_array().map(|c| c + 0.0); // -0 + 0 is +0
+        let key = |i: u32| points[i as usize].to_array().map_inline(|c| c + 0.0); // -0 + 0 is +0
         let equal = |a: u32, b: u32| key(a) == key(b);
         let mut order: Vec<u32> = (0..points.len() as u32).collect();
         order.sort_unstable_by(|&a, &b| {

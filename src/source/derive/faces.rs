@@ -1,5 +1,6 @@
 //! Derive normals and radii of vertices from the triangles of a mesh.
 
+use crate::number::MapInline;
 use glam::{DVec3, Vec3};
 
 /// Area-weighted vertex normals, of length 1.
@@ -8,7 +9,7 @@ use glam::{DVec3, Vec3};
 pub(super) fn normals(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
     let mut sums = vec![DVec3::ZERO; points.len()];
     for triangle in triangles {
-        let [a, b, c] = triangle.map(|i| points[i as usize].as_dvec3());
+        let [a, b, c] = triangle.map_inline(|i| points[i as usize].as_dvec3());
         let twice_area = (b - a).cross(c - a);
         for &i in triangle {
             sums[i as usize] += twice_area;
@@ -26,7 +27,7 @@ pub(super) fn normals(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<Vec3> {
 pub(super) fn radii(points: &[Vec3], triangles: &[[u32; 3]]) -> Vec<f32> {
     let mut longest = vec![0.0_f64; points.len()];
     for triangle in triangles {
-        let [a, b, c] = triangle.map(|i| points[i as usize].as_dvec3());
+        let [a, b, c] = triangle.map_inline(|i| points[i as usize].as_dvec3());
         for edge in [a.distance_squared(b), b.distance_squared(c), c.distance_squared(a)] {
             for &i in triangle {
                 let longest = &mut longest[i as usize];

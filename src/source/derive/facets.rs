@@ -4,6 +4,7 @@ use super::{Derive, Derived, Origin, drop_nowhere, primitives, texture};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
+use crate::number::MapInline;
 use crate::progress::Progress;
 use crate::scene::light::is_color;
 use crate::scene::{Cloud, Surfels};
@@ -97,10 +98,10 @@ fn ellipses(cloud: &Cloud) -> Cloud {
         .iter()
         .map(|triangle| {
             let side = normal.as_ref().map(|all| {
-                let [a, b, c] = triangle.map(|i| all[i as usize].as_dvec3());
+                let [a, b, c] = triangle.map_inline(|i| all[i as usize].as_dvec3());
                 a + b + c
             });
-            Facet::new(triangle.map(|i| position[i as usize].as_dvec3()), side)
+            Facet::new(triangle.map_inline(|i| position[i as usize].as_dvec3()), side)
         })
         .collect();
     let color = color.as_ref().map(|all| means(triangles, all, |c| is_color(*c), Vec3::NAN));
@@ -126,7 +127,7 @@ fn means<T: Copy + Add<Output = T> + Div<f32, Output = T>>(
     none: T,
 ) -> Vec<T> {
     let mean = |triangle: &[u32; 3]| {
-        let corners = triangle.map(|i| all[i as usize]);
+        let corners = triangle.map_inline(|i| all[i as usize]);
         let [a, b, c] = corners;
         if corners.iter().all(&can_be) { (a + b + c) / 3.0 } else { none }
     };
@@ -154,7 +155,7 @@ impl Facet {
         let length = across.length();
         Self {
             place: g.as_vec3(),
-            tangents: [p, q].map(|axis| axis.as_vec3()),
+            tangents: [p, q].map_inline(|axis| axis.as_vec3()),
             radius: ((pp + qq + h) / 2.0).sqrt() as f32,
             normal: if length > 0.0 {
                 (across / length).as_vec3() + Vec3::ZERO

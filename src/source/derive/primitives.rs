@@ -5,6 +5,7 @@ use super::{
 };
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::number::MapInline;
 use crate::progress::Progress;
 use crate::scene::indexed::{self, Indexed};
 use crate::scene::{Cloud, Dropped, Polylines, Surfels, Triangles, Vertices};
@@ -204,7 +205,7 @@ pub(in crate::source) fn drop_unsound(cloud: &mut Cloud) -> Result<()> {
 fn tangents(points: &[Vec3], edges: &[[u32; 2]]) -> Vec<Vec3> {
     let mut sums = vec![DVec3::ZERO; points.len()];
     for ends in edges {
-        let [a, b] = ends.map(|i| points[i as usize].as_dvec3());
+        let [a, b] = ends.map_inline(|i| points[i as usize].as_dvec3());
         let length = (b - a).length();
         if !(length > 0.0) {
             continue;

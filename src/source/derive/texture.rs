@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
+use crate::number::MapInline;
 use crate::progress::Progress;
 use crate::scene::texture::Ellipse;
 use crate::scene::{Cloud, Coordinates, Mipmap, Paint};
@@ -27,7 +28,7 @@ pub(super) fn facets(cloud: &Cloud, exec: &Exec, progress: Progress<'_>) -> Resu
     let Some(paint) = &cloud.paint else { return Ok(None) };
     let coordinates = coordinates(cloud)?;
     let find = |i: usize, scale: f64| {
-        let [a, b, c] = coordinates.corners(i, cloud.triangles[i]).map(|at| at.as_dvec2());
+        let [a, b, c] = coordinates.corners(i, cloud.triangles[i]).map_inline(|at| at.as_dvec2());
         let center = ((a + b) + c) / 3.0;
         let outline = Ellipse::from_half_axes(c - center, (b - a) / 3.0_f64.sqrt());
         paint.color(center, outline.times(scale))
@@ -107,7 +108,7 @@ fn colors(
 
 /// The corners of all triangles, sorted by point, then by coordinates.
 fn keys(triangles: &[[u32; 3]], coordinates: &Coordinates, exec: &Exec) -> Vec<Key> {
-    let bits = |at: Vec2| (at + Vec2::ZERO).to_array().map(f32::to_bits);
+    let bits = |at: Vec2| (at + Vec2::ZERO).to_array().map_inline(f32::to_bits);
     let mut keys = Vec::with_capacity(3 * triangles.len());
     for (i, corners) in triangles.iter().enumerate() {
         let at = coordinates.corners(i, *corners);
@@ -123,7 +124,7 @@ fn size2(cloud: &Cloud, radius: &[f32], i: usize) -> f64 {
     match &cloud.tangents {
         None => f64::from(radius[i]) * f64::from(radius[i]),
         Some(tangents) => {
-            let [u, v] = tangents[i].map(Vec3::as_dvec3);
+            let [u, v] = tangents[i].map_inline(Vec3::as_dvec3);
             length(cross(u, v))
         }
     }
@@ -143,7 +144,7 @@ fn of_groups(
         let (mut matrix, mut area) = (Ellipse::default(), 0.0);
         for &(_, _, triangle) in group {
             let corners = cloud.triangles[triangle as usize];
-            let places = corners.map(|corner| cloud.position[corner as usize]);
+            let places = corners.map_inline(|corner| cloud.position[corner as usize]);
             let Some((own, a)) = stretched(places, coordinates.corners(triangle as usize, corners))
             else {
                 continue;
@@ -154,7 +155,7 @@ fn of_groups(
             area += a;
         }
         if area > 0.0 {
-            let at = Vec2::from_array(group[0].1.map(f32::from_bits)).as_dvec2();
+            let at = Vec2::from_array(group[0].1.map_inline(f32::from_bits)).as_dvec2();
             last = paint.color(at, matrix.times(size2 / area));
             sum += last.as_dvec3() * area;
             weight += area;
@@ -167,13 +168,13 @@ fn of_groups(
 
 /// S and A of a triangle, see the module; `None` without an area.
 fn stretched(places: [Vec3; 3], at: [Vec2; 3]) -> Option<(Ellipse, f64)> {
-    let [a, b, c] = places.map(|place| place.as_dvec3());
+    let [a, b, c] = places.map_inline(|place| place.as_dvec3());
     let (e, f) = (b - a, c - a);
     let area = length(cross(e, f));
     if !(area > 0.0) {
         return None;
     }
-    let [a, b, c] = at.map(|at| at.as_dvec2());
+    let [a, b, c] = at.map_inline(|at| at.as_dvec2());
     let (x, y) = (b - a, c - a);
     let (ee, ef, ff) = (dot(e, e), dot(e, f), dot(f, f));
     let entry = |i: usize, j: usize| {

@@ -10,6 +10,7 @@
 //!
 //! A triangle may be both degenerate and a duplicate.
 
+use crate::number::MapInline;
 use crate::scene::Triangles;
 use glam::Vec3;
 
@@ -36,10 +37,10 @@ impl Flaws {
         let mut all = Vec::with_capacity(triangles.len());
         let mut edges = Vec::with_capacity(3 * triangles.len());
         for corners in triangles.corners() {
-            let mut at = corners.map(|corner| place[corner as usize]);
+            let mut at = corners.map_inline(|corner| place[corner as usize]);
             at.sort_unstable();
             all.push(at);
-            if is_degenerate(corners.map(|corner| position[corner as usize])) {
+            if is_degenerate(corners.map_inline(|corner| position[corner as usize])) {
                 flaws.degenerate += 1;
             } else {
                 edges.extend([[at[0], at[1]], [at[0], at[2]], [at[1], at[2]]]);
@@ -67,7 +68,7 @@ impl Flaws {
 
 /// For each vertex, the first vertex at its place.
 fn places(position: &[Vec3]) -> Vec<u32> {
-    let key = |i: u32| (position[i as usize] + Vec3::ZERO).to_array().map(f32::to_bits);
+    let key = |i: u32| (position[i as usize] + Vec3::ZERO).to_array().map_inline(f32::to_bits);
     let mut order: Vec<u32> = (0..position.len() as u32).collect();
     order.sort_unstable_by_key(|&i| (key(i), i));
     let mut place = vec![0; position.len()];

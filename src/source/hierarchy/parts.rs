@@ -3,6 +3,7 @@
 use super::octree::{Item, Octree, octree};
 use crate::error::Result;
 use crate::memory;
+use crate::number::MapInline;
 use crate::scene::{Cloud, Property, Similarity, Triangles, Vertices};
 use glam::Vec3;
 
@@ -56,7 +57,7 @@ pub fn tree(triangles: &Triangles, bound: u64) -> Result<Octree> {
     memory::ask(count as u64 * OF_A_TRIANGLE, || format!("a tree of {count} triangles"))?;
     let position = &triangles.vertices().position;
     let item = |corners: &[u32; 3]| {
-        let [a, b, c] = corners.map(|corner| position[corner as usize]);
+        let [a, b, c] = corners.map_inline(|corner| position[corner as usize]);
         Item { low: a.min(b).min(c), high: a.max(b).max(c), weight: 1 }
     };
     let items: Vec<Item> = triangles.corners().iter().map(item).collect();
@@ -95,7 +96,7 @@ impl Part {
             color: all.color.as_ref().map(|all| at(all, &used)),
             opacity: all.opacity.as_ref().map(|all| at(all, &used)),
             properties: all.properties.iter().map(property).collect(),
-            triangles: corners.map(|corners| corners.map(new)).collect(),
+            triangles: corners.map(|corners| corners.map_inline(new)).collect(),
         }
     }
 }
@@ -200,7 +201,7 @@ impl Gathered {
         })?;
         // An overflow is refused in the end, where the vertices are counted.
         let first = self.vertices.position.len() as u32;
-        let moved = corners.iter().map(|corners| corners.map(|i| first.wrapping_add(i)));
+        let moved = corners.iter().map(|corners| corners.map_inline(|i| first.wrapping_add(i)));
         self.corners.extend(moved);
         self.vertices.position.extend(vertices.position);
         self.vertices.direction.extend(vertices.direction);

@@ -3,6 +3,7 @@
 use super::Plant;
 use super::mesh::{Blade, Joint, Mesh};
 use crate::error::Result;
+use crate::number::MapInline;
 use crate::number::{elementary, random};
 use glam::DVec3;
 use std::f64::consts::TAU;
@@ -111,7 +112,7 @@ impl Dice {
 
     /// A random vector in the cube [-1, 1)^3.
     fn vector(&mut self) -> DVec3 {
-        DVec3::from_array([(); 3].map(|()| self.between(-1.0, 1.0)))
+        DVec3::from_array([(); 3].map_inline(|()| self.between(-1.0, 1.0)))
     }
 
     /// The random numbers of another branch.
@@ -179,7 +180,8 @@ impl Tree {
             return;
         }
         let shares = shares(&bud, order);
-        let [base, tip] = [bud.leaves, shares[shares.len() - 1]].map(|leaves| self.radius(leaves));
+        let [base, tip] =
+            [bud.leaves, shares[shares.len() - 1]].map_inline(|leaves| self.radius(leaves));
         let taper = |s: f64| {
             let foot = if is_trunk && s < FOOT.1 { 1.0 - s / FOOT.1 } else { 0.0 };
             (base + (tip - base) * s * s) * (1.0 + FOOT.0 * foot * foot)

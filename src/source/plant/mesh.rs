@@ -1,6 +1,7 @@
 //! Build triangles: rings around an axis, and the blades of leaves.
 
 use crate::error::Result;
+use crate::number::MapInline;
 use crate::number::elementary;
 use crate::scene::{Triangles, Vertices};
 use glam::DVec3;
@@ -99,7 +100,7 @@ impl Mesh {
             self.push(position, normal.normalize(), color)
         };
         let base = push(0.0, 0.0);
-        let [[r, l], [s, m]] = PAIRS.map(|(t, width)| [push(t, width), push(t, -width)]);
+        let [[r, l], [s, m]] = PAIRS.map_inline(|(t, width)| [push(t, width), push(t, -width)]);
         let tip = push(1.0, 0.0);
         self.corners.extend([[base, r, l], [r, s, l], [s, m, l], [s, tip, m]]);
     }

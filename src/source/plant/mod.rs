@@ -21,6 +21,7 @@
 //! # Ok::<(), splatref::Error>(())
 //! ```
 
+use crate::number::MapInline;
 mod grow;
 mod mesh;
 mod parts;
@@ -97,8 +98,9 @@ impl Plant {
     /// # Errors
     /// [`Error::Invalid`] if ids of 32 bits do not suffice.
     pub fn polygons(&self) -> Result<Primitives> {
-        let triangles =
-            joined([&self.trunk, &self.leaves, &self.bark].map(|mesh| (mesh, mesh.corners())))?;
+        let triangles = joined(
+            [&self.trunk, &self.leaves, &self.bark].map_inline(|mesh| (mesh, mesh.corners())),
+        )?;
         Ok(Primitives { triangles, ..Primitives::default() })
     }
 }
@@ -128,7 +130,7 @@ fn joined(meshes: [(&Triangles, &[[u32; 3]]); 3]) -> Result<Triangles> {
         }
         // An id that does not fit means too many vertices, which are refused below.
         let new = |corner: u32| number[corner as usize].unwrap_or_default() as u32;
-        all.extend(corners.iter().map(|corners| corners.map(new)));
+        all.extend(corners.iter().map(|corners| corners.map_inline(new)));
     }
     Triangles::new(Vertices { color, ..to }, all).map(|(triangles, _)| triangles)
 }

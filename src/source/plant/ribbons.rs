@@ -3,6 +3,7 @@
 use super::parts::Parts;
 use super::{Rest, lines, mean, unit};
 use crate::error::Result;
+use crate::number::MapInline;
 use crate::scene::{Polylines, Triangles, Vertices};
 use glam::DVec3;
 
@@ -64,7 +65,7 @@ pub fn ribbons(leaves: &Triangles) -> Result<(Polylines, Rest)> {
             continue;
         };
         let first = to.position.len() as u32;
-        segments.extend([0, 1, 2].map(|i| [first + i, first + i + 1]));
+        segments.extend([0, 1, 2].map_inline(|i| [first + i, first + i + 1]));
         for of in [&ends[..1], &pairs[0], &pairs[1], &ends[1..]] {
             push(&mut to, from, of);
         }
@@ -81,7 +82,7 @@ fn push(to: &mut Vertices, from: &Vertices, of: &[u32]) {
         &[end] => from.direction[end as usize],
         _ => unit(normals.sum()).unwrap_or(DVec3::Y).as_vec3(),
     });
-    let [a, b] = [0, of.len() - 1].map(|i| from.position[of[i] as usize].as_dvec3());
+    let [a, b] = [0, of.len() - 1].map_inline(|i| from.position[of[i] as usize].as_dvec3());
     to.radius.push((a.distance(b) / 2.0) as f32);
     if let (Some(to), Some(from)) = (&mut to.color, &from.color) {
         to.push(mean(of.iter().map(|&i| from[i as usize])));

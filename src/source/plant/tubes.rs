@@ -3,6 +3,7 @@
 use super::parts::Parts;
 use super::{Rest, lines, mean, unit};
 use crate::error::Result;
+use crate::number::MapInline;
 use crate::scene::{Polylines, Triangles, Vertices};
 use glam::DVec3;
 
@@ -75,7 +76,7 @@ pub fn tubes(bark: &Triangles) -> Result<(Polylines, Rest)> {
     }
     let mut sums = vec![DVec3::ZERO; to.position.len()];
     for ends in &segments {
-        let [a, b] = ends.map(|ring| to.position[ring as usize].as_dvec3());
+        let [a, b] = ends.map_inline(|ring| to.position[ring as usize].as_dvec3());
         for ring in ends {
             sums[*ring as usize] += unit(b - a).unwrap_or(DVec3::ZERO);
         }
@@ -111,7 +112,7 @@ fn layers(mesh: &Triangles, edges: &[([u32; 2], bool)]) -> Vec<u32> {
     // For each part, the longest edge of a boundary, by its squared length, and that boundary.
     let mut longest: Vec<Option<(f64, u32)>> = vec![None; n];
     for &([a, b], _) in edges.iter().filter(|edge| edge.1) {
-        let [p, q] = [a, b].map(|i| position[i as usize].as_dvec3());
+        let [p, q] = [a, b].map_inline(|i| position[i as usize].as_dvec3());
         let (length, longest) = (p.distance_squared(q), &mut longest[parts.find(a) as usize]);
         if longest.is_none_or(|(most, _)| length > most) {
             *longest = Some((length, boundaries.find(a)));
@@ -178,7 +179,7 @@ fn rings(edges: &[([u32; 2], bool)], layer: &[u32]) -> (Vec<Option<u32>>, Vec<[u
         .iter()
         .filter(|&&(edge, _)| !within(edge))
         .map(|&([a, b], _)| if layer[a as usize] < layer[b as usize] { [a, b] } else { [b, a] })
-        .map(|edge| edge.map(|i| cluster[i as usize]))
+        .map(|edge| edge.map_inline(|i| cluster[i as usize]))
         .filter(|ends| ends.iter().all(|&root| is_ring(root)))
         .collect();
     segments.sort_unstable();
@@ -193,7 +194,7 @@ fn rings(edges: &[([u32; 2], bool)], layer: &[u32]) -> (Vec<Option<u32>>, Vec<[u
         *number = next;
     }
     for segment in &mut segments {
-        *segment = segment.map(|root| number[root as usize].unwrap_or(NOWHERE));
+        *segment = segment.map_inline(|root| number[root as usize].unwrap_or(NOWHERE));
     }
     (cluster.iter().map(|&root| number[root as usize]).collect(), segments)
 }

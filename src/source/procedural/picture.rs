@@ -2,6 +2,7 @@
 
 use super::{Hit, Surface};
 use crate::frame::{Frame, NamedPlane, Plane, Samples};
+use crate::number::MapInline;
 use crate::scene::{Camera, Projection};
 use glam::DVec3;
 
@@ -19,7 +20,7 @@ pub(super) fn true_picture(surface: &Surface, camera: &Camera) -> Frame<f64> {
         }
     }
     let hits = Plane::from_values(width, height, hits);
-    let vector = |v: DVec3| v.to_array().map(|v| v + 0.0); // -0 + 0 = +0
+    let vector = |v: DVec3| v.to_array().map_inline(|v| v + 0.0); // -0 + 0 = +0
     let color = hits.map(|hit| hit.map_or([0.0; 3], |hit| vector(hit.color)));
     let depth = hits.map(|hit| hit.map_or(f64::INFINITY, |hit| hit.t + 0.0));
     let normal = hits.map(|hit| hit.map_or([0.0; 3], |hit| vector(hit.normal)));
@@ -35,7 +36,7 @@ pub(super) fn true_picture(surface: &Surface, camera: &Camera) -> Frame<f64> {
 /// Origin and direction in view space of the ray through a pixel's centre. Its parameter is the
 /// depth.
 fn view_ray(camera: &Camera, x: u32, y: u32) -> (DVec3, DVec3) {
-    let [fx, fy, cx, cy] = [camera.fx, camera.fy, camera.cx, camera.cy].map(f64::from);
+    let [fx, fy, cx, cy] = [camera.fx, camera.fy, camera.cx, camera.cy].map_inline(f64::from);
     let right = (f64::from(x) + 0.5 - cx) / fx;
     let up = -(f64::from(y) + 0.5 - cy) / fy;
     match camera.projection {

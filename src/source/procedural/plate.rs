@@ -2,6 +2,7 @@
 
 use super::sampling::{Sampler, cell_radius};
 use super::{Hit, PALETTE};
+use crate::number::MapInline;
 use glam::DVec3;
 
 /// A rectangle: low <= (x, y) <= high in a plane of constant z.
@@ -48,8 +49,8 @@ pub(super) fn sample(plates: &[Plate], count: usize, sampler: &mut Sampler) {
     let area: f64 = plates.iter().map(|p| (p.high[0] - p.low[0]) * (p.high[1] - p.low[1])).sum();
     let spacing = (area / count as f64).sqrt();
     for plate in plates {
-        let [width, height] = [0, 1].map(|axis| plate.high[axis] - plate.low[axis]);
-        let [columns, rows] = [width, height].map(|side| {
+        let [width, height] = [0, 1].map_inline(|axis| plate.high[axis] - plate.low[axis]);
+        let [columns, rows] = [width, height].map_inline(|side| {
             let cells = (side / spacing + 0.5).floor();
             if cells < 1.0 { 1.0 } else { cells }
         });

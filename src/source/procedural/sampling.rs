@@ -108,6 +108,7 @@
 //!       position = (low.x + (column + e(s)) dx, low.y + (row + f(s)) dy, z)
 //! ```
 
+use crate::number::MapInline;
 #[cfg(test)]
 mod rebuilt;
 
@@ -149,7 +150,7 @@ impl Sampler {
     /// direction, by the random numbers 2i and 2i + 1 of the seed for surfel i.
     pub(super) fn displaced(&self) -> [f64; 2] {
         let index = 2 * self.radius.len() as u64;
-        [index, index + 1].map(|i| 0.5 + (f64::from(random::unit(self.seed, i)) - 0.5) / 4.0)
+        [index, index + 1].map_inline(|i| 0.5 + (f64::from(random::unit(self.seed, i)) - 0.5) / 4.0)
     }
 
     /// The azimuth in radians of point `i` of a golden spiral: 2 pi times the fractional part of

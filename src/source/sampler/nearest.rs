@@ -4,6 +4,7 @@
 //! cells to skip.
 
 use super::greedy::squared_distance;
+use crate::number::MapInline;
 use glam::{DVec3, Vec3};
 
 /// Initial number of cells along the longest side of the box.
@@ -135,7 +136,7 @@ impl Nearest {
         let longest = self.extent.max_element();
         self.side = if longest > 0.0 { longest / self.fine as f64 } else { 1.0 };
         let count = |extent: f64| ((extent / self.side) as usize + 1).min(self.fine);
-        self.cells = self.extent.to_array().map(count);
+        self.cells = self.extent.to_array().map_inline(count);
         self.last = vec![NONE; self.cells.iter().product()];
         self.before.clear();
         (0..self.points.len()).for_each(|point| self.link(point));

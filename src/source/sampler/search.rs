@@ -2,6 +2,7 @@
 
 use super::greedy::squared_distance;
 use crate::index::point_tree::{PointTree, Search};
+use crate::number::MapInline;
 use glam::Vec3;
 
 /// Ranges of the tree with at most this many points are searched linearly.
@@ -15,7 +16,7 @@ pub(super) type Found = (f32, u32);
 #[inline]
 pub(super) fn is_within([x, y, z]: [f64; 3], reach2: f32) -> bool {
     // In `f32`, as the squared distances are.
-    let [x, y, z] = [x, y, z].map(|offset| offset as f32);
+    let [x, y, z] = [x, y, z].map_inline(|offset| offset as f32);
     (x * x + y * y) + z * z <= reach2
 }
 

@@ -49,6 +49,7 @@
 //! A primitive gives nothing if a corner is not finite, or if a corner is so far away that a
 //! distance overflows where the primitive is cut.
 
+use crate::number::MapInline;
 #[cfg(test)]
 mod tests;
 
@@ -252,8 +253,8 @@ impl<R: Exact> Clip<R> {
             return Some(ends);
         }
         for plane in &self.planes {
-            let [a, b] = [0, 1].map(|i| (ends[i], plane.distance(&ends[i].position)));
-            match [a, b].map(|(_, distance)| distance >= R::ZERO) {
+            let [a, b] = [0, 1].map_inline(|i| (ends[i], plane.distance(&ends[i].position)));
+            match [a, b].map_inline(|(_, distance)| distance >= R::ZERO) {
                 [true, true] => {}
                 [true, false] => ends[1] = self.cut(plane, a, b)?,
                 [false, true] => ends[0] = self.cut(plane, b, a)?,

@@ -7,6 +7,7 @@ use crate::method::blue::discs::ray;
 use crate::method::blue::squares::{Edges, PlacedSquare, SquareProjector};
 use crate::method::fragment::facing;
 use crate::method::projection::{Has, world};
+use crate::number::MapInline;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Scene;
@@ -178,9 +179,9 @@ impl<'a, P: Profile> Fragments<'a, P> {
         }
         let (scene, i) = (self.scene, may.id as usize);
         let own = scene.surfels.color().map_or(scene.material.color, |color| color[i]);
-        let color = if self.colored { own.to_array() } else { [0.0; 3] }.map(Ball::from_f32);
+        let color = if self.colored { own.to_array() } else { [0.0; 3] }.map_inline(Ball::from_f32);
         let surface = |back: bool| {
-            let normal = scene.surfels.normal()[i].to_array().map(Ball::from_f32);
+            let normal = scene.surfels.normal()[i].to_array().map_inline(Ball::from_f32);
             let normal = facing(normal, back.into());
             Surface { depth: may.depth, normal, tangent: None, color }
         };
@@ -196,7 +197,7 @@ impl<'a, P: Profile> Fragments<'a, P> {
         if surfel == NO_ID || surfel as usize >= self.scene.surfels.len() {
             return None;
         }
-        let size = [self.view.width, self.view.height].map(|size| size.middle as u32);
+        let size = [self.view.width, self.view.height].map_inline(|size| size.middle as u32);
         let one = Possible::new(&self.projector, surfel as usize, size)?;
         let disc = &one.placed.disc;
         let fragment = disc.at(ray(&self.view, (x, y)), self.view.perspective);

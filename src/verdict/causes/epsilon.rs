@@ -23,6 +23,7 @@ use crate::frame::{Frame, Plane, Samples};
 use crate::method::ewa::visibility::Foremost;
 use crate::method::surface;
 use crate::method::{Method, Session};
+use crate::number::MapInline;
 use crate::number::Real;
 use crate::scene::{Camera, Projection};
 use crate::setting::{Fields, Value};
@@ -184,7 +185,7 @@ fn sum(a: &Samples<f64>, b: &Samples<f64>) -> Samples<f64> {
         let values = a.values().iter().zip(b.values()).map(|(&a, &b)| add(a, b)).collect();
         Plane::from_values(a.width(), a.height(), values)
     }
-    let three = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map(|i| a[i] + b[i]);
+    let three = |a: [f64; 3], b: [f64; 3]| [0, 1, 2].map_inline(|i| a[i] + b[i]);
     match (a, b) {
         (Samples::Scalar(a), Samples::Scalar(b)) => Samples::Scalar(each(a, b, |a, b| a + b)),
         (Samples::Color(a), Samples::Color(b)) => Samples::Color(each(a, b, three)),

@@ -81,6 +81,7 @@
 //!   picture in f64 that is rounded once in the end. The reason is that its stored planes are not
 //!   the input of its next stage.
 
+use crate::number::MapInline;
 mod client_planes;
 mod polygons;
 mod selection;
@@ -331,7 +332,7 @@ impl<P: Profile> LaterPasses<'_, P> {
         watch: Watch,
     ) -> (Vec<[Marks; 4]>, Counts) {
         let found = exec.ordered(parts, |(tile, rect)| {
-            let mut marks = [(); 4].map(|()| watch.marks(rect));
+            let mut marks = [(); 4].map_inline(|()| watch.marks(rect));
             let counts = self.judge((tile, rect), &mut marks);
             (marks, counts)
         });

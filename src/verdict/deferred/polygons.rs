@@ -10,6 +10,7 @@ use crate::method::deferred::part::Whole;
 use crate::method::deferred::polygons::alone;
 use crate::method::ewa::attributes::Sums;
 use crate::method::projection::world;
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Scene;
@@ -57,7 +58,7 @@ impl<P: Profile> PolygonTile<P> {
 impl<'a, P: Profile> Polygons<'a, P> {
     pub(super) fn new(job: &Job<'_>, ground: &'a Ground, cull: bool) -> Self {
         let Ground(scene, paint) = ground;
-        let paint = paint.map(|color| color.map(Ball::from_f32));
+        let paint = paint.map(|color| color.map_inline(Ball::from_f32));
         let all = AllPolygons::new(job, scene, cull);
         Self { all, view: View::new(job.camera), paint }
     }

@@ -8,6 +8,7 @@ use crate::composite::sum;
 use crate::frame::NO_ID;
 use crate::method::Job;
 use crate::method::ewa::attributes::Sums;
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
@@ -55,7 +56,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     ) -> Self {
         let colors = surfels.color().unwrap_or_default();
         let brightest = colors.iter().fold(1.0_f64, |brightest, color| {
-            let [r, g, b] = color.to_array().map(f64::from);
+            let [r, g, b] = color.to_array().map_inline(f64::from);
             brightest.at_least(r).at_least(g).at_least(b)
         });
         let colored = surfels.color().is_some();
@@ -213,8 +214,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         };
         Cow::Owned(Sums {
             weight: widened(sums.weight, lost(1.0)),
-            normal: sums.normal.map(|part| widened(part, lost(1.0))),
-            color: sums.color.map(|part| widened(part, lost(self.brightest))),
+            normal: sums.normal.map_inline(|part| widened(part, lost(1.0))),
+            color: sums.color.map_inline(|part| widened(part, lost(self.brightest))),
             opacity: widened(sums.opacity, lost(1.0)),
             count: sums.count,
         })

@@ -7,6 +7,7 @@ use crate::method::Job;
 use crate::method::ewa::Settings;
 use crate::method::ewa::possible::{self, PossibleSplat};
 use crate::method::prepare::Prepared;
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth, Vector2};
 use crate::scene::Surfels;
@@ -92,7 +93,8 @@ pub(super) fn judge<P: Profile>(
 /// The pixel that holds a position, or the pixel at the border next to it.
 fn pixel(job: &Job<'_>, place: [f32; 2]) -> usize {
     let size = job.camera.size();
-    let [x, y] = [0, 1].map(|i| f64::from(place[i]).clamped(0.0, f64::from(size[i] - 1)) as usize);
+    let [x, y] =
+        [0, 1].map_inline(|i| f64::from(place[i]).clamped(0.0, f64::from(size[i] - 1)) as usize);
     y * size[0] as usize + x
 }
 
@@ -228,7 +230,7 @@ fn numbers<R: Copy>(f: &Footprint<R>) -> [(&'static str, R); 11] {
 fn same_attributes(record: &SplatRecord, surfels: &Surfels) -> bool {
     let i = record.surfel as usize;
     let normal = surfels.normal()[i].to_array();
-    let turned = if record.back != 0 { normal.map(|part| -part) } else { normal };
+    let turned = if record.back != 0 { normal.map_inline(|part| -part) } else { normal };
     turned == record.normal
         && surfels.opacity().is_none_or(|opacity| opacity[i] == record.opacity)
         && surfels.color().is_none_or(|color| color[i].to_array() == record.color)

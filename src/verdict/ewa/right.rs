@@ -16,8 +16,9 @@ use super::pixel::{ATTRIBUTES, NORMALIZATION, SHADING};
 use super::sums::AllSums;
 use crate::composite::sum;
 use crate::method::Job;
+use crate::number::MapInline;
 use crate::number::ball::{BallLanes, Common, Profile, TotalsLanes};
-use crate::number::lanes::{LANES, each, vectorized_avx2};
+use crate::number::lanes::{LANES, each, vectorized};
 use crate::number::{Ball, Real};
 use crate::shade::phong::Shader;
 use crate::splat::View;
@@ -67,7 +68,7 @@ impl<'a, P: Profile> RightPixels<'a, P> {
         }
         let scene = job.scene;
         let shader = Shader::<Ball<P>>::new(View::new(job.camera), &scene.lights, scene.material);
-        let plain = shader.plain().map(|part| {
+        let plain = shader.plain().map_inline(|part| {
             let mut lanes = Numbers::<P>::ZERO;
             (0..LANES).for_each(|i| lanes.put(i, part.rounding_as()));
             lanes
@@ -90,7 +91,8 @@ impl<'a, P: Profile> RightPixels<'a, P> {
         }
         let found = judge(self, &lanes);
         std::array::from_fn(|i| {
-            (found.right[i] != 0).then(|| [0, 1, 2].map(|stage: usize| found.worst[stage][i]))
+            (found.right[i] != 0)
+                .then(|| [0, 1, 2].map_inline(|stage: usize| found.worst[stage][i]))
         })
     }
 }
@@ -231,7 +233,7 @@ fn means<const DIRECTION: bool, P: Profile>(
     means
 }
 
-vectorized_avx2!(
+vectorized!(
     /// Finds the same as [`PixelJudge::check`](super::pixel::PixelJudge::check).
     fn judge<P: Profile>(of: &RightPixels<'_, P>, pixels: &Pixels<P>) -> StageErrors {
         let (client_planes, at) = (of.client_planes, &pixels.at);

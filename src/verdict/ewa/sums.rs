@@ -8,6 +8,7 @@ use crate::frame::Rect;
 use crate::frame::stencil::{Outcome, Stencil};
 use crate::method::ewa::attributes::Sums;
 use crate::method::fragment::facing;
+use crate::number::MapInline;
 use crate::number::ball::{Common, Profile, Three, Totals};
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
@@ -225,7 +226,8 @@ impl FragmentDecisions {
         };
         let share = limit.map(|which| {
             let ([value, limit], whole) = limits()[which];
-            [limit.middle - value.middle, limit.radius + value.radius].map(|x| x / whole.middle)
+            [limit.middle - value.middle, limit.radius + value.radius]
+                .map_inline(|x| x / whole.middle)
         });
         let [distance, radius] = share.unwrap_or_default();
         OpenDecision { surfel, limit, distance, radius }

@@ -12,6 +12,7 @@ use crate::method::ewa::Settings;
 use crate::method::ewa::possible::{self, PossibleSplat};
 use crate::method::fragment::each_pixel;
 use crate::method::prepare::Prepared;
+use crate::number::MapInline;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real, Truth};
 use crate::splat::{Footprint, Shared, Splat};
@@ -224,7 +225,7 @@ impl Swift {
         let reach = w.abs() + self.w;
         let disc = if shared.perspective { form / (reach * reach) } else { form };
         if shared.low_pass.middle > 0.0 {
-            let [x, y] = offset.map(|offset| square(offset.abs() - self.offset));
+            let [x, y] = offset.map_inline(|offset| square(offset.abs() - self.offset));
             disc.at_most((x + y) / shared.low_pass.middle)
         } else {
             disc

@@ -6,6 +6,7 @@ use crate::frame::NO_ID;
 use crate::method::Job;
 use crate::method::ewa::attributes::Sums;
 use crate::method::peeling::Settings;
+use crate::number::MapInline;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
@@ -65,7 +66,7 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
         let surfels = &job.scene.surfels;
         let colors = surfels.color().unwrap_or_default();
         let brightest = colors.iter().fold(1.0_f64, |brightest, color| {
-            let [r, g, b] = color.to_array().map(f64::from);
+            let [r, g, b] = color.to_array().map_inline(f64::from);
             brightest.at_least(r).at_least(g).at_least(b)
         });
         let shading = Shading::new(job, surfels.color().is_some());
@@ -235,8 +236,8 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
             let truth = if nothing {
                 [Ball::ZERO; 3]
             } else {
-                let normal = sums.normal.map(|part| widened(part, lost(1.0)));
-                let color = sums.color.map(|part| widened(part, lost(self.brightest)));
+                let normal = sums.normal.map_inline(|part| widened(part, lost(1.0)));
+                let color = sums.color.map_inline(|part| widened(part, lost(self.brightest)));
                 let normal = sum::direction(normal, weight);
                 let color = sum::average(color, weight);
                 let surface = Surface { depth, normal, tangent: None, color };

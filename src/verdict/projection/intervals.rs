@@ -3,6 +3,7 @@
 
 use crate::frame::Rect;
 use crate::frame::raster::Snap;
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
 use crate::verdict::checks::anything;
@@ -26,8 +27,8 @@ const OF_DOUBLES: f64 = 1e-12;
 
 impl Intervals {
     pub(super) fn new(snap: &Snap, places: &[[[i64; 2]; 2]; 3]) -> Self {
-        let middle = places.map(|at| at.map(|[a, b]| 0.5 * (a + b) as f64));
-        let deviation = places.map(|at| at.map(|[a, b]| 0.5 * (b - a) as f64));
+        let middle = places.map_inline(|at| at.map_inline(|[a, b]| 0.5 * (a + b) as f64));
+        let deviation = places.map_inline(|at| at.map_inline(|[a, b]| 0.5 * (b - a) as f64));
         let mut all = Self { middle, deviation, scale: f64::from(snap.scale()), cross: [0.0; 2] };
         all.cross = all.edge(0, 1, (middle[2], deviation[2]));
         all
@@ -55,7 +56,7 @@ impl Intervals {
 
     /// The pixels that may be covered.
     pub(super) fn bounds(&self, size: [u32; 2]) -> Rect {
-        let [x, y] = [0, 1].map(|axis| {
+        let [x, y] = [0, 1].map_inline(|axis| {
             let (mut least, mut most) = (f64::INFINITY, f64::NEG_INFINITY);
             for (middle, deviation) in self.middle.iter().zip(&self.deviation) {
                 least = least.at_most(middle[axis] - deviation[axis]);
@@ -70,8 +71,8 @@ impl Intervals {
 
     /// The edge functions at a pixel, for corners that run in this sense.
     fn edges(&self, (x, y): (u32, u32), sense: f64) -> [[f64; 2]; 3] {
-        let center = [x, y].map(|i| (f64::from(i) + 0.5) * self.scale);
-        [[1, 2], [2, 0], [0, 1]].map(|[i, k]| {
+        let center = [x, y].map_inline(|i| (f64::from(i) + 0.5) * self.scale);
+        [[1, 2], [2, 0], [0, 1]].map_inline(|[i, k]| {
             let [middle, deviation] = self.edge(i, k, (center, [0.0; 2]));
             [sense * middle, deviation]
         })
@@ -90,9 +91,9 @@ impl Intervals {
             return None;
         }
         let [area, off] = [self.cross[0].abs(), self.cross[1]];
-        let middle = edges.map(|[middle, _]| middle / area);
-        let most =
-            edges.map(|[middle, deviation]| ((middle + deviation) / (area - off)).at_most(1.0));
+        let middle = edges.map_inline(|[middle, _]| middle / area);
+        let most = edges
+            .map_inline(|[middle, deviation]| ((middle + deviation) / (area - off)).at_most(1.0));
         let lies = edges.iter().all(|[middle, deviation]| middle > deviation);
         Some(Cover { middle, most, lies })
     }
@@ -148,9 +149,9 @@ impl Depths {
         let all = weights.iter().flatten();
         Self {
             intervals,
-            m: m.map(|m| m.middle),
+            m: m.map_inline(|m| m.middle),
             m_off: m.iter().fold(0.0, part),
-            weights: weights.map(|of| of.map(|weight| weight.middle)),
+            weights: weights.map_inline(|of| of.map_inline(|weight| weight.middle)),
             weights_off: all.fold(0.0, |off, weight| off.at_least(weight.radius)),
         }
     }
@@ -165,8 +166,8 @@ impl Depths {
         let [whole, whole_off] = self.intervals.linear(self.m, &cover);
         let least = whole - whole_off;
         let rounded = ROUNDINGS + 4.0 * self.m_off;
-        let weights = [0, 1, 2].map(|k| {
-            let values = [0, 1, 2].map(|i| self.m[i] * self.weights[i][k]);
+        let weights = [0, 1, 2].map_inline(|k| {
+            let values = [0, 1, 2].map_inline(|i| self.m[i] * self.weights[i][k]);
             let [part, off] = self.intervals.linear(values, &cover);
             let middle = part / whole;
             let off = (off + middle.abs() * whole_off) / least;

@@ -34,6 +34,7 @@
 //! primitive with more ways to snap. Pixels with its id are judged only by rule 3 and by their
 //! kind. Without ids, every pixel that is neither empty nor a surfel counts as such a pixel.
 
+use crate::number::MapInline;
 mod candidate;
 mod claim;
 mod intervals;
@@ -192,7 +193,7 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         let color = of.color().map_or(scene.material.color, |color| color[i]);
         let color = if has.color { color.to_array() } else { [0.0; 3] };
         let g = if back { Ball::ONE } else { -Ball::ONE };
-        let (radius, color) = (Ball::from_f32(of.radius()[i]), color.map(Ball::from_f32));
+        let (radius, color) = (Ball::from_f32(of.radius()[i]), color.map_inline(Ball::from_f32));
         points.sample(one.surfel, &one.placed, one.normal, g, radius, color)
     }
 

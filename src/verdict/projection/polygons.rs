@@ -21,6 +21,7 @@ use crate::method::projection::primitives::{
     Piece, PiecePixel, corners, triangle_piece, triangle_within,
 };
 use crate::method::projection::{PixelSample, SceneProjector};
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Vector3};
 use crate::scene::Scene;
@@ -169,12 +170,12 @@ fn piece<P: Profile>(
     p: &[Vector3<Ball<P>>; 3],
 ) -> Option<PossiblePolygon<P>> {
     let snap = &projector.snap;
-    let placed = fan.map(|corner| projector.points.place(corner.position));
+    let placed = fan.map_inline(|corner| projector.points.place(corner.position));
     let places: [[[i64; 2]; 2]; 3] =
-        placed.each_ref().map(|at| [fixed(snap, at.center.x), fixed(snap, at.center.y)]);
-    let least = std::array::from_fn(|k| (places[k].map(|[least, _]| least), placed[k].m));
-    let weights = fan.map(|corner| corner.weights);
-    let depths = depths(projector, &fan.map(|corner| corner.position), p);
+        placed.each_ref().map_inline(|at| [fixed(snap, at.center.x), fixed(snap, at.center.y)]);
+    let least = std::array::from_fn(|k| (places[k].map_inline(|[least, _]| least), placed[k].m));
+    let weights = fan.map_inline(|corner| corner.weights);
+    let depths = depths(projector, &fan.map_inline(|corner| corner.position), p);
     let id = (index as u32, index);
     if places.iter().flatten().all(|[least, greatest]| least == greatest) {
         let piece = triangle_piece(projector, id, least, weights, *p)?;
@@ -192,9 +193,9 @@ fn piece<P: Profile>(
         let form = Form::OpenDecision(Some(intervals));
         return Some(PossiblePolygon { index: id.0, bounds, depths, form });
     }
-    let raster = Triangle::new(snap, least.map(|(place, _)| place))?;
+    let raster = Triangle::new(snap, least.map_inline(|(place, _)| place))?;
     let piece = triangle_within(projector, id, (raster, bounds), least, weights, *p)?;
-    let between = Depths::new(intervals, placed.map(|at| at.m), &weights);
+    let between = Depths::new(intervals, placed.map_inline(|at| at.m), &weights);
     let form = Form::Between(Box::new((piece, between)));
     Some(PossiblePolygon { index: id.0, bounds, depths, form })
 }
@@ -232,7 +233,7 @@ fn reach<P: Profile>(projector: &SceneProjector<'_, Ball<P>>, p: &[Vector3<Ball<
             + (p.x.radius + p.y.radius + p.z.radius)
     };
     let off = p.iter().fold(0.0, |off, p| off + size(p));
-    let [columns, rows] = [0, 1].map(|axis| {
+    let [columns, rows] = [0, 1].map_inline(|axis| {
         let (focal, center) = if axis == 0 {
             (view.fx.middle, view.cx.middle)
         } else {

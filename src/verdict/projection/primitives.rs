@@ -4,6 +4,7 @@ use super::planes::kind_of;
 use crate::frame::raster::{GUARD_BAND, Snap};
 use crate::method::projection::primitives::{Piece, corners, line_piece, triangle_piece};
 use crate::method::projection::{SampleKind, SceneProjector};
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth, Vector3};
 use crate::scene::indexed::Indexed;
@@ -61,7 +62,7 @@ impl<P: Profile> Pieces<P> {
         (id, index): (u32, usize),
     ) -> Option<()> {
         let p = corners(&projector.scene.primitives.triangles, &projector.points, index);
-        let weights = whole(p).map(|corner: Clipped<_, 3>| corner.weights);
+        let weights = whole(p).map_inline(|corner: Clipped<_, 3>| corner.weights);
         self.add(Ends::new(projector, p).ways()?, |ends| {
             triangle_piece(projector, (id, index), ends, weights, p)
         });
@@ -77,7 +78,7 @@ impl<P: Profile> Pieces<P> {
         (id, index): (u32, usize),
     ) -> Option<()> {
         let p = corners(of, &projector.points, index);
-        let weights = whole(p).map(|corner: Clipped<_, 2>| corner.weights);
+        let weights = whole(p).map_inline(|corner: Clipped<_, 2>| corner.weights);
         self.add(Ends::new(projector, p).ways()?, |ends| {
             line_piece(projector, kind, (id, index), ends, weights, p)
         });
@@ -121,9 +122,10 @@ impl<P: Profile, const N: usize> Ends<P, N> {
         if !projector.clip.keeps(&p).certainly() {
             return Self::Unclear;
         }
-        Self::Whole(p.map(|p| {
+        Self::Whole(p.map_inline(|p| {
             let placed = projector.points.place(p);
-            let [x, y] = [placed.center.x, placed.center.y].map(|x| fixed(&projector.snap, x));
+            let [x, y] =
+                [placed.center.x, placed.center.y].map_inline(|x| fixed(&projector.snap, x));
             ([[x[0], y[0]], [x[1], y[1]]], placed.m)
         }))
     }
@@ -134,7 +136,7 @@ impl<P: Profile, const N: usize> Ends<P, N> {
             Self::Unclear => None,
             Self::Nothing => Some(Vec::new()),
             Self::Whole(ends) => {
-                let ways = ways(ends.map(|(places, _)| places))?.into_iter();
+                let ways = ways(ends.map_inline(|(places, _)| places))?.into_iter();
                 let with = |way: [[i64; 2]; N]| std::array::from_fn(|k| (way[k], ends[k].1));
                 Some(ways.map(with).collect())
             }
@@ -151,12 +153,12 @@ pub(super) fn fixed<P: Profile>(snap: &Snap, x: Ball<P>) -> [i64; 2] {
     let scaled = x.clamped(-guard, guard) * Ball::from_f32(snap.scale() as f32);
     let (middle, reach) = (scaled.middle, scaled.radius * (1.0 + 1e-9));
     // Exact, because the numbers are at most 2^29, in f64.
-    [middle - reach, middle + reach].map(|end| (end + 0.5).floor() as i64)
+    [middle - reach, middle + reach].map_inline(|end| (end + 0.5).floor() as i64)
 }
 
 /// Every choice of a place for each corner; none if there are more than are followed.
 fn ways<const N: usize>(ends: [[[i64; 2]; 2]; N]) -> Option<Vec<[[i64; 2]; N]>> {
-    let mut all = vec![ends.map(|[least, _]| least)];
+    let mut all = vec![ends.map_inline(|[least, _]| least)];
     for (corner, [least, greatest]) in ends.into_iter().enumerate() {
         for axis in 0..2 {
             match greatest[axis] - least[axis] {

@@ -6,6 +6,7 @@ use crate::method::Job;
 use crate::method::projection::SampleKind;
 use crate::method::pyramid::{Cell, Settings, pull, push};
 use crate::method::stage::Keep;
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Truth, Vector2};
 use crate::verdict::Doubt;
@@ -150,7 +151,7 @@ impl Phase {
 /// The outcomes of four cells at these offsets.
 fn of_four<P: Profile>(cells: &Four<P>, offsets: &[Vector2<Ball<P>>; 4]) -> (Vec<Outcome>, u8) {
     let tube = |j: usize| cells[j].kind == SampleKind::Tube;
-    outcomes(Cell::inside(cells, offsets), cells.map(|cell| cell.front), |j, first| {
+    outcomes(Cell::inside(cells, offsets), cells.map_inline(|cell| cell.front), |j, first| {
         let overlaps = decide::overlaps(cells[j].front, cells[first].back);
         overlaps & (tube(j) == tube(first)).into()
     })

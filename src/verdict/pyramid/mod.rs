@@ -23,6 +23,7 @@
 //! A cell with more than 16 outcomes is not judged, and counts as undecided, like a cell with
 //! several outcomes. A cell is marked at its place in its own plane, whatever its level.
 
+use crate::number::MapInline;
 mod levels;
 mod pixel;
 mod planes;
@@ -64,7 +65,7 @@ pub(super) fn verify<P: Profile>(
     let there = job.there(Keep::Stages);
     stages[1].missing = missing(client, &rows(&Cell::<f32>::PULL), 1..last + 1, &there);
     stages[2].missing = missing(client, &rows(&Cell::<f32>::PUSH), 0..last, &there);
-    let undecided = [1, 2].map(|i: usize| stages[i].doubtful(ANY)).iter().sum();
+    let undecided = [1, 2].map_inline(|i: usize| stages[i].doubtful(ANY)).iter().sum();
     Verdict::new(stages, [covered, undecided], budget, Shifts::default())
 }
 

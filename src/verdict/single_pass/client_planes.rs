@@ -5,6 +5,7 @@ use crate::method::PlaneRow;
 use crate::method::record::rows;
 use crate::method::single_pass::planes::COUNT;
 use crate::number::Ball;
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::verdict::checks::{Report, input, inputs, number, triple, widened};
 use crate::verdict::client::{Client, StoredPlane};
@@ -111,6 +112,7 @@ impl<'a> ImagePlanes<'a> {
 /// The names of the planes of all groups, each once, in the order of the rows.
 pub(super) fn names(images: &[ImagePlanes<'_>]) -> Vec<&'static str> {
     let all = images.iter().map(ImagePlanes::names);
-    let first = |a: [Option<_>; 6], b: [Option<_>; 6]| [0, 1, 2, 3, 4, 5].map(|i| a[i].or(b[i]));
+    let first =
+        |a: [Option<_>; 6], b: [Option<_>; 6]| [0, 1, 2, 3, 4, 5].map_inline(|i| a[i].or(b[i]));
     all.fold([None; 6], first).into_iter().flatten().collect()
 }

@@ -9,6 +9,7 @@ use crate::method::ewa::possible::{PossibleSplat, PossibleSplats, project};
 use crate::method::fragment::each_pixel;
 use crate::method::single_pass::Settings;
 use crate::method::single_pass::geometry::ratio;
+use crate::number::MapInline;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Truth};
 use crate::scene::Groups;
@@ -131,7 +132,7 @@ impl<P: Profile> PixelFragments<'_, P> {
 
 /// The entries at the places from the first up to, but not with, the second.
 fn between<T>(all: &[(usize, T)], places: [usize; 2]) -> &[(usize, T)] {
-    let [first, end] = places.map(|place| all.partition_point(|(at, _)| *at < place));
+    let [first, end] = places.map_inline(|place| all.partition_point(|(at, _)| *at < place));
     &all[first..end]
 }
 
@@ -236,5 +237,5 @@ pub(crate) fn bin_ends<P: Profile>(bins: &DepthBins<Ball<P>>, t: Ball<P>) -> [f6
     let reach = position.radius * (1.0 + f64::from(f32::EPSILON));
     let reach = if reach.is_nan() { f64::INFINITY } else { reach };
     let ends = [position.middle - reach, position.middle + reach];
-    ends.map(|end| bins.bin_of(Ball::exact(end)).middle)
+    ends.map_inline(|end| bins.bin_of(Ball::exact(end)).middle)
 }

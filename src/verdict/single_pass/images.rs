@@ -8,6 +8,7 @@ use crate::composite::groups::WeightedFragment;
 use crate::frame::NO_ID;
 use crate::method::fragment::facing;
 use crate::method::single_pass::geometry::opacity;
+use crate::number::MapInline;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
@@ -235,7 +236,7 @@ impl<P: Profile> Group<'_, P> {
     fn truth(&self, candidate: Candidate<'_, P>) -> WeightedFragment<Ball<P>> {
         let Some(fragment) = candidate else { return WeightedFragment::EMPTY };
         let (surfels, i) = (self.images.surfels, fragment.surfel as usize);
-        let of = |value: [f32; 3]| value.map(Ball::from_f32);
+        let of = |value: [f32; 3]| value.map_inline(Ball::from_f32);
         let normal = facing(of(surfels.normal()[i].to_array()), fragment.back);
         let color = surfels.color().map_or([Ball::ZERO; 3], |colors| of(colors[i].to_array()));
         let opacity = opacity(surfels, fragment.surfel);

@@ -45,6 +45,7 @@
 //! A pixel is undecided if its sums have more than one continuation. The error of a number, and of
 //! a certificate that fails, is defined as in `ewa`.
 
+use crate::number::MapInline;
 mod client_planes;
 pub(crate) mod compositing;
 pub(crate) mod fragments;
@@ -188,7 +189,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         let [geometry, compositing, shading] = marks;
         for y in rect.y0..rect.y1 {
             let row = Rect { y0: y, y1: y + 1, ..rect };
-            let mut parts = [(); 3].map(|()| compositing.beside(row));
+            let mut parts = [(); 3].map_inline(|()| compositing.beside(row));
             let place = (tile, (y - rect.y0) as usize, row);
             for found in self.judge_row(place, geometry, &mut parts) {
                 counts.undecided += u64::from(!found.certain());

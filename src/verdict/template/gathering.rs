@@ -3,6 +3,7 @@
 use super::levels::Level;
 use crate::method::template::reconstruction::{CenterQuery, Gathered, each_query, weight};
 use crate::method::template::{Center, Falloff, Settings};
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth};
 use crate::verdict::Doubt;
@@ -116,7 +117,7 @@ fn same<P: Profile>(a: &Gathered<Ball<P>>, b: &Gathered<Ball<P>>) -> bool {
         let [x, y, z] = of.normals;
         let [red, green, blue] = of.colors;
         let all = [of.depth, of.radius, of.weight, of.depths, x, y, z, red, green, blue];
-        all.map(|ball| (ball.middle.to_bits(), ball.radius.to_bits()))
+        all.map_inline(|ball| (ball.middle.to_bits(), ball.radius.to_bits()))
     };
     a.id == b.id && a.count == b.count && numbers(a) == numbers(b)
 }

@@ -4,6 +4,7 @@ use crate::frame::Plane;
 use crate::method::Job;
 use crate::method::stage::Keep;
 use crate::method::template::{Center, Settings, propagation};
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
 use crate::verdict::checks::{Report, least_wrong};
@@ -81,8 +82,8 @@ fn cell<P: Profile>(
     (finer, reach): (&[Center<Ball<P>>; 4], Ball<P>),
     pixel: &mut PixelMarks<'_>,
 ) {
-    let moving = finer.map(|center| propagation::moves(&center, reach));
-    let (found, doubts) = outcomes(moving, finer.map(|center| center.depth), |j, first| {
+    let moving = finer.map_inline(|center| propagation::moves(&center, reach));
+    let (found, doubts) = outcomes(moving, finer.map_inline(|center| center.depth), |j, first| {
         propagation::near(finer, first)[j]
     });
     pixel.doubts(doubts);

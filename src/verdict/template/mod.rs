@@ -22,6 +22,7 @@
 //! Values that are copied from stage to stage (ids, depth and radius of the front, a centre that
 //! moves alone) must be equal.
 
+use crate::number::MapInline;
 mod gathering;
 mod levels;
 mod pixel;
@@ -100,7 +101,7 @@ fn judge<P: Profile>(
     let client_planes = PicturePlanes::new(client);
     let judge = PixelJudge::new(job, settings, levels.all(), &client_planes);
     let found = job.exec.ordered(watch.parts(&job.grid()), |(_, rect)| {
-        let mut marks = [(); 3].map(|()| watch.marks(rect));
+        let mut marks = [(); 3].map_inline(|()| watch.marks(rect));
         let covered = counted(rect).filter(|at| judge.judge(*at, &mut marks)).count();
         (marks, covered as u64)
     });

@@ -11,6 +11,7 @@ use crate::method::stage::{Conditions, Keep};
 use crate::method::template::Settings;
 use crate::method::template::normalization;
 use crate::method::template::reconstruction::Gathered;
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
 use crate::splat::View;
@@ -47,7 +48,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         let (scene, has) = (job.scene, Has::of(job.scene));
         let colors = scene.surfels.color().unwrap_or_default();
         let brightest = colors.iter().fold(1.0_f64, |brightest, color| {
-            let [r, g, b] = color.to_array().map(f64::from);
+            let [r, g, b] = color.to_array().map_inline(f64::from);
             brightest.at_least(r).at_least(g).at_least(b)
         });
         let view = View::new(job.camera);
@@ -108,8 +109,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         let truth = Gathered {
             weight: widened(sums.weight, lost(heaviest)),
             depths: widened(sums.depths, lost(most(sums.depths))),
-            normals: sums.normals.map(|part| widened(part, lost(heaviest))),
-            colors: sums.colors.map(|part| widened(part, lost(heaviest * self.brightest))),
+            normals: sums.normals.map_inline(|part| widened(part, lost(heaviest))),
+            colors: sums.colors.map_inline(|part| widened(part, lost(heaviest * self.brightest))),
             ..*sums
         };
         client_planes.gathered.check((RECONSTRUCTION, &Gathered::PLANES), at, &truth, report);

@@ -7,6 +7,7 @@ use crate::method::Job;
 use crate::method::record::{Field, rows};
 use crate::method::stage::{Conditions, Keep};
 use crate::method::transparent::blending::GroupLayers;
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
 use crate::verdict::checks::{Report, anything, least_wrong, widened};
@@ -82,6 +83,10 @@ impl<'a> GroupPlanes<'a> {
         all: Vec<Layers<P>>,
         check: impl Fn(&Layers<P>, &mut Report<'_>),
     ) -> Vec<Layers<P>> {
+        // Nearly every pixel has one continuation, and checks take most of a verdict's time.
+        if all.len() == 1 {
+            return all;
+        }
         let error = |layers: &Layers<P>| {
             let mut worst = 1.0_f64;
             check(layers, &mut |_, error, _| worst = worst.at_least(error));
@@ -98,7 +103,7 @@ impl<'a> GroupPlanes<'a> {
         // Each layer rounds the stored values again.
         let lost = |largest: f64| f64::from(truth.count) * self.accumulator.radius(largest);
         let blend = Blend {
-            color: truth.blend.color.map(|part| widened(part, lost(truth.brightest))),
+            color: truth.blend.color.map_inline(|part| widened(part, lost(truth.brightest))),
             alpha: widened(truth.blend.alpha, lost(1.0)),
         };
         let opacity = widened(truth.opacity, lost(truth.opacity.middle.at_least(1.0)));
@@ -109,14 +114,14 @@ impl<'a> GroupPlanes<'a> {
     /// The group as the average reads it: the client's values, else all values of the
     /// continuations.
     fn read<P: Profile>(&self, at: (u32, u32), all: Option<Vec<Layers<P>>>) -> GroupFound<P> {
+        let stored: Vec<_> = all.iter().flatten().map(Layers::stored).collect();
         let any = |of: &dyn Fn(&GroupLayers<Ball<P>>) -> Ball<P>| {
-            let layers = all.iter().flatten().map(|layers| of(&layers.stored()));
-            layers.reduce(Ball::either).unwrap_or(anything())
+            stored.iter().map(of).reduce(Ball::either).unwrap_or(anything())
         };
         let count = any(&|layers| Ball::exact(layers.count.into()));
         let mut own = GroupLayers {
             blend: Blend {
-                color: [0, 1, 2].map(|c| any(&|layers| layers.blend.color[c])),
+                color: [0, 1, 2].map_inline(|c| any(&|layers| layers.blend.color[c])),
                 alpha: any(&|layers| layers.blend.alpha),
             },
             opacity: any(&|layers| layers.opacity),

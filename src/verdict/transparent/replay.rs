@@ -6,6 +6,7 @@ use crate::composite::over::Blend;
 use crate::frame::NO_ID;
 use crate::frame::stencil::{Outcome, Stencil};
 use crate::method::transparent::blending::GroupLayers;
+use crate::number::MapInline;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real, Truth};
 use crate::verdict::Doubt;
@@ -77,7 +78,7 @@ impl<P: Profile> Layers<P> {
     /// Whether both results are the same, as far as any plane shows it.
     fn same(&self, other: &Self) -> bool {
         let numbers = |layers: &Self| {
-            let [r, g, b] = layers.blend.color.map(|part| part.middle.to_bits());
+            let [r, g, b] = layers.blend.color.map_inline(|part| part.middle.to_bits());
             [r, g, b, layers.blend.alpha.middle.to_bits(), layers.opacity.middle.to_bits()]
         };
         let rest = |layers: &Self| (layers.bin, layers.hidden, layers.count, layers.surfel);

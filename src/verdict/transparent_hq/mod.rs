@@ -34,6 +34,7 @@
 //! - A group of the other layers has several continuations, or is not judged.
 //! - Its colour is not judged.
 
+use crate::number::MapInline;
 mod picture;
 #[cfg(test)]
 mod tests;
@@ -83,7 +84,7 @@ pub(super) fn verify<P: Profile>(
         judge.shown.names(),
     ];
     let mut names = names.into_iter();
-    let stages = STAGES.map(|stage| (stage, names.next().unwrap_or_default()));
+    let stages = STAGES.map_inline(|stage| (stage, names.next().unwrap_or_default()));
     Ok(marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks)))
 }
 
@@ -155,7 +156,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         [geometry, nearest, blending, averaging, compositing]: &mut [Marks; 5],
         counts: &mut Counts,
     ) {
-        let mut parts = [(); 3].map(|()| nearest.beside(row));
+        let mut parts = [(); 3].map_inline(|()| nearest.beside(row));
         let fronts = self.nearest.judge_row((tile, above, row), geometry, &mut parts);
         parts.into_iter().for_each(|part| nearest.put(part));
         let drawings = self.others.of_row(tile, &row);

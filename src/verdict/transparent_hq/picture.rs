@@ -9,6 +9,7 @@ use crate::method::transparent_hq::compositing::{Through, count, count_by_opacit
 use crate::method::transparent_hq::nearest::FrontLayer;
 use crate::method::transparent_hq::planes::{LAYERS, LAYERS_BY_OPACITY};
 use crate::number::Ball;
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::scene::Environment;
 use crate::verdict::checks::{Backdrop, is_bounded, number, triple};
@@ -30,7 +31,7 @@ impl<'a, P: Profile> PictureJudge<'a, P> {
         Self {
             color: client.triple(&SHADED),
             alpha: client.scalar(&ALPHA),
-            counts: [&LAYERS_BY_OPACITY, &LAYERS].map(|row| client.scalar(row)),
+            counts: [&LAYERS_BY_OPACITY, &LAYERS].map_inline(|row| client.scalar(row)),
             through: Through::new(job, settings, Environment::enclosure),
             backdrop: Backdrop::new(job),
         }

@@ -4,6 +4,7 @@
 //! A filter is a list of an odd number of weights, its middle at the pixel. Each filter is used
 //! along x and along y.
 
+use crate::number::MapInline;
 use crate::number::elementary;
 use std::f64::consts::PI;
 
@@ -31,14 +32,14 @@ impl Eye {
     pub(super) fn new(pixels_per_degree: f64) -> Self {
         let deviation = (SENSITIVITY[2][1] / (2.0 * PI * PI)).sqrt();
         let radius = (3.0 * deviation * pixels_per_degree).ceil() as i32;
-        let mut filters = SENSITIVITY.map(|[a, b]| {
+        let mut filters = SENSITIVITY.map_inline(|[a, b]| {
             let scale = (a * (PI / b).sqrt()).sqrt();
             taps(radius, |x| {
                 let degrees = x / pixels_per_degree;
                 scale * elementary::exp(-(PI * PI) * (degrees * degrees) / b)
             })
         });
-        let [y, cx, first, second] = [0, 1, 2, 3].map(|i| filters[i].iter().sum::<f64>());
+        let [y, cx, first, second] = [0, 1, 2, 3].map_inline(|i| filters[i].iter().sum::<f64>());
         let both = (first * first + second * second).sqrt();
         for (filter, sum) in filters.iter_mut().zip([y, cx, both, both]) {
             filter.iter_mut().for_each(|weight| *weight /= sum);

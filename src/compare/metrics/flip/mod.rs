@@ -32,6 +32,7 @@
 //!
 //! [ANA+20]: https://doi.org/10.1145/3406183
 
+use crate::number::MapInline;
 mod color;
 mod filter;
 #[cfg(test)]
@@ -126,7 +127,7 @@ impl Observer {
     fn new(pixels_per_degree: f64) -> Self {
         let (eye, feature) = (Eye::new(pixels_per_degree), Feature::new(pixels_per_degree));
         let reach = (eye.0[0].len() / 2).max(feature.0[0].len() / 2);
-        let [green, blue] = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map(color::hunt_lab);
+        let [green, blue] = [[0.0, 1.0, 0.0], [0.0, 0.0, 1.0]].map_inline(color::hunt_lab);
         let greatest = elementary::pow(color::hyab(green, blue), Self::COLOR);
         Self { eye, feature, reach, greatest }
     }
@@ -141,12 +142,12 @@ impl Observer {
         let width = pictures[0].width() as usize;
         let height = pictures[0].height() as usize;
         let near = rows.start.saturating_sub(self.reach)..height.min(rows.end + self.reach);
-        let filtered = pictures.map(|picture| Rows {
+        let filtered = pictures.map_inline(|picture| Rows {
             first: near.start,
             rows: near.clone().map(|y| self.row(picture, y)).collect(),
         });
         let sums = rows.zip(out.chunks_exact_mut(width)).map(|(y, out)| {
-            let [p, q] = filtered.each_ref().map(|rows| self.seen(rows, y, width));
+            let [p, q] = filtered.each_ref().map_inline(|rows| self.seen(rows, y, width));
             let mut sum = 0.0;
             for (x, value) in out.iter_mut().enumerate() {
                 let of = self.difference([p.lab[x], q.lab[x]], [p.features[x], q.features[x]]);
@@ -178,8 +179,8 @@ impl Observer {
         ];
         let eye = [(&y, 0), (&cx, 1), (&cz, 2), (&cz, 3)];
         FilteredRow {
-            eye: eye.map(|(row, i)| along_row(row, &self.eye.0[i], width)),
-            feature: [0, 1, 2].map(|i| along_row(&gray, &self.feature.0[i], width)),
+            eye: eye.map_inline(|(row, i)| along_row(row, &self.eye.0[i], width)),
+            feature: [0, 1, 2].map_inline(|i| along_row(&gray, &self.feature.0[i], width)),
         }
     }
 

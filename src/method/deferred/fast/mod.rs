@@ -4,6 +4,7 @@
 //! has the number of its rank among all surfels that passes 1 and 3 draw, in the order of their
 //! ids.
 
+use crate::number::MapInline;
 mod points;
 mod ranks;
 
@@ -53,7 +54,7 @@ pub(super) fn render(
 
     let fresh = whole.part(unseen(&whole, &before, &list), job.exec);
     let selected = whole.drawn(list, job);
-    let [fresh_job, selected_job] = [&fresh, &selected].map(|part| part.job(job));
+    let [fresh_job, selected_job] = [&fresh, &selected].map_inline(|part| part.job(job));
     let fresh_splats = prepare(&fresh_job, splats);
     let ranks = Ranks::new(flagged.ids(), fresh.ids());
     clock.lap("difference");

@@ -1,6 +1,7 @@
 //! Rank surfels among all that passes 1 and 3 draw, in the order of their ids.
 
 use super::super::visibility::NONE;
+use crate::number::MapInline;
 
 /// Stands for a polygon in the place of a rank; higher than the rank of any surfel.
 pub(super) const POLYGON: u32 = crate::frame::NO_ID - 1;
@@ -43,6 +44,7 @@ impl<'a> Ranks<'a> {
     }
 
     /// The id of a rank.
+    #[inline]
     pub(super) fn id(&self, rank: u32) -> u64 {
         let before = self.of_fresh.less(rank);
         let id = match self.of_fresh.values.get(before) {
@@ -79,7 +81,7 @@ impl Sparse {
     /// How many numbers are less than `value`.
     fn less(&self, value: u32) -> usize {
         let step = value as usize / STEP;
-        let [from, to] = [self.steps[step], self.steps[step + 1]].map(|less| less as usize);
+        let [from, to] = [self.steps[step], self.steps[step + 1]].map_inline(|less| less as usize);
         from + self.values[from..to].partition_point(|&other| other < value)
     }
 }

@@ -10,6 +10,7 @@ use crate::method::fast::fragments::add;
 use crate::method::fast::layered::LayeredBlock;
 use crate::method::fast::resolve::least_nearness;
 use crate::method::fast::tile::ROW;
+use crate::number::MapInline;
 use crate::number::Real;
 use crate::number::lanes::{
     LANES, Lanes, any, components, each, mask, select, select_u32, vectorized,
@@ -77,10 +78,10 @@ vectorized!(
         epsilon: f32,
     ) -> Sums {
         let shared = *shared;
-        let mut least = [0.0; LANES];
-        for (least, &nearness) in least.iter_mut().zip(&nearest.nearness) {
-            *least = least_nearness(&shared, decide::limit(shared.depth(nearness), epsilon));
-        }
+        let least = each(|i| {
+            let limit = decide::limit(shared.depth(nearest.nearness[i]), epsilon);
+            least_nearness(&shared, limit)
+        });
         let Fragments { left, splats } = fragments;
         let (mut sums, mut kept) = ([[0.0; LANES]; 8], 0);
         for index in 0..left.len() {
@@ -144,7 +145,7 @@ vectorized!(
             alpha[i] = if nearest_id[i] == NO_ID { 0.0 } else { a };
         }
         if let Some(own) = own {
-            surface = own.map(|value| [value; LANES]);
+            surface = own.map_inline(|value| [value; LANES]);
         }
         if first {
             block.depth = depth;

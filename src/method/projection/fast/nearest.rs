@@ -69,9 +69,10 @@ impl NearestPoints<'_> {
     #[inline(always)]
     pub(crate) fn take(&self, x: usize) -> Option<SampleLanes> {
         // -- The keys of the points
-        let count = LANES.min(self.kept.len() - x);
         let mut kept = [NONE; LANES];
-        kept[..count].copy_from_slice(&self.kept[x..x + count]);
+        for (lane, key) in kept.iter_mut().zip(&self.kept[x..]) {
+            *lane = *key;
+        }
         if kept.iter().fold(NONE, |all, kept| all & kept) == NONE {
             return None;
         }

@@ -7,6 +7,7 @@
 
 use crate::frame::Exec;
 use crate::method::projection::surfels::PointProjector;
+use crate::number::MapInline;
 use crate::number::lanes::{LANES, Lanes, vectorized};
 use crate::number::{Real, Vector3};
 use crate::scene::Surfels;
@@ -105,7 +106,8 @@ impl Points {
         exec: &Exec,
     ) -> Tally {
         let n = surfels.len();
-        let [width, height] = [lens.view.width, lens.view.height].map(|n| n.to_pixel() as usize);
+        let [width, height] =
+            [lens.view.width, lens.view.height].map_inline(|n| n.to_pixel() as usize);
         self.bands = Bands::new(width, height);
         let bounds = self.bands.count + 1;
         // The arrays may be longer than needed, so that they need not be cleared for every picture.
@@ -240,7 +242,11 @@ vectorized!(
         if rest > 0 {
             // Lanes without a surfel repeat the last surfel, and are not counted.
             let (index, at) = (p.len(), std::array::from_fn(|i: usize| i.min(rest - 1)));
-            let last = (&at.map(|i| last_p[i]), &at.map(|i| last_n[i]), &at.map(|i| last_r[i]));
+            let last = (
+                &at.map_inline(|i| last_p[i]),
+                &at.map_inline(|i| last_n[i]),
+                &at.map_inline(|i| last_r[i]),
+            );
             let mut own = Fates::default();
             let mut visible = chunk.blocks[index].fill(last, index, lens, bands, &mut own);
             visible[rest..].fill(0);

@@ -4,6 +4,7 @@ use super::level::{BACK, CellLevel, FRONT, FURTHER, KIND, NORMAL, PLACE, RADIUS,
 use super::mix::{FourCells, pairs, tilts};
 use crate::frame::Exec;
 use crate::method::projection::fast::RowLayout;
+use crate::number::MapInline;
 use crate::number::lanes::{LANES, Lanes, any_above_0, load_halves, store, vectorized};
 
 /// Rows of a job.
@@ -89,7 +90,7 @@ vectorized!(
                 put(attribute, &mix.of(&number(attribute)));
             }
             if TUBES {
-                let aligned = mix.aligned([0, 1, 2].map(|axis| number(tangent + axis)));
+                let aligned = mix.aligned([0, 1, 2].map_inline(|axis| number(tangent + axis)));
                 (0..3).for_each(|axis| put(tangent + axis, &mix.of(&aligned[axis])));
             }
         }

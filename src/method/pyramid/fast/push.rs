@@ -11,6 +11,7 @@ use super::mix::{FourCells, Mix, pairs, tilts};
 use crate::frame::Exec;
 use crate::method::projection::fast::{PAD, RowLayout};
 use crate::method::pyramid::{Occlusion, Settings, Weights};
+use crate::number::MapInline;
 use crate::number::lanes::{
     LANES, Lanes, Mask, any, any_above_0, each, load, load_halves, mask, select, store_halves,
     vectorized,
@@ -131,8 +132,8 @@ vectorized!(
                 put(fine, at(attribute), &cells, |odd, new| new.mix.of(&number(attribute, odd)));
             }
             if TUBES {
-                let all = |odd: usize| [0, 1, 2].map(|axis| number(tangent + axis, odd));
-                let aligned = [0, 1].map(|odd| {
+                let all = |odd: usize| [0, 1, 2].map_inline(|axis| number(tangent + axis, odd));
+                let aligned = [0, 1].map_inline(|odd| {
                     let none = [[[0.0; LANES]; 4]; 3];
                     cells[odd].as_ref().map_or(none, |new| new.mix.aligned(all(odd)))
                 });
@@ -226,5 +227,5 @@ fn shifts(side: f32, [even_x, even_y]: [bool; 2]) -> [[f32; 2]; 4] {
         let far = side * if neighbour { 1.5 } else { 0.5 };
         if neighbour == even { -far } else { far }
     };
-    [0, 1, 2, 3].map(|j| [shift(j % 2 == 1, even_x), shift(j / 2 == 1, even_y)])
+    [0, 1, 2, 3].map_inline(|j| [shift(j % 2 == 1, even_x), shift(j / 2 == 1, even_y)])
 }

@@ -5,6 +5,7 @@ use super::level::{FRONT, FURTHER, KIND, NORMAL};
 use crate::frame::Plane;
 use crate::method::projection::fast::RowLayout;
 use crate::method::projection::world;
+use crate::number::MapInline;
 use crate::number::lanes::{LANES, any_above_0, load, store_first, vector, vectorized};
 use crate::splat::View;
 
@@ -84,7 +85,7 @@ vectorized!(
             let kind = number(KIND);
             let mut vectors = [[0.0; 3]; LANES];
             if any_above_0(&kind) {
-                let v = [0, 1, 2].map(|axis| number(attribute + axis));
+                let v = [0, 1, 2].map_inline(|axis| number(attribute + axis));
                 for i in 0..LANES {
                     let own = vector(&v, i);
                     let turned = match view {

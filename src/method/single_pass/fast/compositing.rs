@@ -3,8 +3,9 @@
 use super::images::{GroupImages, ImageBlock};
 use crate::method::fast::resolve::least_nearness;
 use crate::method::fast::tile::Tile;
+use crate::number::MapInline;
 use crate::number::Real;
-use crate::number::lanes::{LANES, Lanes, mask, select, vectorized};
+use crate::number::lanes::{LANES, Lanes, each, mask, select, vectorized};
 use crate::splat::Shared;
 
 impl GroupImages {
@@ -12,9 +13,7 @@ impl GroupImages {
     pub(crate) fn nearest(&self, tile: &mut Tile) {
         for (block, nearest) in tile.blocks.iter_mut().zip(&self.nearest) {
             block.nearest = nearest.nearness;
-            for (id, &splat) in block.id.iter_mut().zip(&nearest.splat) {
-                *id = self.surfels[splat as usize];
-            }
+            block.id = each(|i| self.surfels[nearest.splat[i] as usize]);
         }
     }
 
@@ -47,15 +46,15 @@ vectorized!(
                 let image = &images.images[image as usize];
                 for (i, sums) in sums.iter_mut().enumerate() {
                     let attributes = &images.attributes[image.splat[i] as usize];
-                    for (sum, attribute) in sums.iter_mut().zip(attributes) {
-                        *sum += image.weight[i] * attribute;
+                    for k in 0..8 {
+                        sums[k] += image.weight[i] * attributes[k];
                     }
                 }
             }
             if let Some(opacities) = images.opacities.get_mut(index) {
-                *opacities = sums.map(|[.., opacity]| opacity);
+                *opacities = sums.map_inline(|[.., opacity]| opacity);
             }
-            for (i, [r, g, b, weight, x, y, z, _]) in sums.into_iter().enumerate() {
+            for (i, &[r, g, b, weight, x, y, z, _]) in sums.iter().enumerate() {
                 block.weight[i] = weight;
                 (block.color[0][i], block.color[1][i], block.color[2][i]) = (r, g, b);
                 (block.normal[0][i], block.normal[1][i], block.normal[2][i]) = (x, y, z);

@@ -6,6 +6,7 @@ use super::level::{
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, NO_ID};
 use crate::method::projection::fast::{PAD, RowLayout};
+use crate::number::MapInline;
 use crate::number::lanes::{LANES, Lanes, Mask, any, each, load_halves, mask, store, vectorized};
 
 /// Rows of a job.
@@ -111,7 +112,7 @@ impl FourCenters {
         for attribute in own.chain(COLOR..layout.attributes) {
             let a = number(attribute);
             let average = each(|i| {
-                let mean = Mean::plain([0, 1, 2, 3].map(|j| takes[j][i] > 0.0));
+                let mean = Mean::plain([0, 1, 2, 3].map_inline(|j| takes[j][i] > 0.0));
                 mean.of([a[0][i], a[1][i], a[2][i], a[3][i]])
             });
             store(coarse.numbers, layout.at(attribute, x), &average);

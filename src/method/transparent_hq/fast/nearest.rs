@@ -11,6 +11,7 @@ use crate::method::single_pass;
 use crate::method::single_pass::fast::images::GroupImages;
 use crate::method::transparent_hq::Settings;
 use crate::method::transparent_hq::nearest::single_pass as of;
+use crate::number::MapInline;
 use crate::number::Real;
 use crate::number::lanes::{LANES, Lanes, vectorized};
 use crate::scene::Scene;
@@ -89,7 +90,7 @@ vectorized!(
         opacity: &Lanes,
         (corner, own): ((u32, u32), Option<[f32; 3]>),
     ) -> FrontBlock {
-        let surface = own.map_or(block.color, |own| own.map(|value| [value; LANES]));
+        let surface = own.map_or(block.color, |own| own.map_inline(|value| [value; LANES]));
         let color = shader.block::<ROW>(corner, &block.nearest, &block.normal, &surface);
         let (weight, sums, mut opacity) = (block.weight, *opacity, [0.0; LANES]);
         for i in 0..LANES {

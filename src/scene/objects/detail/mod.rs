@@ -24,6 +24,7 @@
 //! matrix. m is 16 plus the error that nodes may have, or plus the size of discs. `Decided:` 16
 //! pixels, more than the filter of a splat adds to the splat.
 
+use crate::number::MapInline;
 pub mod prefix;
 pub mod refine;
 pub mod sequential;
@@ -340,7 +341,7 @@ impl Eye {
     /// Whether a sphere reaches into the picture widened by `margin` pixels.
     fn may_see(&self, (middle, radius): (DVec3, f64), margin: f64) -> bool {
         let Camera { width, height, projection, fx, fy, cx, cy, near, .. } = self.camera;
-        let [fx, fy, cx, cy, near] = [fx, fy, cx, cy, near].map(f64::from);
+        let [fx, fy, cx, cy, near] = [fx, fy, cx, cy, near].map_inline(f64::from);
         let DVec3 { x, y, z } = self.view_from_world.transform_point3(middle);
         let t = -z;
         let inside = |focal: f64, at: f64, border: f64| {

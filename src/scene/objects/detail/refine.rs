@@ -66,6 +66,7 @@ use super::prefix::Prefix;
 use super::{Disc, DrawnPart, Eye, MARGIN};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::number::MapInline;
 use crate::number::Real;
 use crate::scene::Projection;
 use crate::scene::objects::{Detail, Objects};
@@ -126,7 +127,8 @@ impl Refinement {
     /// The factor of the size at a distance from the principal point.
     #[must_use]
     pub fn factor(&self, distance: f64) -> f64 {
-        let zones: Vec<[f64; 2]> = self.zones.iter().map(|zone| zone.map(f64::from)).collect();
+        let zones: Vec<[f64; 2]> =
+            self.zones.iter().map(|zone| zone.map_inline(f64::from)).collect();
         let after = zones.partition_point(|zone| zone[0] <= distance);
         match (after.checked_sub(1).map(|before| zones[before]), zones.get(after)) {
             (None, None) => 1.0,

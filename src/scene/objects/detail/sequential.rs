@@ -1,5 +1,6 @@
 //! The list of a sequential point tree: when each node is drawn. [`crate::index::sequential`] builds it.
 
+use crate::number::MapInline;
 use crate::number::lanes::vectorized;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
@@ -92,7 +93,7 @@ impl Sequential {
         eye: DVec3,
         scale: f64,
     ) -> u64 {
-        let errors = [&self.near, &self.far, &self.gap].map(|all| &all[nodes.clone()]);
+        let errors = [&self.near, &self.far, &self.gap].map_inline(|all| &all[nodes.clone()]);
         holding(errors, &points[nodes], eye, scale)
     }
 

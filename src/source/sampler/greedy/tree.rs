@@ -9,6 +9,7 @@
     reason = "a lane is an index into several arrays, and such a loop becomes vectors"
 )]
 
+use crate::number::MapInline;
 use crate::number::Real;
 use crate::number::lanes::{LANES, each, vectorized};
 
@@ -97,8 +98,9 @@ impl Group {
 
     /// The box around all children.
     pub(super) fn bounds(&self) -> [[f32; 3]; 2] {
-        let low = self.low.map(|low| low.iter().fold(f32::INFINITY, |a, b| a.at_most(*b)));
-        let high = self.high.map(|high| high.iter().fold(f32::NEG_INFINITY, |a, b| a.at_least(*b)));
+        let low = self.low.map_inline(|low| low.iter().fold(f32::INFINITY, |a, b| a.at_most(*b)));
+        let high =
+            self.high.map_inline(|high| high.iter().fold(f32::NEG_INFINITY, |a, b| a.at_least(*b)));
         [low, high]
     }
 
@@ -192,7 +194,7 @@ impl Border {
     pub(super) fn reached(&self, p: [f32; 3]) -> bool {
         let [low, high] = self.bounds;
         let [x, y, z] =
-            [0, 1, 2].map(|i| (low[i] - p[i]).at_least(p[i] - high[i]).at_least(0.0_f32));
+            [0, 1, 2].map_inline(|i| (low[i] - p[i]).at_least(p[i] - high[i]).at_least(0.0_f32));
         ((x * x + y * y) + z * z).to_bits() < self.most
     }
 }
