@@ -1,12 +1,12 @@
 //! `splatref surfels`: samples a mesh or a scene, or orders points, so that every prefix covers the
 //! surface. A model becomes a PLY, a scene a folder.
 
-mod given;
+mod points;
 
 use super::{Ended, Ending, hierarchy, output, progress, report};
 use clap::ValueEnum;
-use given::Given;
 use glam::Vec3;
+use points::InputPoints;
 use splatref::frame::Exec;
 use splatref::io::ply;
 use splatref::io::scene_file::FileKind;
@@ -150,7 +150,7 @@ pub(super) fn run(args: &Args) -> Ended {
         Error::Invalid(what) => Error::format(&args.points, what),
         other => other,
     };
-    let Given { cloud, pixel } = args.given(&exec, &show).map_err(of_file)?;
+    let InputPoints { cloud, pixel } = args.given(&exec, &show).map_err(of_file)?;
     let mesh = pixel.is_some();
     let all = cloud.position.len();
     args.lacks(&cloud, mesh)?;

@@ -18,7 +18,7 @@ fn floats(values: [f32; 6]) -> Image {
     image(3, 2, &[("Z", Values::Float(values.into()))])
 }
 
-fn of(report: &Comparison) -> Differences {
+fn differences(report: &Comparison) -> Differences {
     match &report.channels[..] {
         [ChannelComparison { relation: Relation::Values(differences), .. }] => *differences,
         other => panic!("{other:?}"),
@@ -36,7 +36,7 @@ fn a_picture_equals_itself() {
     let a = floats([0.0, f32::NAN, f32::INFINITY, -1.0, 2.0, 3.0]);
     let report = compare(&a, &a, EXACT);
     assert_eq!(report.verdict(), Verdict::Equal);
-    assert_eq!((of(&report).nan, of(&report).first), (1, None));
+    assert_eq!((differences(&report).nan, differences(&report).first), (1, None));
     assert_eq!(report.lines(), ["Z: equal, 1 pixels with NaN", "equal: all 1 planes, bit for bit"]);
 }
 
@@ -47,7 +47,7 @@ fn one_ulp_is_found_measured_and_tolerated_only_on_purpose() {
     let b = floats([0.0, 0.0, 0.0, 0.0, up, 0.0]);
     let report = compare(&a, &b, EXACT);
     assert_eq!(report.verdict(), Verdict::Different);
-    let found = of(&report);
+    let found = differences(&report);
     let first = found.first.unwrap();
     assert_eq!((first.x, first.y, first.ulps()), (1, 1, Some(1)));
     assert_eq!((found.pixels, found.differing, found.failing, found.max_ulp), (6, 1, 1, 1));
@@ -78,12 +78,19 @@ fn zeros_of_either_sign_differ_in_bits_and_by_no_ulp() {
     let (a, b) = (floats([0.0; 6]), floats([-0.0; 6]));
     let report = compare(&a, &b, EXACT);
     assert_eq!(report.verdict(), Verdict::Different);
-    assert_eq!((of(&report).differing, of(&report).max_ulp, of(&report).max_abs), (6, 0, 0.0));
+    assert_eq!(
+        (
+            differences(&report).differing,
+            differences(&report).max_ulp,
+            differences(&report).max_abs
+        ),
+        (6, 0, 0.0)
+    );
     let none = Tolerance { max_ulp: Some(0), ..EXACT };
     assert_eq!(compare(&a, &b, none).verdict(), Verdict::Within);
     let tiny = f32::from_bits(1);
     let across = compare(&floats([tiny; 6]), &floats([-tiny; 6]), EXACT);
-    assert_eq!(of(&across).max_ulp, 2, "one step to zero from either side");
+    assert_eq!(differences(&across).max_ulp, 2, "one step to zero from either side");
 }
 
 #[test]
@@ -100,7 +107,7 @@ fn nan_and_infinity_pass_no_tolerance() {
         let (a, b) = (floats([0.5, 0.5, x, 0.5, 0.5, 0.5]), floats([0.5, 0.5, y, 0.5, 0.5, 0.5]));
         let report = compare(&a, &b, WIDE);
         assert_eq!(report.verdict(), Verdict::Different, "{x} {y}");
-        let found = of(&report);
+        let found = differences(&report);
         assert_eq!((found.failing, found.first.unwrap().x), (1, 2), "{x} {y}");
         if x.is_nan() || y.is_nan() {
             assert_eq!((found.nan, found.first.unwrap().ulps()), (1, None));
@@ -111,7 +118,7 @@ fn nan_and_infinity_pass_no_tolerance() {
         }
     }
     let ends = compare(&floats([f32::INFINITY; 6]), &floats([f32::NEG_INFINITY; 6]), EXACT);
-    assert_eq!(of(&ends).max_ulp, 0xFF00_0000);
+    assert_eq!(differences(&ends).max_ulp, 0xFF00_0000);
 }
 
 #[test]
@@ -120,13 +127,16 @@ fn either_bound_suffices_and_the_first_failure_is_shown() {
     let b = floats([1.25, f32::from_bits(100.0_f32.to_bits() + 1), 1.5, 1.0, 1.0, 3.0]);
     let both = Tolerance { max_ulp: Some(1), max_abs: Some(0.25), pixels: 0 };
     let report = compare(&a, &b, both);
-    let found = of(&report);
+    let found = differences(&report);
     assert_eq!((found.differing, found.failing), (4, 2));
     assert_eq!(found.first.unwrap().second, ChannelValue::Float(1.5), "the bound itself passes");
     assert_eq!(found.max_abs, 2.0);
     assert!(report.lines()[0].contains("2 beyond tolerance, first (2, 0)"));
     let loose = Tolerance { max_abs: Some(2.0), ..EXACT };
-    assert_eq!(of(&compare(&a, &b, loose)).first.unwrap().second, ChannelValue::Float(1.25));
+    assert_eq!(
+        differences(&compare(&a, &b, loose)).first.unwrap().second,
+        ChannelValue::Float(1.25)
+    );
 }
 
 #[test]
@@ -134,7 +144,7 @@ fn indices_are_exact_whatever_the_tolerance() {
     let index = |values: [u32; 2]| image(2, 1, &[("id", Values::Index(values.into()))]);
     let report = compare(&index([5, 7]), &index([5, u32::MAX]), WIDE);
     assert_eq!(report.verdict(), Verdict::Different);
-    assert_eq!(of(&report).max_ulp, u32::MAX - 7);
+    assert_eq!(differences(&report).max_ulp, u32::MAX - 7);
     let line = &report.lines()[0];
     assert!(line.contains("(1, 0): 7 (0x00000007) against 4294967295 (0xffffffff)"), "{line}");
 }
@@ -167,7 +177,7 @@ fn the_worst_pixel_is_named_beside_the_first() {
     let a = floats([1.0, 1.0, 1.0, 1.0, 1.0, 1.0]);
     let b = floats([1.0, 1.5, 1.0, 4.0, 1.25, -2.0]);
     let report = compare(&a, &b, EXACT);
-    let found = of(&report);
+    let found = differences(&report);
     let at = |pixel: Option<Difference>| pixel.map(|p| (p.x, p.y)).unwrap();
     assert_eq!((at(found.first), at(found.worst)), ((1, 0), (0, 1)), "of two the first");
     let line = &report.lines()[0];
@@ -175,12 +185,16 @@ fn the_worst_pixel_is_named_beside_the_first() {
     assert!(line.contains("; worst (0, 1): 1.0 (0x3f800000) against 4.0 (0x40800000), 16777216"));
     // Two pixels are beyond the tolerance, and the worst pixel of all is one of them.
     let loose = Tolerance { max_abs: Some(0.5), ..EXACT };
-    let found = of(&compare(&a, &b, loose));
+    let found = differences(&compare(&a, &b, loose));
     assert_eq!((at(found.first), at(found.worst), found.failing), ((0, 1), (0, 1), 2));
     let c = floats([1.0, 1.5, f32::INFINITY, f32::NAN, 1.0, 1.0]);
-    assert_eq!(at(of(&compare(&a, &c, EXACT)).worst), (2, 0), "a NaN is no worse than infinity");
+    assert_eq!(
+        at(differences(&compare(&a, &c, EXACT)).worst),
+        (2, 0),
+        "a NaN is no worse than infinity"
+    );
     let d = floats([9.0, f32::NAN, 1.0, 1.0, 1.0, 1.0]);
-    assert_eq!(at(of(&compare(&a, &d, EXACT)).worst), (1, 0));
+    assert_eq!(at(differences(&compare(&a, &d, EXACT)).worst), (1, 0));
 }
 
 #[test]

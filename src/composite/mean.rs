@@ -52,7 +52,7 @@ impl<R: Real> Mean<R> {
     /// The average of a number, see the module page; meaningless if no neighbour takes part.
     #[inline(always)]
     #[must_use]
-    pub fn of(&self, a: [R; 4]) -> R {
+    pub fn average(&self, a: [R; 4]) -> R {
         let term = |j: usize| if self.takes[j] { self.weights[j] * a[j] } else { R::ZERO };
         let mean = ((term(0) + term(1)) + (term(2) + term(3))) * self.scale;
         mean.clamped(self.least(a), self.greatest(a)) + R::ZERO
@@ -103,7 +103,7 @@ mod tests {
     use proptest::prelude::*;
 
     fn mean<R: Exact>(takes: [bool; 4], weights: [R; 4], a: [R; 4]) -> R {
-        Mean::new(takes, weights).of(a)
+        Mean::new(takes, weights).average(a)
     }
 
     fn lawful(found: Lawful) -> Result<(), TestCaseError> {
@@ -119,7 +119,7 @@ mod tests {
         ) {
             prop_assume!(takes.contains(&true));
             lawful(means::constant(&mean, takes, w, a))?;
-            let plain = |takes, _, a| Mean::<f64>::plain(takes).of(a);
+            let plain = |takes, _, a| Mean::<f64>::plain(takes).average(a);
             lawful(means::constant(&plain, takes, [1.0; 4], f64::from(a)))?;
         }
 
@@ -149,7 +149,7 @@ mod tests {
         let a = (0..1000).map(|i| 1.5 + i as f32 * f32::EPSILON);
         assert!(a.clone().any(|a| ((a + a) + a) / 3.0 != a), "or the bounds would be for nothing");
         for a in a {
-            assert_eq!(Mean::plain([true, true, true, false]).of([a; 4]), a);
+            assert_eq!(Mean::plain([true, true, true, false]).average([a; 4]), a);
         }
     }
 

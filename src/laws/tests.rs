@@ -29,7 +29,7 @@ fn keeps_every_law<R: Exact>() {
             DepthBins::new(range).voronoi(t, ratio)
         }),
         groups::<R>(&compose),
-        means(&|takes, weights, a: [R; 4]| Mean::new(takes, weights).of(a)),
+        means(&|takes, weights, a: [R; 4]| Mean::new(takes, weights).average(a)),
     ];
     for found in all {
         assert_eq!(found, Ok(()), "{}", found.clone().unwrap_err());
@@ -231,9 +231,9 @@ fn a_broken_mean_is_caught() {
         sum / total
     };
     breaks(means(&unbounded), "the average of a constant is the constant");
-    let absent: Operator = |_, w, a| Mean::new([true; 4], w).of(a);
+    let absent: Operator = |_, w, a| Mean::new([true; 4], w).average(a);
     breaks(of(absent), "an average");
-    breaks(of(|takes, _, a| Mean::plain(takes).of(a)), "an average is the quotient");
+    breaks(of(|takes, _, a| Mean::plain(takes).average(a)), "an average is the quotient");
     let sided = |takes: [bool; 4], w: [f32; 4], a: [f32; 4]| {
         let (sum, total) = sums(takes, w, a);
         let mean = Mean::new(takes, w);

@@ -146,7 +146,7 @@ impl Default for Clock {
 
 impl Clock {
     /// A clock for stages that were timed elsewhere.
-    pub(crate) fn of(laps: Laps) -> Self {
+    pub(crate) fn from_laps(laps: Laps) -> Self {
         Self { laps, ..Self::default() }
     }
 

@@ -113,7 +113,7 @@ pub(crate) struct Conditions {
 impl Conditions {
     /// The conditions in a frame of this scene. None of the settings asks for a plane.
     pub(crate) fn new(scene: &Scene, keep: Keep) -> Self {
-        let (mut has, mut wide) = (Has::of(scene), false);
+        let (mut has, mut wide) = (Has::in_scene(scene), false);
         if let Some(objects) = &scene.objects {
             (has.color, wide) = (has.color || objects.have_colors(), objects.ids().is_wide());
         }

@@ -87,7 +87,7 @@ impl Points<'_> {
         } else if !self.color.is_none_or(|c| is_color(c[i]))
             || !self.opacity.is_none_or(|o| (0.0..=1.0).contains(&o[i]))
             || !self.tangents.is_none_or(|t| spans_a_plane(t[i]))
-            || !self.mipmap.is_none_or(|m| m.of(i).iter().all(|c| is_color(*c)))
+            || !self.mipmap.is_none_or(|m| m.of_surfel(i).iter().all(|c| is_color(*c)))
         {
             Some(&mut dropped.attribute)
         } else {

@@ -112,12 +112,12 @@ impl Groups {
         let own = indices.iter().map(|&i| self.own[i as usize]).collect();
         let added = (0..)
             .zip(indices)
-            .flat_map(|(new, &old)| self.of(old).skip(1).map(move |group| (new, group)));
+            .flat_map(|(new, &old)| self.of_surfel(old).skip(1).map(move |group| (new, group)));
         Self { own, added: added.collect(), scale: self.scale.clone() }
     }
 
     /// The groups that contain a surfel: its own group, then the groups that it was added to.
-    pub fn of(&self, surfel: u32) -> impl Iterator<Item = u8> + '_ {
+    pub fn of_surfel(&self, surfel: u32) -> impl Iterator<Item = u8> + '_ {
         let first = self.added.partition_point(|&(added, _)| added < surfel);
         let added = self.added[first..].iter().take_while(move |(added, _)| *added == surfel);
         std::iter::once(self.own[surfel as usize]).chain(added.map(|&(_, group)| group))

@@ -47,7 +47,7 @@ pub fn merge(mut clouds: Vec<Cloud>, color: Vec3) -> Cloud {
         if let Some(to) = &mut all.mipmap {
             for i in 0..n {
                 let own = cloud.color.as_ref().map_or(color, |own| own[i]);
-                to.push(cloud.mipmap.as_ref().map(|mipmap| mipmap.of(i)), own);
+                to.push(cloud.mipmap.as_ref().map(|mipmap| mipmap.of_surfel(i)), own);
             }
         }
         append(&mut all.color, cloud.color, n, color);

@@ -72,7 +72,7 @@ impl Mipmap {
 
     /// The levels of a surfel, from 1 on.
     #[must_use]
-    pub fn of(&self, surfel: usize) -> &[Vec3] {
+    pub fn of_surfel(&self, surfel: usize) -> &[Vec3] {
         &self.colors[surfel * self.levels..][..self.levels]
     }
 
@@ -87,7 +87,7 @@ impl Mipmap {
 
     /// The colours of some surfels, in the order of the indices.
     pub(crate) fn some(&self, indices: &[usize]) -> Self {
-        let colors = indices.iter().flat_map(|&i| self.of(i)).copied().collect();
+        let colors = indices.iter().flat_map(|&i| self.of_surfel(i)).copied().collect();
         Self { levels: self.levels, colors }
     }
 
@@ -125,11 +125,14 @@ mod tests {
     #[test]
     fn surfels_keep_their_own_levels() {
         let all = numbered(3, 4);
-        assert_eq!((all.levels(), all.len(), all.of(2)[1]), (3, 4, Vec3::splat(7.0)));
+        assert_eq!((all.levels(), all.len(), all.of_surfel(2)[1]), (3, 4, Vec3::splat(7.0)));
         let some = all.some(&[3, 1]);
-        assert_eq!([some.of(0), some.of(1)], [all.of(3), all.of(1)]);
+        assert_eq!([some.of_surfel(0), some.of_surfel(1)], [all.of_surfel(3), all.of_surfel(1)]);
         let kept = all.clone().retain(&[false, true, false, true]);
-        assert_eq!([kept.of(0), kept.of(1), kept.colors()], [all.of(1), all.of(3), &kept.colors]);
+        assert_eq!(
+            [kept.of_surfel(0), kept.of_surfel(1), kept.colors()],
+            [all.of_surfel(1), all.of_surfel(3), &kept.colors]
+        );
         assert_eq!(all.clone().retain(&[true; 4]), all);
     }
 
@@ -138,8 +141,8 @@ mod tests {
         let mut all = Mipmap::empty(3);
         all.push(None, Vec3::X);
         all.push(Some(&[Vec3::Y, Vec3::Z]), Vec3::X);
-        assert_eq!(all.of(0), [Vec3::X; 3]);
-        assert_eq!(all.of(1), [Vec3::Y, Vec3::Z, Vec3::Z]);
+        assert_eq!(all.of_surfel(0), [Vec3::X; 3]);
+        assert_eq!(all.of_surfel(1), [Vec3::Y, Vec3::Z, Vec3::Z]);
     }
 
     #[test]

@@ -37,7 +37,7 @@ pub(crate) enum Cause {
 
 impl Cause {
     /// The kind of this fault.
-    pub(crate) fn of(fault: &Fault) -> Self {
+    pub(crate) fn from_fault(fault: &Fault) -> Self {
         match fault {
             Fault::LeftOut { surfel, rim, .. } => {
                 Self::Lacking { surfel: *surfel, rim: *rim as f32 }

@@ -132,7 +132,7 @@ impl PixelMarks<'_> {
         at.error = if error > 1.0 && single <= 1.0 { 1.0_f32.next_up() } else { single };
         if error > 1.0 {
             let fault = fault();
-            at.cause = Cause::of(&fault);
+            at.cause = Cause::from_fault(&fault);
             if worst.as_ref().is_none_or(|worst| error > worst.error) {
                 let columns = rect.columns();
                 let (x, y) = (self.pixel % columns, self.pixel / columns);

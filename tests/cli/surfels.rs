@@ -53,8 +53,11 @@ fn points_are_written_in_the_order_with_all_properties() {
         for vectors in [&found.normal, &found.color, &found.tangent] {
             assert_eq!(vectors.as_ref().unwrap()[new].x, old as f32);
         }
-        assert_eq!(found.mipmap.as_ref().unwrap().of(new), given.mipmap.as_ref().unwrap().of(i));
-        assert!(groups.of(new as u32).eq(given.groups.as_ref().unwrap().of(old)));
+        assert_eq!(
+            found.mipmap.as_ref().unwrap().of_surfel(new),
+            given.mipmap.as_ref().unwrap().of_surfel(i)
+        );
+        assert!(groups.of_surfel(new as u32).eq(given.groups.as_ref().unwrap().of_surfel(old)));
     }
 }
 

@@ -298,8 +298,8 @@ fn cells_and_centers_have_three_outcomes() {
         assert!(merged.depth.holds(propagation::merge(&centers, takes, first).depth));
         let mean = mean::Mean::plain(takes);
         assert!(
-            mean.of(wide.map(|c| c.extent))
-                .holds(mean::Mean::plain(takes).of(centers.map(|c| c.extent)))
+            mean.average(wide.map(|c| c.extent))
+                .holds(mean::Mean::plain(takes).average(centers.map(|c| c.extent)))
         );
     }
     outcomes.are_complete();

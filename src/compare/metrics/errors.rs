@@ -268,7 +268,7 @@ mod tests {
             .unwrap()
     }
 
-    fn of(picture: &Frame<f32>, truth: &Frame<f32>) -> Errors {
+    fn measured(picture: &Frame<f32>, truth: &Frame<f32>) -> Errors {
         let found = Errors::measure(picture, truth, &Exec::sequential()).unwrap();
         assert_eq!(Errors::measure(picture, truth, &Exec::new(3, 8).unwrap()).unwrap(), found);
         found
@@ -280,7 +280,7 @@ mod tests {
         let shrunk = frame(|x, y| (14..26).contains(&x) && (9..21).contains(&y), |_| 4.5, tilted);
         let empty = frame(|_, _| false, |_| 1.0, [0.0; 3]);
         for (picture, truth) in [(shrunk, disc()), (empty.clone(), disc()), (disc(), empty)] {
-            let all = of(&picture, &truth);
+            let all = measured(&picture, &truth);
             for metric in &METRICS {
                 let alone = metric.between(&picture, &truth, &Exec::sequential()).unwrap();
                 let [alone, of_all] = [alone, (metric.of)(&all)].map(|v| v.map(f64::to_bits));
@@ -296,7 +296,7 @@ mod tests {
     #[test]
     fn the_truth_itself_is_perfect() {
         let truth = disc();
-        let found = of(&truth, &truth);
+        let found = measured(&truth, &truth);
         for metric in &METRICS {
             let value = (metric.of)(&found).unwrap();
             let perfect = match (metric.name, metric.better) {
@@ -316,7 +316,7 @@ mod tests {
         let covered = |x, y| (*alphas.at(x, y) > 0.0 && (x, y) != (20, 14)) || (x, y) == (2, 3);
         let tilted = [sin(0.25) as f32, 0.0, cos(0.25) as f32];
         let picture = frame(covered, |x| 4.25 + x as f32 / 8.0, tilted);
-        let found = of(&picture, &truth);
+        let found = measured(&picture, &truth);
         let total = found.coverage.covered as f64;
         let expected = [
             ("rmse", (2.0 * 0.25 / 1200.0_f64).sqrt()),
@@ -343,7 +343,7 @@ mod tests {
         assert!((found.outline - found.true_outline - more).abs() < 1e-9);
         assert!(number(&found, "flip").unwrap() > 0.0 && number(&found, "ssim").unwrap() < 1.0);
         let shrunk = frame(|x, y| (14..26).contains(&x) && (9..21).contains(&y), |_| 4.0, tilted);
-        assert!(number(&of(&shrunk, &truth), "silhouette-px").unwrap() > 0.0);
+        assert!(number(&measured(&shrunk, &truth), "silhouette-px").unwrap() > 0.0);
     }
 
     #[test]
@@ -352,27 +352,27 @@ mod tests {
         let Samples::Scalar(depths) = &mut picture.planes[2].samples else { panic!("no Z") };
         // The uppermost row of the disc is y = 7.
         depths.values_mut()[7 * SIZE[0] as usize + 19] = 100.0;
-        assert_eq!(of(&picture, &truth), of(&truth, &truth));
+        assert_eq!(measured(&picture, &truth), measured(&truth, &truth));
     }
 
     #[test]
     fn an_environment_covers_nothing() {
         let (truth, mut picture) = (disc(), disc());
         picture.planes[1].samples = Samples::Scalar(Plane::filled(SIZE[0], SIZE[1], 1.0));
-        assert_eq!(of(&picture, &truth), of(&truth, &truth));
+        assert_eq!(measured(&picture, &truth), measured(&truth, &truth));
     }
 
     #[test]
     fn what_cannot_be_taken_is_none() {
         let (truth, empty) = (disc(), frame(|_, _| false, |_| 1.0, [0.0; 3]));
-        let found = of(&empty, &truth);
+        let found = measured(&empty, &truth);
         assert_eq!((found.depth, found.normal), (None, None));
         assert_eq!((number(&found, "outline"), number(&found, "depth")), (Some(0.0), None));
-        let found = of(&truth, &empty);
+        let found = measured(&truth, &empty);
         assert_eq!((number(&found, "outline"), number(&found, "holes")), (None, None));
         let mut unlit = disc();
         unlit.planes.pop();
-        let found = of(&unlit, &truth);
+        let found = measured(&unlit, &truth);
         assert!(found.normal.is_none() && found.depth.is_some());
 
         let exec = Exec::sequential();

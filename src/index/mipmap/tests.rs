@@ -161,7 +161,7 @@ fn an_edge_becomes_a_slope_of_the_width_of_the_level() {
     let made = build(&surfels, 4, &Exec::new(2, 32).unwrap(), &none).unwrap();
     for i in 0..64 * 64 {
         let x = surfels.position()[i].x;
-        for (k, color) in (1..).zip(made.of(i)) {
+        for (k, color) in (1..).zip(made.of_surfel(i)) {
             let reach = (1_u32 << k) as f32 / 64.0;
             assert!(color.x == color.y && color.y == color.z, "the other sheet: {color}");
             // A sample may lie a cell's diagonal away from its surfels.
@@ -171,7 +171,9 @@ fn an_edge_becomes_a_slope_of_the_width_of_the_level() {
             assert!(!inside || (color.x - 0.5).abs() < 0.4, "{x} {k} {color}");
         }
     }
-    assert!((64 * 64..2 * 64 * 64).all(|i| made.of(i).iter().all(|color| *color == Vec3::Y)));
+    assert!(
+        (64 * 64..2 * 64 * 64).all(|i| made.of_surfel(i).iter().all(|color| *color == Vec3::Y))
+    );
 }
 
 #[test]
@@ -187,7 +189,7 @@ fn coarser_levels_vary_less() {
     };
     let mut before = spread(&|i| surfels.color().unwrap()[i].x);
     for k in 1..=5 {
-        let now = spread(&|i| made.of(i)[k - 1].x);
+        let now = spread(&|i| made.of_surfel(i)[k - 1].x);
         assert!(now < before, "level {k}: {now} after {before}");
         before = now;
     }

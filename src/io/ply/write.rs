@@ -59,13 +59,13 @@ pub(super) fn encode(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
             put(&all[i].to_array())?;
         }
         cloud.properties.iter().try_for_each(|one| put(&[one.values[i]]))?;
-        let levels = cloud.mipmap.iter().flat_map(|mipmap| mipmap.of(i));
+        let levels = cloud.mipmap.iter().flat_map(|mipmap| mipmap.of_surfel(i));
         levels.into_iter().try_for_each(|color| put(&color.to_array()))?;
         if let Some(groups) = groups {
             out.write_all(&groups.own()[i..=i])?;
         }
         if let Some(groups) = added {
-            let also: Vec<u8> = groups.of(i as u32).skip(1).collect();
+            let also: Vec<u8> = groups.of_surfel(i as u32).skip(1).collect();
             out.write_all(&[also.len() as u8])?;
             out.write_all(&also)?;
         }

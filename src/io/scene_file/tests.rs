@@ -124,7 +124,7 @@ fn mipmaps_are_made_on_loading_dropped_or_kept() {
     };
     assert_eq!(read("").mipmap(), Some(&expected));
     assert_eq!(read("mipmaps = 0").mipmap(), None);
-    assert_eq!(read("mipmaps = 2").mipmap().unwrap().of(7), &expected.of(7)[..2]);
+    assert_eq!(read("mipmaps = 2").mipmap().unwrap().of_surfel(7), &expected.of_surfel(7)[..2]);
     assert_eq!(read("color = [1, 0, 0]").mipmap(), None, "one colour for all");
     // Geometries of objects have them too.
     let object = format!(

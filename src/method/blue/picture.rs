@@ -43,7 +43,7 @@ pub(super) fn stage<R: Exact>(
             left.extend(planes::pixels(target));
             Ok(left)
         }
-        "shading" => surface::shade(job, given, Has::of(job.scene).color),
+        "shading" => surface::shade(job, given, Has::in_scene(job.scene).color),
         _ => Err(unknown(stage)),
     }
 }
@@ -83,7 +83,7 @@ fn discs<R: Exact>(job: &Job<'_>, settings: &Settings, stages: bool) -> Result<D
 fn wanted(job: &Job<'_>, stages: bool) -> Wanted {
     Wanted {
         normal: stages || !job.scene.lights.is_empty(),
-        color: Has::of(job.scene).color,
+        color: Has::in_scene(job.scene).color,
         observed: false,
     }
 }

@@ -151,7 +151,7 @@ impl<R: Exact> Squares<R> {
     /// The squares of every surfel that is drawn.
     pub(crate) fn new(job: &Job<'_>, cull: bool) -> Self {
         let projector = SquareProjector::new(job, cull);
-        Self::of((job, &job.grid()), |range, squares| {
+        Self::projected_by((job, &job.grid()), |range, squares| {
             let mut tally = Tally::default();
             squares.extend(range.filter_map(|i| projector.drawn(i, &mut tally)));
             tally
@@ -159,7 +159,7 @@ impl<R: Exact> Squares<R> {
     }
 
     /// As [`Squares::new`]; `project` makes the squares of a range of surfels.
-    pub(crate) fn of(
+    pub(crate) fn projected_by(
         (job, grid): (&Job<'_>, &Grid),
         project: impl Fn(Range<usize>, &mut Vec<Square<R>>) -> Tally + Sync + Send,
     ) -> Self {

@@ -138,7 +138,7 @@ fn colors(job: &Job<'_>, whole: &Whole<'_>, part: &Part, names: &[&String]) -> V
     let view = View::new(job.camera);
     let wanted = (0..surfels.len()).map(|i| (i, whole.name(part.ids()[i])));
     let filtered = wanted.filter(|(_, name)| names.contains(&name)).map(|(i, name)| {
-        let level = Level::of(&view, &surfels, i);
+        let level = Level::of_surfel(&view, &surfels, i);
         let ends = [level.below, level.below + usize::from(level.part > 0.0)];
         let mut between: Vec<Vec3> = Vec::new();
         let whole = |k: usize| color(&surfels, i, Level { below: k, part: 0.0 });

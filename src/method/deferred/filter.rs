@@ -72,7 +72,9 @@ pub(super) fn filtered(surfels: Surfels, camera: &Camera, exec: &Exec) -> Surfel
     }
     let view = View::new(camera);
     let mut colors = Vec::with_capacity(surfels.len());
-    exec.extend(&mut colors, surfels.len(), |i| color(&surfels, i, Level::of(&view, &surfels, i)));
+    exec.extend(&mut colors, surfels.len(), |i| {
+        color(&surfels, i, Level::of_surfel(&view, &surfels, i))
+    });
     surfels.recolored(colors)
 }
 
@@ -88,7 +90,7 @@ pub struct Level {
 impl Level {
     /// The level of a surfel; 0 without prefiltered colours.
     #[must_use]
-    pub fn of(view: &View<f64>, surfels: &Surfels, i: usize) -> Self {
+    pub fn of_surfel(view: &View<f64>, surfels: &Surfels, i: usize) -> Self {
         let levels = surfels.mipmap().map_or(0, crate::scene::Mipmap::levels);
         Self::at(pixel(view, &disc(surfels, i)), levels)
     }
@@ -125,7 +127,7 @@ fn pixel(view: &View<f64>, disc: &Disc<f64>) -> f64 {
 pub fn color(surfels: &Surfels, i: usize, level: Level) -> Vec3 {
     let own = surfels.color().map_or(Vec3::ZERO, |colors| colors[i]);
     let Some(mipmap) = surfels.mipmap() else { return own };
-    let of = |k: usize| if k == 0 { own } else { mipmap.of(i)[k - 1] }.as_dvec3();
+    let of = |k: usize| if k == 0 { own } else { mipmap.of_surfel(i)[k - 1] }.as_dvec3();
     let from = of(level.below);
     let mixed =
         if level.part > 0.0 { from + (of(level.below + 1) - from) * level.part } else { from };

@@ -42,7 +42,7 @@ impl<'a> Whole<'a> {
     }
 
     /// The surfels of a job, with the boxes that the session made of the scene.
-    pub(super) fn of(job: &Job<'a>) -> Self {
+    pub(super) fn of_job(job: &Job<'a>) -> Self {
         Self { boxes: job.index.boxes.as_ref(), ..Self::new(job.scene) }
     }
 

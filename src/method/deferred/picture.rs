@@ -85,7 +85,10 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     };
     let mut target = framebuffer(job.camera, wanted, pool);
     let (now, tally, laps) = fast::render(job, settings, &mut target)?;
-    Ok(Picture { seen: Some(now), ..finish(target, Vec::new(), tally, Clock::of(laps), job) })
+    Ok(Picture {
+        seen: Some(now),
+        ..finish(target, Vec::new(), tally, Clock::from_laps(laps), job)
+    })
 }
 
 /// Runs one stage on a client's planes.
@@ -152,7 +155,7 @@ const OF_A_FLAGGED: u64 = 512;
 
 /// The surfels of a frame, and what the last frame saw.
 pub(crate) fn whole<'a>(job: &Job<'a>, settings: &Settings) -> Result<(Whole<'a>, Cow<'a, Seen>)> {
-    let whole = Whole::of(job);
+    let whole = Whole::of_job(job);
     let before = seen(job, settings, &whole)?;
     Ok((whole.after(&before, settings), before))
 }

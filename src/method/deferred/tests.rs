@@ -47,7 +47,12 @@ impl Case {
 
     /// The frames of a sequence, each with the planes of its stages, and with what the frame before
     /// saw.
-    fn frames<R: Exact>(&self, frames: u32, mut seen: Option<Seen>, exec: &Exec) -> Vec<Shown<R>> {
+    fn frames<R: Exact>(
+        &self,
+        frames: u32,
+        mut seen: Option<Seen>,
+        exec: &Exec,
+    ) -> Vec<FrameAndSeen<R>> {
         let mut shown = Vec::new();
         for frame in 0..frames {
             let scene = self.scene(frame);
@@ -61,7 +66,7 @@ impl Case {
 }
 
 /// A frame, and what the one before saw.
-type Shown<R> = (Frame<R>, Option<Seen>);
+type FrameAndSeen<R> = (Frame<R>, Option<Seen>);
 
 /// A sphere, a torus and random discs, each in one object or in several, which move.
 fn case() -> impl Strategy<Value = Case> {

@@ -73,7 +73,7 @@ pub(super) fn stage<R: Exact>(
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
     let mut target = framebuffer(job.camera, wanted(job.scene, false), pool);
     let (tally, laps) = fast::render(job, settings, &mut target);
-    Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
+    Ok(finish(target, Vec::new(), tally, Clock::from_laps(laps), job))
 }
 
 /// The planes that a scene needs.

@@ -173,7 +173,7 @@ impl<'a, R: Real> SceneProjector<'a, R> {
         let view = View::new(camera);
         Self {
             scene,
-            has: Has::of(scene),
+            has: Has::in_scene(scene),
             points: PointProjector::new(view, cull),
             clip: Clip::new(&view),
             snap,
@@ -204,7 +204,7 @@ pub struct Has {
 impl Has {
     /// What this scene has.
     #[must_use]
-    pub fn of(scene: &Scene) -> Self {
+    pub fn in_scene(scene: &Scene) -> Self {
         Self {
             color: scene.surfels.color().is_some() || scene.primitives.colored(),
             tangent: !scene.primitives.tubes.is_empty(),

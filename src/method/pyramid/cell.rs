@@ -106,9 +106,9 @@ impl<R: Real> Cell<R> {
     ) -> Self {
         let vector = |v: [Vector3<R>; 4]| {
             Vector3::new(
-                mean.of(v.map_inline(|v| v.x)),
-                mean.of(v.map_inline(|v| v.y)),
-                mean.of(v.map_inline(|v| v.z)),
+                mean.average(v.map_inline(|v| v.x)),
+                mean.average(v.map_inline(|v| v.y)),
+                mean.average(v.map_inline(|v| v.z)),
             )
         };
         let front = cells[first].tangent;
@@ -119,16 +119,16 @@ impl<R: Real> Cell<R> {
         });
         Self {
             kind: cells[first].kind,
-            front: mean.of(cells.map_inline(|cell| cell.front)),
-            back: mean.of(cells.map_inline(|cell| cell.back)),
-            extent: mean.of(cells.map_inline(|cell| cell.extent)),
+            front: mean.average(cells.map_inline(|cell| cell.front)),
+            back: mean.average(cells.map_inline(|cell| cell.back)),
+            extent: mean.average(cells.map_inline(|cell| cell.extent)),
             displacement: Vector2::new(
-                mean.of(displacements.map_inline(|d| d.x)),
-                mean.of(displacements.map_inline(|d| d.y)),
+                mean.average(displacements.map_inline(|d| d.x)),
+                mean.average(displacements.map_inline(|d| d.y)),
             ),
             normal: vector(cells.map_inline(|cell| cell.normal)),
             tangent: vector(tangents),
-            color: [0, 1, 2].map_inline(|c| mean.of(cells.map_inline(|cell| cell.color[c]))),
+            color: [0, 1, 2].map_inline(|c| mean.average(cells.map_inline(|cell| cell.color[c]))),
         }
     }
 }

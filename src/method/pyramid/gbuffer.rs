@@ -31,7 +31,7 @@ pub(super) struct GBuffer<R> {
 impl GBuffer<f32> {
     /// The planes that a scene needs, in memory that is used again; their values are arbitrary.
     pub(super) fn new(scene: &Scene, camera: &Camera, pool: &mut Pool) -> Self {
-        let (size, has) = (camera.size(), Has::of(scene));
+        let (size, has) = (camera.size(), Has::in_scene(scene));
         Self {
             kind: pool.count(size),
             alpha: pool.scalar(size),
@@ -46,7 +46,12 @@ impl GBuffer<f32> {
 
 impl<R: Exact> GBuffer<R> {
     /// Level 0 as the push phase left it.
-    pub(super) fn of(cells: &Plane<Cell<R>>, camera: &Camera, has: Has, normals: bool) -> Self {
+    pub(super) fn from_cells(
+        cells: &Plane<Cell<R>>,
+        camera: &Camera,
+        has: Has,
+        normals: bool,
+    ) -> Self {
         let view = View::new(camera);
         Self {
             kind: cells.map(|cell| cell.kind as u8),

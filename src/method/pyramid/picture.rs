@@ -24,7 +24,7 @@ pub(super) fn define<R: Exact>(
     stages: bool,
 ) -> Result<Picture<R>> {
     let Job { scene, camera, exec, .. } = *job;
-    let (has, snap) = (Has::of(scene), Snap::new(settings.subpixel_bits)?);
+    let (has, snap) = (Has::in_scene(scene), Snap::new(settings.subpixel_bits)?);
     let mut clock = Clock::default();
     let projected = projection::project::<R>(job, settings.cull, snap)?;
     clock.lap("projection");
@@ -39,7 +39,7 @@ pub(super) fn define<R: Exact>(
         planes.extend(write(&Cell::PUSH, 0, &pushed[..pushed.len() - 1], job));
     }
     let normals = stages || !scene.lights.is_empty();
-    let target = GBuffer::of(&pushed[0], camera, has, normals);
+    let target = GBuffer::from_cells(&pushed[0], camera, has, normals);
     Ok(finish(target, planes, projected.tally, clock, job))
 }
 
@@ -53,7 +53,7 @@ pub(super) fn draw(
     let Job { scene, camera, .. } = *job;
     let mut target = GBuffer::new(scene, camera, pool);
     let (tally, laps) = levels.draw(job, settings, &mut target)?;
-    Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
+    Ok(finish(target, Vec::new(), tally, Clock::from_laps(laps), job))
 }
 
 /// Shades a picture, and makes its planes.
@@ -114,7 +114,7 @@ pub(super) fn stage<R: Exact>(
         "pull" => levels.pull(),
         "push" => levels.push(settings),
         "shading" => {
-            let target = GBuffer::of(&levels.pushed(0)?, job.camera, levels.has, true);
+            let target = GBuffer::from_cells(&levels.pushed(0)?, job.camera, levels.has, true);
             Ok(planes::write_picture(target.shaded(job)))
         }
         _ => Err(unknown(stage)),
@@ -144,7 +144,7 @@ struct GivenLevels<'a, R> {
 impl<'a, R: Exact> GivenLevels<'a, R> {
     fn new(job: &'a Job<'a>, given: &'a InputPlanes<'a, R>) -> Self {
         let sizes = pyramid::sizes(job.camera.width, job.camera.height);
-        Self { job, given, has: Has::of(job.scene), sizes }
+        Self { job, given, has: Has::in_scene(job.scene), sizes }
     }
 
     /// The number of the coarsest level.

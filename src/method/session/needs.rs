@@ -79,14 +79,14 @@ impl Session<'_> {
     /// Whether the method leaves planes of levels.
     fn has_levels(&self) -> bool {
         let mut rows = self.method.stages().iter().flat_map(|stage| stage.leaves);
-        rows.any(|row| of(row) == Copies::Levels)
+        rows.any(|row| copies_of(row) == Copies::Levels)
     }
 
     /// Bytes of the planes of all stages, a pixel.
     fn planes(&self, camera: &Camera, number: u64) -> u64 {
         let levels = pyramid::sizes(camera.width, camera.height).len() as u64;
         let groups = self.index.groups.as_ref().map_or(1, |groups| groups.len() as u64);
-        let copies = |row: &PlaneRow| match of(row) {
+        let copies = |row: &PlaneRow| match copies_of(row) {
             Copies::One => 1,
             Copies::Groups => groups,
             Copies::Layers => u64::from(peeling::STAGES),
@@ -121,7 +121,7 @@ enum Copies {
     Levels,
 }
 
-fn of(row: &PlaneRow) -> Copies {
+fn copies_of(row: &PlaneRow) -> Copies {
     match row.name {
         name if !name.contains('#') => Copies::One,
         name if name.contains("group##") => Copies::Groups,

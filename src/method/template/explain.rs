@@ -104,7 +104,7 @@ pub(super) fn explain<R: Exact>(
             test,
         });
     });
-    let one = normalize(&Plane::filled(1, 1, gathered), camera, Has::of(scene), false);
+    let one = normalize(&Plane::filled(1, 1, gathered), camera, Has::in_scene(scene), false);
     Ok(TemplateReplay {
         pixel,
         projection: replay(job, settings.cull, snap, pixel),

@@ -24,7 +24,7 @@ pub(super) fn define<R: Exact>(
     stages: bool,
 ) -> Result<Picture<R>> {
     let Job { scene, camera, exec, .. } = *job;
-    let has = Has::of(scene);
+    let has = Has::in_scene(scene);
     let mut clock = Clock::default();
     let projected = projection::project::<R>(job, settings.cull, Snap::default())?;
     clock.lap("projection");
@@ -56,11 +56,11 @@ pub(super) fn draw(
     pool: &mut Pool,
 ) -> Result<Picture<f32>> {
     let Job { scene, camera, exec, .. } = *job;
-    let color = Has::of(scene).color;
+    let color = Has::in_scene(scene).color;
     let wanted = Wanted { normal: !scene.lights.is_empty(), color, observed: false };
     let mut target = framebuffer(camera, wanted, pool);
     let (tally, laps) = levels.draw(scene, camera, settings, exec, &mut target);
-    Ok(finish(target, Vec::new(), tally, Clock::of(laps), job))
+    Ok(finish(target, Vec::new(), tally, Clock::from_laps(laps), job))
 }
 
 /// Runs one stage on a client's planes, see [`super::planes`].
@@ -79,7 +79,7 @@ pub(super) fn stage<R: Exact>(
     given: &InputPlanes<'_, R>,
 ) -> Result<Vec<NamedPlane<R>>> {
     let Job { scene, camera, exec, .. } = *job;
-    let has = Has::of(scene);
+    let has = Has::in_scene(scene);
     match stage {
         "projection" => {
             let snap = Snap::default();

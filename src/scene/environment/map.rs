@@ -154,7 +154,7 @@ mod tests {
     }
 
     /// A map whose pixel is f of the direction of its centre.
-    fn of(height: u32, f: impl Fn(Vector3<f64>) -> [f64; 3]) -> Map {
+    fn map_of(height: u32, f: impl Fn(Vector3<f64>) -> [f64; 3]) -> Map {
         let pixels = (0..height).flat_map(|j| (0..2 * height).map(move |i| (i, j)));
         let values = pixels.map(|(i, j)| f(center(i, j, height)).map(|v| v as f32)).collect();
         Map::new(Plane::from_values(2 * height, height, values)).unwrap()
@@ -195,7 +195,7 @@ mod tests {
 
     #[test]
     fn a_pixel_center_gives_the_pixel() {
-        let map = of(16, shown);
+        let map = map_of(16, shown);
         for j in 0..16 {
             for i in 0..32 {
                 let [expected, found] =
@@ -220,7 +220,7 @@ mod tests {
     #[test]
     fn a_known_function_comes_back_within_the_bound_of_interpolation() {
         for height in [8, 32, 128] {
-            let map = of(height, shown);
+            let map = map_of(height, shown);
             let h = std::f64::consts::PI / f64::from(height);
             for i in 0..20_000 {
                 let [u, v] = [0, 1].map(|c| f64::from(random::unit(u64::from(height), 2 * i + c)));
@@ -274,7 +274,7 @@ mod tests {
 
     #[test]
     fn the_sign_of_a_zero_is_not_seen() {
-        let map = of(4, shown);
+        let map = map_of(4, shown);
         for (y, z) in [(1.0_f32, 0.0), (-1.0, 0.0), (0.0, -1.0), (0.0, 1.0), (0.6, 0.8)] {
             let other = if z == 0.0 { -z } else { z };
             let signs = [(0.0, z), (-0.0, z), (0.0, other), (-0.0, other)];

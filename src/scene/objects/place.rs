@@ -226,7 +226,7 @@ impl Objects {
                 colors.push(shown);
                 if let Some(mipmap) = &mut to.mipmap {
                     let own = surfels.mipmap().filter(|_| color.is_none());
-                    mipmap.push(own.map(|own| own.of(i)), shown);
+                    mipmap.push(own.map(|own| own.of_surfel(i)), shown);
                 }
             }
             if let Some(opacities) = &mut to.opacity {

@@ -136,7 +136,12 @@ mod tests {
     use crate::source::sampler::{Greedy, Start, greedy::squared_distance};
     use proptest::prelude::*;
 
-    fn of(points: &[Vec3], colors: &[Vec3], index: &[u32], exec: &Exec) -> Result<Vec<Vec3>> {
+    fn averaged_colors(
+        points: &[Vec3],
+        colors: &[Vec3],
+        index: &[u32],
+        exec: &Exec,
+    ) -> Result<Vec<Vec3>> {
         let order = Order { index: index.into(), distance: vec![0.0; index.len()] };
         averaged(points, colors, &order, index.len(), exec, &|_, _, _| ())
     }
@@ -149,7 +154,7 @@ mod tests {
                 (0..points.len()).map(|i| Vec3::new(i as f32, (i * i % 7) as f32, 0.25)).collect();
             let greedy = Greedy { start: Start::Index(0) };
             let index = greedy.define(&points, count).unwrap().index;
-            let found = of(&points, &colors, &index, &Exec::sequential()).unwrap();
+            let found = averaged_colors(&points, &colors, &index, &Exec::sequential()).unwrap();
             prop_assert_eq!(found.len(), index.len());
             for (rank, &color) in found.iter().enumerate() {
                 let prefix = [1, 2, 4, 8, 16, 32, 64, 128].into_iter().find(|p| *p > rank).unwrap();
@@ -183,12 +188,12 @@ mod tests {
         let exec = Exec::new(2, 32).unwrap();
         // The cell of all points; then the right points; with three picks the middle ones, as 1 is
         // as near to 0 as to 2.
-        let found = of(&points, &colors, &[0, 4, 2], &exec).unwrap();
+        let found = averaged_colors(&points, &colors, &[0, 4, 2], &exec).unwrap();
         assert_eq!(found, [31.0 / 5.0, 12.0, 4.0].map(|v: f32| Vec3::splat(v)));
         let twice = [points[0], points[0], points[4]];
-        let found = of(&twice, &colors[..3], &[0, 1], &exec).unwrap();
+        let found = averaged_colors(&twice, &colors[..3], &[0, 1], &exec).unwrap();
         assert_eq!(found, [Vec3::splat((7.0_f64 / 3.0) as f32), colors[1]], "an empty cell");
-        assert!(of(&points, &colors, &[], &exec).unwrap().is_empty());
+        assert!(averaged_colors(&points, &colors, &[], &exec).unwrap().is_empty());
     }
 
     /// For random colours of variance v, the square error of a pick's own colour is 2 v on average,
@@ -201,7 +206,7 @@ mod tests {
         let exec = Exec::new(2, 32).unwrap();
         let greedy = Greedy { start: Start::Index(0) };
         let order = greedy.order(&points, 256, &exec, &|_, _, _| ()).unwrap();
-        let new = of(&points, &colors, &order.index, &exec).unwrap();
+        let new = averaged_colors(&points, &colors, &order.index, &exec).unwrap();
         let own: Vec<Vec3> = order.index.iter().map(|&i| colors[i as usize]).collect();
         let square = |of_picks: &[Vec3]| {
             let of_point = |(point, color): (&Vec3, &Vec3)| {

@@ -44,7 +44,7 @@ pub fn estimate(points: &[Vec3], normals: &[Vec3]) -> Estimate {
 mod tests {
     use super::*;
 
-    fn of(xs: &[f32], normals: &[Vec3]) -> Estimate {
+    fn estimate_of(xs: &[f32], normals: &[Vec3]) -> Estimate {
         let points: Vec<Vec3> = xs.iter().map(|&x| Vec3::new(x, 2.0, 2.0)).collect();
         estimate(&points, normals)
     }
@@ -53,23 +53,23 @@ mod tests {
     fn points_on_a_line_by_hand() {
         let up = [Vec3::Z; 2000];
         // Nearest: 1, 1, 2, 4, of which the second is the lower median.
-        let four = of(&[0.0, 1.0, 3.0, 7.0], &up);
+        let four = estimate_of(&[0.0, 1.0, 3.0, 7.0], &up);
         assert_eq!(four, Estimate { count: 4, distance: 1.0 });
-        let three = of(&[0.0, 2.0, 5.0], &up);
+        let three = estimate_of(&[0.0, 2.0, 5.0], &up);
         assert_eq!(three, Estimate { count: 3, distance: 2.0 });
-        assert_eq!(of(&[9.0], &up), Estimate { count: 1, distance: 0.0 });
-        assert_eq!(of(&[], &up), Estimate { count: 0, distance: 0.0 });
+        assert_eq!(estimate_of(&[9.0], &up), Estimate { count: 1, distance: 0.0 });
+        assert_eq!(estimate_of(&[], &up), Estimate { count: 0, distance: 0.0 });
         // Only the first 1000 count.
         let many: Vec<f32> = (0..2000).map(|i| if i < 1000 { i as f32 } else { 0.25 }).collect();
-        assert_eq!(of(&many, &up), Estimate { count: 1000, distance: 1.0 });
+        assert_eq!(estimate_of(&many, &up), Estimate { count: 1000, distance: 1.0 });
     }
 
     #[test]
     fn the_other_side_of_a_wall_does_not_count() {
         let both = [Vec3::Z, -Vec3::Z, Vec3::Z, -Vec3::Z];
-        let found = of(&[0.0, 0.125, 4.0, 5.125], &both);
+        let found = estimate_of(&[0.0, 0.125, 4.0, 5.125], &both);
         assert_eq!(found, Estimate { count: 4, distance: 4.0 });
-        let alone = of(&[0.0, 0.125], &both[..2]);
+        let alone = estimate_of(&[0.0, 0.125], &both[..2]);
         assert_eq!(alone, Estimate { count: 2, distance: 0.0 });
     }
 }

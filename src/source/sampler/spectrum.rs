@@ -229,7 +229,7 @@ mod tests {
     use crate::source::Shape;
     use crate::source::sampler::{Greedy, Start, shuffled};
 
-    fn of(points: &[Vec3]) -> Spectrum {
+    fn spectrum_of(points: &[Vec3]) -> Spectrum {
         spectrum(points, &Exec::new(2, 32).unwrap()).unwrap()
     }
 
@@ -251,7 +251,7 @@ mod tests {
             Vec3::new((r * x) as f32, (r * y) as f32, z as f32)
         };
         let points: Vec<Vec3> = (0..20_000).map(on_sphere).collect();
-        let found = of(&points);
+        let found = spectrum_of(&points);
         let area = 20_000.0 / found.density;
         assert!((area / (4.0 * PI) - 1.0).abs() < 0.01, "the area of the sphere: {area}");
         for (from, to) in [(0.25, 0.5), (0.5, 1.0), (1.0, 2.0), (2.0, 4.0)] {
@@ -267,12 +267,12 @@ mod tests {
         let greedy = Greedy { start: Start::Index(0) };
         let order = greedy.order(&points, 6000, &exec, &|_, _, _| ()).unwrap();
         let some = |order: &[u32]| order.iter().map(|i| points[*i as usize]).collect::<Vec<_>>();
-        let blue = of(&some(&order.index));
+        let blue = spectrum_of(&some(&order.index));
         let [at, peak] = blue.peak();
         assert!((0.9..1.2).contains(&at) && peak > 1.5, "{peak} at {at}");
         assert!(blue.below() < 0.2, "{}", blue.below());
         assert!((mean(&blue, 3.0, 4.0) - 1.0).abs() < 0.1);
-        let white = of(&some(&shuffled(&points, 1, 6000, &|_, _, _| ()).unwrap().index));
+        let white = spectrum_of(&some(&shuffled(&points, 1, 6000, &|_, _, _| ()).unwrap().index));
         assert!((white.below() - 1.0).abs() < 0.15, "{}", white.below());
     }
 
@@ -285,7 +285,7 @@ mod tests {
                 let (column, row) = ((i % 150) as f32, (i / 150) as f32);
                 Vec3::new(3.0 * (column + shift * (row % 2.0)), 7.0, 3.0 * height * row)
             };
-            let found = of(&(0..150 * 150).map(at).collect::<Vec<_>>());
+            let found = spectrum_of(&(0..150 * 150).map(at).collect::<Vec<_>>());
             let unit = 3.0 * first / if shift > 0.0 { 2.0 / 3.0_f64.sqrt() } else { 1.0 };
             assert!((found.unit / unit - 1.0).abs() < 0.05, "{} is not {unit}", found.unit);
             let [f, power] = found.peak();
@@ -298,7 +298,7 @@ mod tests {
     #[test]
     fn bins_lose_little_of_the_sum_over_all_pairs() {
         let points = Shape::Torus.surfels(400, 5).unwrap().position().to_vec();
-        let found = of(&points);
+        let found = spectrum_of(&points);
         let j0 = |x: f64| {
             let steps = 256;
             let angle = |i: i32| PI * (f64::from(i) + 0.5) / f64::from(steps);

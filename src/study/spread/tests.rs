@@ -15,13 +15,13 @@ fn orders(n: usize) -> Vec<Ordered> {
         .into()
 }
 
-fn of(orders: &[Ordered], prefixes: &[usize], spectra: bool) -> Result<Vec<AtPrefix>> {
+fn measured(orders: &[Ordered], prefixes: &[usize], spectra: bool) -> Result<Vec<AtPrefix>> {
     measure(orders, None, prefixes, spectra, &Exec::sequential(), &|_, _, _| ())
 }
 
 #[test]
 fn the_unit_is_the_best_least_distance() {
-    let found = of(&orders(2000), &[100, 400], false).unwrap();
+    let found = measured(&orders(2000), &[100, 400], false).unwrap();
     for AtPrefix { unit, spreads, .. } in &found {
         let [greedy, random] = [&spreads[0], &spreads[1]];
         assert_eq!(*unit, greedy.least(), "of the exact order");
@@ -53,23 +53,23 @@ fn four_on_a_line_by_hand() {
 fn what_cannot_be_measured_or_drawn_is_refused() {
     let mut orders = orders(300);
     for (prefix, what) in [(1, "random: a prefix of 1 of 300"), (301, "give 2 to 300")] {
-        let error = of(&orders[1..], &[prefix], false).unwrap_err().to_string();
+        let error = measured(&orders[1..], &[prefix], false).unwrap_err().to_string();
         assert!(error.contains(what), "{error}");
     }
-    let error = of(&orders, &[255], true).unwrap_err().to_string();
+    let error = measured(&orders, &[255], true).unwrap_err().to_string();
     assert!(error.contains("greedy: a spectrum of 255 points"), "{error}");
-    let found = of(&orders, &[9], false).unwrap();
+    let found = measured(&orders, &[9], false).unwrap();
     assert!(chart(&[]).is_err() && chart(&vec![found[0].clone(); MOST_PREFIXES + 1]).is_err());
     orders.truncate(1);
     orders[0].points[1] = orders[0].points[0];
-    let found = of(&orders, &[9], false).unwrap();
+    let found = measured(&orders, &[9], false).unwrap();
     assert_eq!(found[0].unit, 0.0);
     assert!(chart(&found).unwrap_err().to_string().contains("prefix 9"));
     orders[0].points = [0.0, 1.0, 1e5].map(|x| Vec3::new(x, 0.0, 0.0)).into();
-    let error = chart(&of(&orders, &[3], false).unwrap()).unwrap_err().to_string();
+    let error = chart(&measured(&orders, &[3], false).unwrap()).unwrap_err().to_string();
     assert!(error.contains("over 10000 times"), "{error}");
     orders[0].points[2].x = f32::MAX;
-    assert!(chart(&of(&orders, &[3], false).unwrap()).is_err(), "infinitely far in f32");
+    assert!(chart(&measured(&orders, &[3], false).unwrap()).is_err(), "infinitely far in f32");
 }
 
 /// From one order at one prefix to as many as fit, with names of any length.
@@ -81,7 +81,7 @@ fn no_label_covers_another() {
             let some = two.iter().cycle().take(count).cloned();
             let some: Vec<_> = some.map(|order| Ordered { name: name.into(), ..order }).collect();
             let prefixes: Vec<usize> = (0..prefixes).map(|i| 600 - 10 * i).collect();
-            let found = of(&some, &prefixes[..1], true).unwrap();
+            let found = measured(&some, &prefixes[..1], true).unwrap();
             let found: Vec<_> = prefixes
                 .iter()
                 .map(|&prefix| AtPrefix { prefix: 1000 * prefix, ..found[0].clone() })
@@ -99,12 +99,12 @@ fn no_label_covers_another() {
 
 #[test]
 fn a_chart_shows_every_order_at_every_prefix() {
-    let found = of(&orders(700), &[300, 600], true).unwrap();
+    let found = measured(&orders(700), &[300, 600], true).unwrap();
     let drawing = chart(&found).unwrap();
     let svg = drawing.svg();
     for (text, count) in [("greedy", 3), ("random", 3), ("300 points", 1), ("600 points", 1)] {
         assert_eq!(svg.matches(&format!(">{text}</text>")).count(), count, "{text}");
     }
-    let again = chart(&of(&orders(700), &[300, 600], true).unwrap()).unwrap();
+    let again = chart(&measured(&orders(700), &[300, 600], true).unwrap()).unwrap();
     assert_eq!((svg, drawing.picture()), (again.svg(), again.picture()));
 }

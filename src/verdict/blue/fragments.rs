@@ -75,7 +75,7 @@ impl<'a, P: Profile> Fragments<'a, P> {
             scene,
             view: View::new(job.camera),
             projector,
-            colored: Has::of(scene).color,
+            colored: Has::in_scene(scene).color,
             surfels,
             triangles: some.then(|| AllPolygons::new(job, scene, cull)),
         }

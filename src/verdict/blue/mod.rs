@@ -112,7 +112,7 @@ impl<'a, P: Profile> Judge<'a, P> {
             surfels: &job.scene.surfels,
             client_planes,
             fragments: Fragments::new(job, settings.cull),
-            shading: Shading::new(job, Has::of(job.scene).color),
+            shading: Shading::new(job, Has::in_scene(job.scene).color),
         }
     }
 

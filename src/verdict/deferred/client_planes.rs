@@ -12,14 +12,14 @@ use crate::verdict::ewa::client_planes::{ClientPlanes, SumRows};
 pub(super) fn visibility(client: &Client) -> ClientPlanes<'_> {
     let [depth, id, _] = rows(&Nearest::<f32>::BEFORE);
     let (depth, id) = (client.scalar(&depth), client.index(&id));
-    ClientPlanes { depth, id, depth_copy: None, id_copy: None, ..of(client) }
+    ClientPlanes { depth, id, depth_copy: None, id_copy: None, ..all_but_nearest(client) }
 }
 
 /// The planes after the selection. If depth and id of pass 3 are missing, the picture's are used,
 /// and its empty pixels say nothing. With `second` off the picture's may come from pass 4, so they
 /// are not used, because they say nothing about pass 1.
 pub(super) fn rest<'a>(client: &'a Client, settings: &Settings) -> ClientPlanes<'a> {
-    let all = of(client);
+    let all = all_but_nearest(client);
     let [depth, id, _] = rows(&Nearest::<f32>::BOTH);
     let (depth, id) = (client.scalar(&depth), client.index(&id));
     if depth.is_some() || id.is_some() || !settings.second {
@@ -30,7 +30,7 @@ pub(super) fn rest<'a>(client: &'a Client, settings: &Settings) -> ClientPlanes<
 
 /// Only depth and surfel of the picture. Its empty pixels say nothing.
 pub(super) fn picture(client: &Client) -> ClientPlanes<'_> {
-    let all = of(client);
+    let all = all_but_nearest(client);
     ClientPlanes { depth: all.depth_copy, id: all.id_copy, empty_is_open: true, ..all }
 }
 
@@ -42,7 +42,7 @@ pub(super) fn of_polygons<'a>(client: &'a Client, rest: &ClientPlanes<'a>) -> Cl
 }
 
 /// All planes except the nearest fragment's, and the picture's copies of them.
-fn of(client: &Client) -> ClientPlanes<'_> {
+fn all_but_nearest(client: &Client) -> ClientPlanes<'_> {
     let rows = SumRows { nearest: None, sums: rows(&Sums::<f32>::PLANES) };
     ClientPlanes {
         depth: None,
@@ -50,6 +50,6 @@ fn of(client: &Client) -> ClientPlanes<'_> {
         depth_copy: client.scalar(&surface::DEPTH),
         id_copy: client.index(&surface::ID),
         weightless: true,
-        ..ClientPlanes::of(client, &rows)
+        ..ClientPlanes::from_client(client, &rows)
     }
 }

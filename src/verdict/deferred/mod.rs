@@ -284,7 +284,8 @@ impl<'a, P: Profile> Scenery<'a, P> {
         let [depth, id, _] = rows(&Kept::<f32>::PLANES);
         let planes = SamplePlanes::of_nearest(client, job.scene, [depth, id]);
         let draws = |rank: usize| self.draws(self.flat.id(rank as u32));
-        let points = AllPossible::<P>::of(&job, (cull, Snap::default()), Some(limits), draws);
+        let points =
+            AllPossible::<P>::drawn_where(&job, (cull, Snap::default()), Some(limits), draws);
         let names = planes.names();
         let marks = match names.is_empty() {
             true => watch.picture(&job),
@@ -353,7 +354,7 @@ impl<P: Profile> LaterPasses<'_, P> {
             sums::continuations(&self.chosen, self.surfels, &nearest, (tile, &rect), &mut rest[0]);
         let (mut covered, mut shifts) = (0, ShiftSums::default());
         for (pixel, at) in counted(rect) {
-            let sums = sums.of(pixel);
+            let sums = sums.continuations(pixel);
             let others = beside.others(pixel);
             let shown = self.shown((tile, at), nearest[pixel], others, &mut rest[1]);
             let certain = matches!(sums, Continuations::One(_));

@@ -35,7 +35,7 @@ struct Sequence {
 
 /// A frame of a sequence: scene and camera, what the previous frame saw, and the planes of all
 /// stages.
-struct Shown {
+struct DrawnFrame {
     scene: Scene,
     camera: Camera,
     before: Option<Seen>,
@@ -118,7 +118,7 @@ fn with_detail(of: Sequence) -> Sequence {
 }
 
 impl Sequence {
-    fn frames<R: Exact>(&self, exec: &Exec) -> Vec<Shown> {
+    fn frames<R: Exact>(&self, exec: &Exec) -> Vec<DrawnFrame> {
         let mut before: Option<Seen> = None;
         let of_frame = |frame: u32| {
             let eye = rotation(DVec3::Y, 8.0 * f64::from(frame)) * DVec3::new(0.5, 0.75, 4.0);
@@ -132,7 +132,7 @@ impl Sequence {
             let picture = session.define::<R>(&camera, true).unwrap();
             let given = std::mem::replace(&mut before, picture.seen);
             drop(session);
-            Shown { scene, camera, before: given, frame: picture.frame.to_f32() }
+            DrawnFrame { scene, camera, before: given, frame: picture.frame.to_f32() }
         };
         (0..3).map(of_frame).collect()
     }
@@ -142,7 +142,7 @@ impl Sequence {
     }
 }
 
-impl Shown {
+impl DrawnFrame {
     fn session<'a>(&'a self, method: Method, exec: &'a Exec) -> Session<'a> {
         let mut session = Session::new(&self.scene, method, exec).unwrap();
         session.resume(self.before.clone());
@@ -318,7 +318,7 @@ fn kept(frame: &Frame<f32>, stage: &str) -> Vec<(u32, f32)> {
 /// Pass 2 of a client that keeps another passing fragment in a pixel: `limit` is computed from the
 /// depth of pass 1, and a comparison chooses.
 fn other_indices(
-    shown: &Shown,
+    shown: &DrawnFrame,
     settings: &Settings,
     limit: impl Fn(f32) -> f32,
     better: impl Fn(f32, f32) -> bool,
@@ -340,13 +340,19 @@ fn other_indices(
 }
 
 /// Asserts that a client's planes are wrong, first in this stage.
-fn assert_first_wrong(shown: &Shown, method: Method, frame: &Frame<f32>, stage: &str, what: &str) {
+fn assert_first_wrong(
+    shown: &DrawnFrame,
+    method: Method,
+    frame: &Frame<f32>,
+    stage: &str,
+    what: &str,
+) {
     assert_first_wrong_of(shown, method, frame, &[stage], what);
 }
 
 /// Asserts the same for one of several stages.
 fn assert_first_wrong_of(
-    shown: &Shown,
+    shown: &DrawnFrame,
     method: Method,
     frame: &Frame<f32>,
     stages: &[&str],

@@ -57,7 +57,7 @@ pub(crate) struct SumRows {
 
 impl<'a> ClientPlanes<'a> {
     pub(crate) fn new(client: &'a Client) -> Self {
-        Self::of(
+        Self::from_client(
             client,
             &SumRows {
                 nearest: Some(rows(&Foremost::<f32>::PLANES)),
@@ -67,7 +67,7 @@ impl<'a> ClientPlanes<'a> {
     }
 
     /// The planes for another method that ends in averages and their shading.
-    pub(crate) fn of(client: &'a Client, rows: &SumRows) -> Self {
+    pub(crate) fn from_client(client: &'a Client, rows: &SumRows) -> Self {
         let [color, normal, weight, count] = &rows.sums;
         let first = |own: Option<_>, other: Option<_>| (own.or(other), own.and(other));
         let nearest = rows.nearest.as_ref();

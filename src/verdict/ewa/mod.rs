@@ -148,7 +148,7 @@ impl<'a, P: Profile> Judge<'a, P> {
                 covered += u64::from(is_finite);
                 continue;
             }
-            let sums = sums.of(pixel);
+            let sums = sums.continuations(pixel);
             let taken = pixels.judge((pixel, at), &nearest[pixel], &sums, rest);
             if let (Continuations::Several(_, open), Some(taken)) = (&sums, taken) {
                 shifts.take_all(open, taken);

@@ -117,7 +117,7 @@ impl<'a, P: Profile> Accumulation<'_, 'a, P> {
         let followed = |pixel: usize| {
             asked(pixel)
                 && match sums.undecided[pixel] {
-                    0 => sums.of(pixel).is_none(),
+                    0 => sums.bounded(pixel).is_none(),
                     n => n <= MOST,
                 }
         };
@@ -135,11 +135,11 @@ pub(crate) struct TileSums<'a, P: Profile> {
 
 impl<P: Profile> TileSums<'_, P> {
     /// The possible sums of a pixel that was asked for.
-    pub(crate) fn of(&self, pixel: usize) -> Continuations<P> {
+    pub(crate) fn continuations(&self, pixel: usize) -> Continuations<P> {
         match self.sums.undecided[pixel] {
             0 => {
                 let plain = || chosen(self.surfels, of_one(&self.parts, pixel), 0);
-                Continuations::One(self.sums.of(pixel).unwrap_or_else(plain))
+                Continuations::One(self.sums.bounded(pixel).unwrap_or_else(plain))
             }
             n @ 1..=MOST => several(self.surfels, of_one(&self.parts, pixel), n),
             _ => Continuations::Many,
@@ -186,7 +186,7 @@ impl<P: Profile> AllSums<P> {
     }
 
     /// The sums of a pixel, if they are bounded.
-    fn of(&self, pixel: usize) -> Option<Sums<Ball<P>>> {
+    fn bounded(&self, pixel: usize) -> Option<Sums<Ball<P>>> {
         let [weight, x, y, z] = self.weighted[pixel].balls()?;
         let color = match self.color.get(pixel) {
             Some(color) => color.balls()?,
@@ -370,7 +370,7 @@ mod tests {
             let limits = limits(&splats, &nearest);
             let all = parts(&splats, (&nearest, &limits), (tile, &rect), |_| true);
             for pixel in 0..rect.pixels() {
-                let Continuations::One(own) = sums.of(pixel) else { continue };
+                let Continuations::One(own) = sums.continuations(pixel) else { continue };
                 let plain = chosen(surfels, of_one(&all, pixel), 0);
                 assert_eq!(own.count, plain.count);
                 let numbers = |sums: &Sums<Ball<P>>| {
@@ -378,7 +378,7 @@ mod tests {
                     [weight, x, y, z, r, g, b].map(|n| [n.middle, n.radius].map(f64::to_bits))
                 };
                 assert_eq!(numbers(&own), numbers(&plain));
-                found += usize::from(own.count > 1 && sums.sums.of(pixel).is_some());
+                found += usize::from(own.count > 1 && sums.sums.bounded(pixel).is_some());
             }
         }
         found

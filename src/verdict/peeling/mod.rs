@@ -101,7 +101,7 @@ impl<'a, P: Profile> Judge<'a, P> {
                 self.fragments.of_row(tile, &row, |_, at| self.client_planes.surfel(at));
             for (column, at) in counted(row) {
                 let pixel = (y - rect.y0) as usize * row.columns() + column;
-                let own: Vec<_> = fragments.at(column).of(0).copied().collect();
+                let own: Vec<_> = fragments.at(column).in_group(0).copied().collect();
                 let found = self.layers.judge(at, &own, &mut layers.at(pixel));
                 let blends = blending::judge::<P>(
                     (self.client_planes, &self.backdrop),

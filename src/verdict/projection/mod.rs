@@ -95,11 +95,11 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         snap: Snap,
         limits: Option<&'a Tiled<Ball<P>>>,
     ) -> Self {
-        Self::of(job, (cull, snap), limits, |_| true)
+        Self::drawn_where(job, (cull, snap), limits, |_| true)
     }
 
     /// Only those surfels whose indices `draws` accepts.
-    pub(crate) fn of(
+    pub(crate) fn drawn_where(
         job: &Job<'a>,
         (cull, snap): (bool, Snap),
         limits: Option<&'a Tiled<Ball<P>>>,

@@ -40,7 +40,7 @@ impl<'a> SamplePlanes<'a> {
     pub(crate) fn new(client: &'a Client, scene: &'a Scene) -> Self {
         let fields = &PixelSample::<f32>::PLANES;
         let kind = client.count(&PixelSample::<f32>::KIND.row);
-        Self::of(client, scene, (RecordPlanes::new(client, fields, 0), kind))
+        Self::from_record_planes(client, scene, (RecordPlanes::new(client, fields, 0), kind))
     }
 
     /// The planes of a pass that leaves only depths and ids.
@@ -51,10 +51,10 @@ impl<'a> SamplePlanes<'a> {
             fields.iter().position(|field| field.row.holds == row.holds).unwrap_or(usize::MAX)
         };
         let rows = rows.into_iter().map(|row| (place(&row), row));
-        Self::of(client, scene, (RecordPlanes::of_rows(client, rows, 0), None))
+        Self::from_record_planes(client, scene, (RecordPlanes::of_rows(client, rows, 0), None))
     }
 
-    fn of(
+    fn from_record_planes(
         client: &Client,
         scene: &'a Scene,
         (planes, kind): (RecordPlanes<'a>, Option<StoredPlane<'a, u8>>),

@@ -27,7 +27,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         cells: Option<&'a Level<P>>,
         client_planes: &'a PicturePlanes<'a>,
     ) -> Self {
-        let has = Has::of(job.scene);
+        let has = Has::in_scene(job.scene);
         let shading = Shading::new(job, has.color);
         Self { cells, client_planes, view: View::new(job.camera), shading, has }
     }

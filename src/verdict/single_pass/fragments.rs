@@ -58,18 +58,18 @@ const MOST_BINS: f64 = 8.0;
 
 impl<P: Profile> Keys<P> {
     /// The key of a bin.
-    fn of(&self, bin: f64) -> Ball<P> {
+    fn of_bin(&self, bin: f64) -> Ball<P> {
         DepthBins::within(Ball::exact(bin), self.part)
     }
 
     /// The least key.
     pub(crate) fn least(&self) -> Ball<P> {
-        self.bins.map_or(self.part, |[first, _]| self.of(first))
+        self.bins.map_or(self.part, |[first, _]| self.of_bin(first))
     }
 
     /// The greatest key.
     pub(crate) fn greatest(&self) -> Ball<P> {
-        self.bins.map_or(self.part, |[_, last]| self.of(last))
+        self.bins.map_or(self.part, |[_, last]| self.of_bin(last))
     }
 
     /// The key that fits a stored one best.
@@ -79,13 +79,10 @@ impl<P: Profile> Keys<P> {
             // There are too many bins to try: take any of them, and any part of one.
             return Ball::new(0.5 * (first + last), 0.5 * (last - first) + 1.0);
         }
-        let others = (1..=(last - first) as u32).map(|i| self.of(first + f64::from(i)));
-        others.fold(
-            self.of(first),
-            |best, key| {
-                if key.misfit(found) < best.misfit(found) { key } else { best }
-            },
-        )
+        let others = (1..=(last - first) as u32).map(|i| self.of_bin(first + f64::from(i)));
+        others.fold(self.of_bin(first), |best, key| {
+            if key.misfit(found) < best.misfit(found) { key } else { best }
+        })
     }
 
     /// The key, if it is exact.
@@ -124,7 +121,7 @@ impl<P: Profile> RowFragments<P> {
 
 impl<P: Profile> PixelFragments<'_, P> {
     /// The fragments of a group.
-    pub(crate) fn of(&self, group: usize) -> impl Iterator<Item = &Fragment<P>> + Clone {
+    pub(crate) fn in_group(&self, group: usize) -> impl Iterator<Item = &Fragment<P>> + Clone {
         let place = self.first + group;
         between(self.all, [place, place + 1]).iter().map(|(_, fragment)| fragment)
     }

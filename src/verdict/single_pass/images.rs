@@ -66,7 +66,7 @@ impl<'a, P: Profile> Images<'a, P> {
         pixel: &mut PixelMarks<'_>,
     ) -> Vec<Samples<P>> {
         let groups = self.planes.iter().enumerate();
-        groups.map(|(k, planes)| self.group(at, planes, fragments.of(k), pixel)).collect()
+        groups.map(|(k, planes)| self.group(at, planes, fragments.in_group(k), pixel)).collect()
     }
 
     /// Judges one group.

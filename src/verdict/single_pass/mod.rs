@@ -92,7 +92,7 @@ const STAGES: [&str; 3] = ["geometry", "compositing", "shading"];
 
 impl<'a> GroupsOf<'a> {
     fn new(client: &'a Client) -> Self {
-        let client_planes = ClientPlanes::of(client, &sum_rows());
+        let client_planes = ClientPlanes::from_client(client, &sum_rows());
         Self { client, client_planes, images: rows(&ImagePixel::<f32>::GROUPS), layer: false }
     }
 }

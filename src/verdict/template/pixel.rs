@@ -45,7 +45,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         levels: Option<Vec<Level<P>>>,
         client_planes: &'a PicturePlanes<'a>,
     ) -> Self {
-        let (scene, has) = (job.scene, Has::of(job.scene));
+        let (scene, has) = (job.scene, Has::in_scene(job.scene));
         let colors = scene.surfels.color().unwrap_or_default();
         let brightest = colors.iter().fold(1.0_f64, |brightest, color| {
             let [r, g, b] = color.to_array().map_inline(f64::from);

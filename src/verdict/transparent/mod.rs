@@ -87,7 +87,7 @@ pub(super) fn checks<P: Profile>(
 /// Depth and surfel of the picture. Each group scales a surfel, so the depths of one surfel in two
 /// groups, or of two equal surfels, may tie or not.
 fn client_planes(client: &Client) -> ClientPlanes<'_> {
-    ClientPlanes { ties: Ties::Any, ..ClientPlanes::of(client, &sum_rows()) }
+    ClientPlanes { ties: Ties::Any, ..ClientPlanes::from_client(client, &sum_rows()) }
 }
 
 /// The parts that all tiles share.

@@ -113,7 +113,7 @@ fn nearest(client: &Client) -> GroupsOf<'_> {
         mask: client.count(&mask),
         shaded: client.triple(&color),
         alpha: None,
-        ..ClientPlanes::of(client, &sum_rows())
+        ..ClientPlanes::from_client(client, &sum_rows())
     };
     GroupsOf { client, client_planes, images: rows(&ImagePixel::<f32>::NEAREST), layer: true }
 }

@@ -18,11 +18,11 @@ impl Numbers {
         let bits = (0..=32).find(|n| u64::from(largest) <= 1 << n)?;
         let wide = [Split::Stencil(20), Split::Stencil(bits)];
         let splits = [Split::Even, Split::Two, Split::Single(bits), wide[0], wide[1]];
-        splits.into_iter().find_map(|split| Self::of(split, counts))
+        splits.into_iter().find_map(|split| Self::from_split(split, counts))
     }
 
     /// By a split, if it fits.
-    pub(crate) fn of(split: Split, counts: &[u32]) -> Option<Self> {
+    pub(crate) fn from_split(split: Split, counts: &[u32]) -> Option<Self> {
         let mut first = Vec::new();
         let [mut large, mut small] = [0_u64; 2];
         for (object, &count) in (0_u64..).zip(counts) {
@@ -146,7 +146,8 @@ fn deferred_ids_are_those_of_the_table() {
         let wide = [Split::Stencil(20), Split::Stencil(14), Split::Stencil(31)];
         let narrow = [Split::Even, Split::Two, Split::Single(17), Split::Single(12)];
         for split in narrow.into_iter().chain(wide) {
-            let (model, ids) = (Numbers::of(split, &counts), Ids::with_split(split, &counts));
+            let (model, ids) =
+                (Numbers::from_split(split, &counts), Ids::with_split(split, &counts));
             assert_eq!(model.is_some(), ids.is_some(), "{split:?}");
             if let (Some(model), Some(ids)) = (model, ids) {
                 compare(&mut dice, &model, &ids);

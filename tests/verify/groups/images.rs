@@ -67,7 +67,7 @@ fn groups(client: &Client<'_>, surfel: u32) -> Vec<usize> {
         Some(Bug::GroupByIndex) => vec![index % count],
         Some(Bug::GroupsTooFew) if count > 1 => vec![own % (count - 1)],
         Some(Bug::GroupNotDrawn) if own + 1 == count => vec![],
-        Some(Bug::AddedDrawn) => client.groups.of(surfel).map(usize::from).collect(),
+        Some(Bug::AddedDrawn) => client.groups.of_surfel(surfel).map(usize::from).collect(),
         _ => vec![own],
     }
 }

@@ -28,7 +28,9 @@ fn covered_area(surfels: &Surfels, members: &[usize], scale: f64) -> f64 {
 }
 
 fn members(groups: &Groups, k: usize) -> Vec<usize> {
-    (0..groups.own().len()).filter(|&i| groups.of(i as u32).any(|g| usize::from(g) == k)).collect()
+    (0..groups.own().len())
+        .filter(|&i| groups.of_surfel(i as u32).any(|g| usize::from(g) == k))
+        .collect()
 }
 
 /// The paper's steps 1, 2, 2a and 2b with a queue.

@@ -133,7 +133,11 @@ fn prefiltered_colours_are_read_as_colours_are() {
     for (kind, value) in [("uchar", "127"), ("ushort", "32639"), ("float", "0.25")] {
         let cloud = text(names, kind, value);
         let mipmap = cloud.mipmap.unwrap();
-        assert_eq!((mipmap.levels(), mipmap.of(0)), (1, &cloud.color.unwrap()[..]), "{kind}");
+        assert_eq!(
+            (mipmap.levels(), mipmap.of_surfel(0)),
+            (1, &cloud.color.unwrap()[..]),
+            "{kind}"
+        );
     }
     // Properties with other names are skipped, as by any reader that does not know them.
     let others = ["red", "green", "blue", "mip_red", "mip1_alpha", "mip0_red", "mipa_red"];

@@ -85,7 +85,7 @@ fn levels_are_made_of_the_texture_where_there_is_one() {
     let mipmap = found.mipmap().unwrap();
     assert_eq!((mipmap.levels(), found.len()), (6, 2));
     for i in 0..2 {
-        let last = mipmap.of(i)[5];
+        let last = mipmap.of_surfel(i)[5];
         // 64 outlines cover the whole texture, half of which is red.
         assert!((last.x - 0.5).abs() < 1e-3, "{last}");
         assert!((found.color().unwrap()[i].x - 0.5).abs() > 0.05, "{:?}", found.color());

@@ -28,8 +28,9 @@ pub(super) fn render(job: &Job<'_>, settings: &Settings, target: &mut Framebuffe
     assert_eq!([target.width, target.height], job.camera.size(), "framebuffer size");
     let projector = SquareProjector::new(job, settings.cull);
     let strips = job.strips();
-    let squares =
-        Squares::of((job, &strips), |range, squares| place::squares(&projector, range, squares));
+    let squares = Squares::projected_by((job, &strips), |range, squares| {
+        place::squares(&projector, range, squares)
+    });
     let view = View::new(job.camera);
     job.exec.ordered(target.cut(&strips, job.exec), |mut pixels| {
         let mut tile = TileOfDiscs::default();

@@ -36,7 +36,7 @@ fn a_level_is_twice_the_size() {
         [(1.0, 0.0), (16.0, 0.0), (24.0, 0.5), (32.0, 1.0), (40.0, 1.25), (64.0, 2.0), (1e6, 4.0)]
     {
         let view = view(DVec3::Z * 3.0, Lens::Orthographic(height / 2.0_f64.sqrt()));
-        let found = Level::of(&view, &surfels, 0);
+        let found = Level::of_surfel(&view, &surfels, 0);
         // The scale of the camera is an f32. x is sqrt(2) times the side.
         assert!((found.number() - level).abs() < 1e-6, "{height}: {}", found.number());
         let expected = Vec3::splat(found.number() as f32);
@@ -46,13 +46,13 @@ fn a_level_is_twice_the_size() {
     let seen = view(DVec3::Z * 3.0, Lens::Orthographic(16.0));
     for about in [DVec3::X, DVec3::Y, DVec3::new(3.0, 4.0, 0.0)] {
         let turned = rotation(about, 60.0) * DVec3::Z;
-        let found = Level::of(&seen, &one(turned.as_vec3(), None, 4), 0).number();
+        let found = Level::of_surfel(&seen, &one(turned.as_vec3(), None, 4), 0).number();
         assert!((found - 1.0).abs() < 1e-6, "{about}: {found}");
     }
     // An ellipse is as large as the disc of its area, whatever its half axes.
     let halves = [Vec3::new(0.5, 0.0, 0.0), Vec3::new(0.25, 0.125, 0.0)];
     let [ellipse, disc] = [Some(halves), None].map(|halves| one(Vec3::Z, halves, 4));
-    let [ellipse, disc] = [ellipse, disc].map(|one| Level::of(&seen, &one, 0).number());
+    let [ellipse, disc] = [ellipse, disc].map(|one| Level::of_surfel(&seen, &one, 0).number());
     assert!((ellipse - disc).abs() < 1e-9, "{ellipse} {disc}");
 }
 
@@ -65,7 +65,7 @@ fn what_is_edge_on_or_behind_has_a_level() {
     for (view, level) in
         [(view(DVec3::Z, lens), 3.0), (behind, 0.0), (view(DVec3::X / 1e3, lens), 0.0)]
     {
-        let found = Level::of(&view, &surfels, 0);
+        let found = Level::of_surfel(&view, &surfels, 0);
         assert_eq!(found.number(), level);
         assert_eq!(color(&surfels, 0, found), Vec3::splat(level as f32));
     }
@@ -84,7 +84,7 @@ proptest! {
         let mut before = 0.0;
         for i in 0..12 {
             let eye = at * f64::from(1_u32 << i) * step;
-            let level = Level::of(&view(eye, Lens::FieldOfView(30.0)), &surfels, 0).number();
+            let level = Level::of_surfel(&view(eye, Lens::FieldOfView(30.0)), &surfels, 0).number();
             // The camera is rounded to f32, which matters for a surfel that is nearly edge-on.
             prop_assert!(level >= before - 1e-2, "{} {} after {}", i, level, before);
             before = level;

@@ -125,11 +125,11 @@ fn gaussian(square: f32) -> f32 {
 }
 
 impl Mix {
-    /// The average of a number: [`Mean::of`] in lanes, spelled out in one long loop.
+    /// The average of a number: [`Mean::average`] in lanes, spelled out in one long loop.
     ///
-    /// [`Mean::of`]: crate::composite::mean::Mean::of
+    /// [`Mean::average`]: crate::composite::mean::Mean::average
     #[inline(always)]
-    pub(super) fn of(&self, a: &[Lanes; 4]) -> Lanes {
+    pub(super) fn average(&self, a: &[Lanes; 4]) -> Lanes {
         let mut average = [0.0; LANES];
         for i in 0..LANES {
             let (w, a, takes) = self.lane(i, a);

@@ -54,7 +54,7 @@ impl CellLevels {
     ) -> Result<(Tally, Laps)> {
         let Job { scene, camera, exec, .. } = *job;
         let mut clock = Clock::default();
-        self.reshape(camera, Has::of(scene));
+        self.reshape(camera, Has::in_scene(scene));
         let tally = self.project(job, settings)?;
         clock.lap("projection");
         let tubes = self.has.tangent;

@@ -77,21 +77,21 @@ vectorized!(
             // -- The new cells
             put(FRONT, &mix.least(&four.front));
             put(BACK, &mix.greatest(&four.back));
-            put(RADIUS, &mix.of(&four.radius));
+            put(RADIUS, &mix.average(&four.radius));
             for axis in 0..2 {
-                put(PLACE + axis, &mix.of(&four.place(axis)));
+                put(PLACE + axis, &mix.average(&four.place(axis)));
             }
-            let normal = [mix.of(&nx), mix.of(&ny), mix.of(&nz)];
+            let normal = [mix.average(&nx), mix.average(&ny), mix.average(&nz)];
             (0..3).for_each(|axis| put(NORMAL + axis, &normal[axis]));
             let tilt = tilts(&normal);
             (0..2).for_each(|axis| put(TILT + axis, &tilt[axis]));
             let tangent = tangent(layout, TUBES);
             for attribute in FURTHER..tangent {
-                put(attribute, &mix.of(&number(attribute)));
+                put(attribute, &mix.average(&number(attribute)));
             }
             if TUBES {
                 let aligned = mix.aligned([0, 1, 2].map_inline(|axis| number(tangent + axis)));
-                (0..3).for_each(|axis| put(tangent + axis, &mix.of(&aligned[axis])));
+                (0..3).for_each(|axis| put(tangent + axis, &mix.average(&aligned[axis])));
             }
         }
     }

@@ -129,7 +129,9 @@ vectorized!(
             put(fine, at(KIND), &cells, |_, new| new.mix.kind);
             let tangent = tangent(layout, TUBES);
             for attribute in [FRONT].into_iter().chain(FURTHER..tangent) {
-                put(fine, at(attribute), &cells, |odd, new| new.mix.of(&number(attribute, odd)));
+                put(fine, at(attribute), &cells, |odd, new| {
+                    new.mix.average(&number(attribute, odd))
+                });
             }
             if TUBES {
                 let all = |odd: usize| [0, 1, 2].map_inline(|axis| number(tangent + axis, odd));
@@ -138,13 +140,13 @@ vectorized!(
                     cells[odd].as_ref().map_or(none, |new| new.mix.aligned(all(odd)))
                 });
                 for axis in 0..3 {
-                    let value = |odd: usize, new: &NewCells| new.mix.of(&aligned[odd][axis]);
+                    let value = |odd: usize, new: &NewCells| new.mix.average(&aligned[odd][axis]);
                     put(fine, at(tangent + axis), &cells, value);
                 }
             }
             let mut normal = [[[0.0; LANES]; 3]; 2];
             for axis in 0..3 {
-                let new = |odd: usize, new: &NewCells| new.mix.of(&number(NORMAL + axis, odd));
+                let new = |odd: usize, new: &NewCells| new.mix.average(&number(NORMAL + axis, odd));
                 let [even, odd] = put(fine, at(NORMAL + axis), &cells, new);
                 (normal[0][axis], normal[1][axis]) = (even, odd);
             }
@@ -154,10 +156,14 @@ vectorized!(
             // -- The numbers that the next level is pushed from; the picture needs no more of the
             // finest level
             for attribute in [BACK, RADIUS] {
-                put(fine, at(attribute), &cells, |odd, new| new.mix.of(&number(attribute, odd)));
+                put(fine, at(attribute), &cells, |odd, new| {
+                    new.mix.average(&number(attribute, odd))
+                });
             }
             for axis in 0..2 {
-                put(fine, at(PLACE + axis), &cells, |_, new| new.mix.of(&new.four.place(axis)));
+                put(fine, at(PLACE + axis), &cells, |_, new| {
+                    new.mix.average(&new.four.place(axis))
+                });
             }
             let tilt = [tilts(&normal[0]), tilts(&normal[1])];
             for axis in 0..2 {

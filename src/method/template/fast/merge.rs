@@ -113,7 +113,7 @@ impl FourCenters {
             let a = number(attribute);
             let average = each(|i| {
                 let mean = Mean::plain([0, 1, 2, 3].map_inline(|j| takes[j][i] > 0.0));
-                mean.of([a[0][i], a[1][i], a[2][i], a[3][i]])
+                mean.average([a[0][i], a[1][i], a[2][i], a[3][i]])
             });
             store(coarse.numbers, layout.at(attribute, x), &average);
         }

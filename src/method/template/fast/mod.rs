@@ -47,7 +47,7 @@ impl CenterLevels {
     ) -> (Tally, Laps) {
         assert_eq!((target.width, target.height), (camera.width, camera.height), "its size");
         let mut clock = Clock::default();
-        let has = Has::of(scene);
+        let has = Has::in_scene(scene);
         let sizes = pyramid::sizes(camera.width, camera.height);
         let top = propagation::top(settings, &sizes);
         let layouts = sizes[..=top].iter().map(|&size| level::layout(size, has.color));

@@ -67,7 +67,7 @@ fn colours_are_means_within_the_outlines() {
                 let found = if k == 0 {
                     points.color().unwrap()[i]
                 } else {
-                    points.mipmap().unwrap().of(i)[k - 1]
+                    points.mipmap().unwrap().of_surfel(i)[k - 1]
                 };
                 let scale = [1.0, 4.0, 16.0, 64.0][k];
                 let expected = paint
@@ -84,7 +84,7 @@ fn colours_are_means_within_the_outlines() {
                 let found = if k == 0 {
                     flat.color().unwrap()[i]
                 } else {
-                    flat.mipmap().unwrap().of(i)[k - 1]
+                    flat.mipmap().unwrap().of_surfel(i)[k - 1]
                 };
                 let ellipse =
                     Ellipse::from_half_axes(halves[0], halves[1]).times([1.0, 4.0, 16.0, 64.0][k]);
@@ -150,7 +150,7 @@ fn a_point_at_a_seam_has_something_of_both_sides() {
     assert_eq!(derived.dropped.total(), 0);
     let both = Vec3::new(0.25, 0.0, 0.75); // areas of 1 and 3
     assert_eq!(points.color().unwrap(), [both, red, both, blue]);
-    assert_eq!(points.mipmap().unwrap().of(0), [both]);
+    assert_eq!(points.mipmap().unwrap().of_surfel(0), [both]);
     assert_eq!(of_facets(cloud.clone(), &exec, &quiet).unwrap().0.color().unwrap(), [red, blue]);
 
     // A triangle without a coordinate is dropped and counted, and so is a point without a triangle.

@@ -45,7 +45,7 @@ fn faults_of_the_visibility_are_found() {
     let frames = sequence.frames::<f32>(&exec);
     let (last, shown) = (&frames[1], &frames[2]);
     // Positions of the previous frame.
-    let stale = Shown {
+    let stale = DrawnFrame {
         scene: last.scene.clone(),
         before: shown.before.clone(),
         frame: shown.frame.clone(),
@@ -158,7 +158,7 @@ fn of_near_ties_either_may_be_selected() {
     let method = Method::from(settings);
     let frame =
         Session::new(&scene, method, &exec).unwrap().define::<f32>(&camera, true).unwrap().frame;
-    let shown = Shown { scene, camera, before: None, frame };
+    let shown = DrawnFrame { scene, camera, before: None, frame };
     // The last fragment of each pixel.
     let last = other_indices(&shown, &settings, |_| f32::INFINITY, |t, than| t >= than);
     let differ = kept(&shown.frame, "indices");
@@ -179,7 +179,7 @@ fn of_near_ties_either_may_be_selected() {
     let scene = Scene { surfels: Surfels::new(cloud).unwrap().0, ..shown.scene };
     let frame =
         Session::new(&scene, method, &exec).unwrap().define::<f32>(&camera, true).unwrap().frame;
-    let shown = Shown { scene, frame, ..shown };
+    let shown = DrawnFrame { scene, frame, ..shown };
     let farthest = other_indices(&shown, &settings, |_| f32::INFINITY, |t, than| t > than);
     let frame = shown.from(method, &farthest, "indices");
     assert_first_wrong(&shown, method, &frame, "indices", "the farthest");
@@ -200,7 +200,7 @@ fn equal_surfels_are_told_apart_by_the_rule_of_ties() {
     let method = Method::from(settings);
     let frame =
         Session::new(&scene, method, &exec).unwrap().define::<f32>(&camera, true).unwrap().frame;
-    let shown = Shown { scene, camera, before: None, frame };
+    let shown = DrawnFrame { scene, camera, before: None, frame };
     let last = other_indices(&shown, &settings, |_| f32::INFINITY, |t, than| t <= than);
     let frame = shown.from(method, &last, "indices");
     assert!(id(&frame, "indices.id").values().iter().any(|&id| id != NO_ID && id as usize >= all));

@@ -67,7 +67,12 @@ pub(super) fn sequences() -> Vec<Sequence> {
 }
 
 /// The planes of a stage from a client that draws another scene or follows other rules.
-fn of_stage(shown: &Shown, method: Method, scene: &Scene, stage: &str) -> Vec<NamedPlane<f32>> {
+fn of_stage(
+    shown: &DrawnFrame,
+    method: Method,
+    scene: &Scene,
+    stage: &str,
+) -> Vec<NamedPlane<f32>> {
     let exec = Exec::new(1, 16).unwrap();
     let mut session = Session::new(scene, method, &exec).unwrap();
     session.resume(shown.before.clone());
@@ -75,7 +80,7 @@ fn of_stage(shown: &Shown, method: Method, scene: &Scene, stage: &str) -> Vec<Na
 }
 
 /// The scene with other polygons in place of its last object.
-fn other_square(shown: &Shown, change: impl Fn(&mut Vertices)) -> Scene {
+fn other_square(shown: &DrawnFrame, change: impl Fn(&mut Vertices)) -> Scene {
     let objects = shown.scene.objects.as_ref().unwrap();
     let mut geometries = objects.geometries().to_vec();
     let triangles = &geometries.last().unwrap().primitives.triangles;

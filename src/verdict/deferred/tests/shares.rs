@@ -7,13 +7,13 @@ fn with_share(share: f32) -> Sequence {
 }
 
 /// The objects that a frame leaves out.
-fn left_out(shown: &Shown, settings: &Settings) -> Vec<u32> {
+fn left_out(shown: &DrawnFrame, settings: &Settings) -> Vec<u32> {
     let whole = Whole::new(&shown.scene).after(shown.before.as_ref().unwrap(), settings);
     (0..3).filter(|&object| whole.leaves_out(object)).collect()
 }
 
 /// The picture of a client that has another idea of what the previous frame saw, or other settings.
-fn other(shown: &Shown, method: Method, seen: Option<Seen>) -> Frame<f32> {
+fn other(shown: &DrawnFrame, method: Method, seen: Option<Seen>) -> Frame<f32> {
     let exec = Exec::new(1, 16).unwrap();
     let mut session = shown.session(method, &exec);
     session.resume(seen);

@@ -3,9 +3,9 @@ use crate::scene::objects::Split;
 use crate::verdict::Fault;
 
 /// The frames of a sequence whose ids have 40 bits; the highest 8 are the object.
-fn frames(sequence: &Sequence, exec: &Exec) -> Vec<Shown> {
+fn frames(sequence: &Sequence, exec: &Exec) -> Vec<DrawnFrame> {
     let mut before: Option<Seen> = None;
-    let of_frame = |Shown { scene, camera, .. }: Shown| {
+    let of_frame = |DrawnFrame { scene, camera, .. }: DrawnFrame| {
         let objects = scene.objects.as_ref().unwrap().split_as(Split::Stencil(32)).unwrap();
         assert!(objects.ids().is_wide());
         let scene = Scene { objects: Some(objects), ..scene };
@@ -14,7 +14,7 @@ fn frames(sequence: &Sequence, exec: &Exec) -> Vec<Shown> {
         let picture = session.define::<f32>(&camera, true).unwrap();
         let given = std::mem::replace(&mut before, picture.seen);
         drop(session);
-        Shown { scene, camera, before: given, frame: picture.frame }
+        DrawnFrame { scene, camera, before: given, frame: picture.frame }
     };
     sequence.frames::<f32>(exec).into_iter().map(of_frame).collect()
 }

@@ -10,12 +10,12 @@ use splatref::source::candidates::{self, Candidates, Directions, candidates};
 use splatref::{Error, Result};
 
 /// Points, and the side of a pixel if they were sampled from pictures.
-pub(super) struct Given {
+pub(super) struct InputPoints {
     pub(super) cloud: Cloud,
     pub(super) pixel: Option<f64>,
 }
 
-impl From<Candidates> for Given {
+impl From<Candidates> for InputPoints {
     fn from(found: Candidates) -> Self {
         Self { cloud: found.cloud, pixel: Some(found.pixel) }
     }
@@ -23,17 +23,17 @@ impl From<Candidates> for Given {
 
 impl Args {
     /// The points of the input.
-    pub(super) fn given(&self, exec: &Exec, show: Progress<'_>) -> Result<Given> {
+    pub(super) fn given(&self, exec: &Exec, show: Progress<'_>) -> Result<InputPoints> {
         if FileKind::from_extension(&self.points)? == FileKind::Toml {
-            return self.scene(exec, show).map(Given::from);
+            return self.scene(exec, show).map(InputPoints::from);
         }
         let mut cloud = read_model(&self.points, exec)?;
         cloud.properties = ply::properties(&self.points, &self.properties)?;
         if !cloud.triangles.is_empty() {
-            return self.candidates(cloud, exec, show).map(Given::from);
+            return self.candidates(cloud, exec, show).map(InputPoints::from);
         }
         self.points_alone(&cloud)?;
-        Ok(Given { cloud, pixel: None })
+        Ok(InputPoints { cloud, pixel: None })
     }
 
     /// Samples a scene in its first frame.
