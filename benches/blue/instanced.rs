@@ -8,7 +8,7 @@ use super::common::report::{Arguments, Table};
 use super::scene::{against, blue, draw, percent};
 use glam::DVec3;
 use splatref::Result;
-use splatref::compare::metrics::summary;
+use splatref::compare::metrics::{hierarchical_ssim, summary};
 use splatref::frame::image::Image;
 use splatref::frame::{Exec, Frame, Plane, Samples};
 use splatref::number::elementary::{cos, sin};
@@ -110,6 +110,7 @@ pub(crate) fn table(rings: &Rings, arguments: &Arguments, exec: &Exec) -> Result
         "choosing and placing, ms",
         "drawing, ms",
         "SSIM",
+        "hierarchical SSIM",
         "holes, %",
     ]);
     for view in [OVERVIEW, GROUND] {
@@ -120,7 +121,7 @@ pub(crate) fn table(rings: &Rings, arguments: &Arguments, exec: &Exec) -> Result
             let time = 1e3 * start.elapsed().as_secs_f64();
             let picture = format!("{} | {width} x {height}", view.name);
             table.row(&format!(
-                "{picture} | all triangles | 0 | {} | - | {time:.0} | 1 | 0",
+                "{picture} | all triangles | 0 | {} | - | {time:.0} | 1 | 1 | 0",
                 rings.triangles()
             ));
             for size in SIZES {
@@ -148,12 +149,23 @@ fn of_size(
     let similar = summary(&Image::from(&found), &Image::from(truth)).and_then(|both| both.ssim);
     let covered = against(&found, truth);
     Ok(format!(
-        "{size} | {} | {} | {placing:.0} | {drawing:.0} | {:.3} | {:.2}",
+        "{size} | {} | {} | {placing:.0} | {drawing:.0} | {:.3} | {:.3} | {:.2}",
         scene.surfels.len(),
         scene.primitives.len(),
         similar.unwrap_or(f64::NAN),
+        hierarchical(&found, truth).unwrap_or(f64::NAN),
         percent(covered.holes, covered.interior)
     ))
+}
+
+/// The mean hierarchical SSIM of the three channels of two pictures.
+fn hierarchical(found: &Frame<f32>, truth: &Frame<f32>) -> Option<f64> {
+    let [found, truth] = [found.color("").ok()?, truth.color("").ok()?];
+    let channel = |plane: &Plane<[f32; 3]>, c: usize| -> Vec<f32> {
+        plane.values().iter().map(|color| color[c]).collect()
+    };
+    let one = |c| hierarchical_ssim(&channel(found, c), &channel(truth, c), found.width() as usize);
+    Some((one(0)? + one(1)? + one(2)?) / 3.0)
 }
 
 /// Takes the pixels at which another frame is nearer.

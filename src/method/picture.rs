@@ -167,17 +167,40 @@ impl Clock {
         tiles: &[[Duration; N]],
     ) {
         let shares = wall_shares(self.start.elapsed(), tiles);
-        self.laps.extend(names.into_iter().zip(shares));
+        for (name, time) in names.into_iter().zip(shares) {
+            self.add(name, time);
+        }
         self.start = Instant::now();
     }
 
-    /// Ends a stage that began at the last call or at `restart`. If the last stage has the same
-    /// name, adds to its time.
+    /// Ends work on a stage that began at the last call or at `restart`.
     pub(crate) fn lap(&mut self, name: &'static str) {
-        match self.laps.last_mut() {
-            Some((last, time)) if *last == name => *time += self.start.elapsed(),
-            _ => self.laps.push((name, self.start.elapsed())),
-        }
+        self.add(name, self.start.elapsed());
         self.start = Instant::now();
+    }
+
+    /// Adds time to a stage, which may have been worked on before.
+    pub(crate) fn add(&mut self, name: &'static str, time: Duration) {
+        match self.laps.iter_mut().find(|(stage, _)| *stage == name) {
+            Some((_, sum)) => *sum += time,
+            None => self.laps.push((name, time)),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_stage_in_two_parts_has_one_lap() {
+        let ms = Duration::from_millis;
+        let mut clock = Clock::from_laps(vec![("visibility", ms(1))]);
+        clock.add("attributes", ms(2));
+        clock.shares(["difference", "attributes"], &[[ms(0); 2]]);
+        clock.add("difference", ms(8));
+        clock.add("attributes", ms(16));
+        let laps = [("visibility", ms(1)), ("attributes", ms(18)), ("difference", ms(8))];
+        assert_eq!(clock.into_laps(), laps);
     }
 }

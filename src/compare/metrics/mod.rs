@@ -40,7 +40,7 @@ pub use flip::{Flip, flip};
 pub use normal::{NormalError, normal};
 pub use outline::outline;
 pub use rmse::{psnr, rmse};
-pub use ssim::{ssim, ssim_map};
+pub use ssim::{hierarchical_ssim, ssim, ssim_map};
 pub use summary::{Summary, summary};
 pub use visible::visible;
 

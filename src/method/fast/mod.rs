@@ -68,7 +68,7 @@ pub(super) fn draw<const N: usize>(
         tile.gather(prepared, pixels.depth.index, pixels.depth.rect);
         if tile.splats.is_empty() {
             store::clear(&mut pixels);
-            watch.lap(0);
+            watch.lap(N - 1);
         } else {
             stages(&mut tile, &mut watch);
             store::store(&tile, &mut pixels);

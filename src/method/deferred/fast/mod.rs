@@ -4,7 +4,6 @@
 //! has the number of its rank among all surfels that passes 1 and 3 draw, in the order of their
 //! ids.
 
-use crate::number::MapInline;
 mod points;
 mod ranks;
 
@@ -53,17 +52,20 @@ pub(super) fn render(
     clock.lap("indices");
 
     let fresh = whole.part(unseen(&whole, &before, &list), job.exec);
-    let selected = whole.drawn(list, job);
-    let [fresh_job, selected_job] = [&fresh, &selected].map_inline(|part| part.job(job));
-    let fresh_splats = prepare(&fresh_job, splats);
-    let ranks = Ranks::new(flagged.ids(), fresh.ids());
+    let fresh_splats = prepare(&fresh.job(job), splats);
     clock.lap("difference");
 
+    let selected = whole.drawn(list, job);
+    let selected_job = selected.job(job);
+    let ranks = Ranks::new(flagged.ids(), fresh.ids());
     let prepared = prepare(&selected_job, splats);
     let shared = &prepared.shared;
     let grid = job.strips();
+    clock.lap("attributes");
+
     let passes = draw::<3>(&selected_job, &prepared, target, |tile, watch| {
         first.load(&ranks, tile);
+        watch.lap(1);
         let index = grid.place(tile.grid.rect.x0, tile.grid.rect.y0).0;
         more(tile, &fresh_splats, &ranks, index);
         watch.lap(0);
@@ -73,18 +75,15 @@ pub(super) fn render(
         tile.normalize(shared);
         name(tile, &ranks);
     });
+    for (name, time) in ["difference", "attributes", "normalization"].into_iter().zip(passes) {
+        clock.add(name, time);
+    }
+    clock.restart();
     if let Some(polygons) = &polygons {
         polygons.fill(target, job.exec);
     }
-    let mut laps = clock.into_laps();
-    let names = ["difference", "attributes", "normalization"];
-    for (name, time) in names.into_iter().zip(passes) {
-        match laps.iter_mut().find(|(of, _)| *of == name) {
-            Some((_, sum)) => *sum += time,
-            None => laps.push((name, time)),
-        }
-    }
-    Ok((now, prepared.tally, laps))
+    clock.lap("normalization");
+    Ok((now, prepared.tally, clock.into_laps()))
 }
 
 /// The output of pass 1: nearness and, for the flagged surfels, the index of the nearest.
