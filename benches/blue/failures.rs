@@ -38,7 +38,7 @@ pub(crate) fn fade(fade: f64, exec: &Exec) -> Result<(usize, f64)> {
     };
     let both = Objects::new(vec![coarse, finer?], vec![object(0), object(1)], [0.75; 3].into())?;
     let both = both.with_coarser(vec![None, Some(0)])?;
-    let wanted = count * (1.0 + fade) / 2.0;
+    let wanted = count * (1.0 + 0.3 * fade);
     let radius = f64::from(density.distance) * (f64::from(density.count) / wanted).sqrt();
     let camera = far_away()?;
     let scene = seen(&both, (2.0 * radius * f64::from(camera.fy)) as f32, &camera, exec)?;

@@ -150,7 +150,7 @@ fn loaded_hierarchies_and_what_is_seen_of_them_are_those_of_the_page() {
             let pose = Pose { eye, target: DVec3::ZERO, up: DVec3::Y };
             let camera = Camera::new(80, 60, pose, Lens::Focal(90.0)).expect("a camera");
             let budget = [None, Some(2000), Some(100), Some(7)][dice.below(4)];
-            let root = size_for(&found, &camera, 0, dice.within(0.4, 1.0));
+            let root = size_for(&found, &camera, 0, dice.within(0.8, 1.4));
             let surfel_size = root.unwrap_or_else(|| dice.within(0.5, 6.0));
             let zones = vec![[10.0, 1.0], [40.0, 2.5]];
             let wish = Refinement { surfel_size, budget, zones };

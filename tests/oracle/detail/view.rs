@@ -158,7 +158,7 @@ fn with_size(objects: &Objects, asked: &[Option<Asked>], size: f64) -> Vec<Shown
     let surfels = |o: u32| objects.geometry(o).surfels.len() as u32;
     let better = |o: u32| finer[o as usize] || !objects.geometry(o).primitives.is_empty();
     let fade = |o: u32| match wanted(o) {
-        Some((p, _)) if better(o) => (2.0 * (p / f64::from(surfels(o))) - 1.0).clamp(0.0, 1.0),
+        Some((p, _)) if better(o) => ((p / f64::from(surfels(o)) - 1.0) / 0.3).clamp(0.0, 1.0),
         Some(_) => 0.0,
         None => 1.0,
     };
@@ -178,7 +178,7 @@ fn with_size(objects: &Objects, asked: &[Option<Asked>], size: f64) -> Vec<Shown
         let drawn = if own == 0.0 { 0.0 } else { (own * p.min(n)).ceil().max(1.0).min(n) };
         let (mut radius, mut side) = (r, size * asked.factor);
         let beyond = !better(o) && p > n;
-        if beyond {
+        if p > n {
             let e = estimate(objects, o).expect("a prefix");
             radius = f64::from(e.distance) * (f64::from(e.count) / n).sqrt();
             side *= radius / r;

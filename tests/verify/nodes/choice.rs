@@ -22,9 +22,9 @@ pub(crate) enum Way {
     Round,
     /// One shrinks while the other grows.
     CrossFade,
-    /// The finer ones take over at once, where all surfels are asked for, or half of them.
+    /// The finer ones take over at once, where all surfels are asked for, or 1.3 times as many.
     SwitchAt(f64),
-    /// The fade begins with the first surfel.
+    /// The fade begins where half of the surfels are asked for, and ends where all are.
     FadesEarly,
     /// The finer ones have half of their weight.
     HalfWeight,
@@ -64,7 +64,7 @@ pub(crate) const BUGS: [Way; 27] = [
     Way::Round,
     Way::CrossFade,
     Way::SwitchAt(1.0),
-    Way::SwitchAt(0.5),
+    Way::SwitchAt(1.3),
     Way::FadesEarly,
     Way::HalfWeight,
     Way::NoWeight,
@@ -105,8 +105,8 @@ impl Way {
         }
         let fade = match self {
             Self::SwitchAt(limit) => f64::from(u8::from(share >= limit)),
-            Self::FadesEarly => share.clamp(0.0, 1.0),
-            _ => self.number(self.number(2.0 * share) - 1.0).clamp(0.0, 1.0),
+            Self::FadesEarly => (2.0 * share - 1.0).clamp(0.0, 1.0),
+            _ => self.number(self.number(share - 1.0) / 0.3).clamp(0.0, 1.0),
         };
         match self {
             Self::CrossFade => [1.0 - fade, fade],
@@ -146,7 +146,7 @@ impl Way {
         let count = if nothing { 0.0 } else { count.clamp(1.0, n) };
         let all = of(r_m * of(p_m / n).sqrt());
         let (mut radius, mut side) = (r, size);
-        if !finer && all > r && self != Self::NoGrowth {
+        if all > r && self != Self::NoGrowth {
             side *= if self == Self::SmallSquares { 1.0 } else { all / r };
             radius = all;
         }

@@ -48,20 +48,20 @@ pub(crate) fn nodes() -> Vec<Node> {
             Some(all.len() - 1)
         };
         add("a prefix", (5, 3.0 * beside), 3 + more, None);
-        let starts = add("the fade begins", (3, 1.5 * beside), 2, None);
-        let grows = add("all of it, a finer one grows", (4, 2.5), 3, None);
-        // 16 x (1 - x) are drawn of 4 x that are asked for: 2 of this x.
-        let x = f64::midpoint(1.0, 0.5_f64.sqrt());
-        let shrinks = add("it shrinks", (4, 4.0 * x * beside), 3 - more, Some(sign * 1e-5));
-        let ends = add("the fade ends", (2, 2.0 * beside), 1 - more, None);
-        add("triangle", (3, 1.5 * beside), 2, None);
+        let starts = add("the fade begins", (3, 3.0 * beside), 3, None);
+        // A quarter of the fade.
+        let grows = add("all of it, a finer one grows", (4, 4.3), 4, None);
+        // Three quarters: 2 of 4 are drawn.
+        let shrinks = add("it shrinks", (4, 4.9 * beside), 3 - more, Some(sign * 1e-5));
+        let ends = add("the fade ends", (2, 2.6 * beside), 1 - more, None);
+        add("triangle", (3, 3.0 * beside), 3, None);
         add("discs grow", (1, 1.5625), 1, Some(sign * 6e-5));
         let mut finer = |name, parent, (count, asked), drawn, rim| {
             below.push(Node { name, sign, parent, count, asked, triangle: false, drawn, rim });
         };
         finer("finer, there or not", starts, (2, 1.6), more, None);
-        // Of the weight 1/2, which is 5 times as much off as what is asked of the coarser one.
-        let both = 1.0 + sign * 6.0 * STEP;
+        // Of the weight 1/2, which is 43/3 times as much off as what is asked of the coarser one.
+        let both = 1.0 + sign * (43.0 / 3.0 + 1.0) * STEP;
         finer("finer, growing", grows, (3, 2.0 * both), 1 + more, Some(sign * 1e-5));
         finer("finer, whole", shrinks, (1, 0.8), 1, None);
         finer("finer, alone", ends, (1, 0.8), 1, None);
@@ -81,8 +81,9 @@ fn rim(node: &Node, off: f64) -> [f64; 2] {
         // The radius 2.5: the pixel is at (2.4, 0.7) or so.
         [3.0 - (6.25 * (1.0 + off) - 0.49).sqrt(), 0.3]
     } else {
-        // The radius 2: at (1.6, 1.2).
-        [2.0 - (4.0 * (1.0 + off) - 1.44).sqrt(), -0.2]
+        // The radius 2, or more where more surfels are asked for than there are.
+        let square = 4.0 * (node.asked / f64::from(node.count)).max(1.0);
+        [2.0 - (square * (1.0 + off) - 1.44).sqrt(), -0.2]
     }
 }
 

@@ -10,22 +10,27 @@
 //! object is coarser. Let the object have n surfels, and let p = p(r) be asked for. In f64:
 //!
 //! ```text
-//!   fade    = 0 if there is nothing finer, else min(max(2 (p / n) - 1, 0), 1)
+//!   fade    = 0 if there is nothing finer, else min(max(((p / n) - 1) / 0.3, 0), 1)
 //!   own     = w min(2 (1 - fade), 1)
 //!   drawn   = 0 if own = 0, else min(max(ceil(own min(p, n)), 1), n)
 //!   weight of each finer object, and of the primitives  =  w min(2 fade, 1)
 //! ```
 //!
-//! So the fade begins where half of the surfels are asked for, and ends where all are. In its first
-//! half the finer objects grow; in its second half the coarser object shrinks. One of both is
-//! always drawn whole. If one shrank while the other grew, there would be holes halfway, because
-//! two prefixes of half the length know nothing of each other. Primitives are drawn where their
-//! weight is greater than 0, because a surface is either there or not. The same holds for an object
-//! without a prefix, whose finer objects have its weight w.
+//! So the fade begins where all n surfels are asked for: the paper blends "when a surfel
+//! approximation \[...\] cannot sufficiently cover the visible geometry \[...\] anymore". It ends where
+//! 1.3 n are asked for, as in the authors' program. In its first half the finer objects grow; in its
+//! second half the coarser object shrinks. One of both is always drawn whole. If one shrank while
+//! the other grew, there would be holes halfway, because two prefixes of half the length know
+//! nothing of each other. `Departs:` in the authors' program, finer objects are whole as soon as the
+//! fade begins. Primitives are drawn where their weight is greater than 0, because a surface is
+//! either there or not. The same holds for an object without a prefix, whose finer objects have its
+//! weight w.
 //!
-//! **Where nothing is finer** and p(r) exceeds n, all n are drawn, because nothing more is known of
-//! the surface. They get the radius with which they cover, `r_n` = `r_m` sqrt(`p_m` / n).
-//! `Decided:` here discs grow beyond the size asked for; with a fixed size there would be holes.
+//! **Where p(r) exceeds n** and own > 0, the surfels that are drawn get the radius with which n
+//! surfels cover, `r_n` = `r_m` sqrt(`p_m` / n). `Decided:` here discs grow beyond the size asked for;
+//! with a fixed size there would be holes. Where something is finer, they grow to at most
+//! sqrt(1.3) times that size before they are gone. Where nothing is finer, all n are drawn, because
+//! nothing more is known of the surface.
 //!
 //! **Size.** s is the [size](Refinement::surfel_size) asked for, z the factor of the object's zone,
 //! and r = (size (`d_p` z)) / 2, where size is s, or a greater number because of the budget. In the
@@ -346,7 +351,7 @@ impl Objects {
             let Asked { pixel, seen, .. } = asked[object as usize];
             let wanted = prefix.covering(size * pixel / 2.0);
             let fade = if self.has_finer(object) {
-                (2.0 * (wanted / all) - 1.0).clamped(0.0, 1.0)
+                ((wanted / all - 1.0) / FADE).clamped(0.0, 1.0)
             } else {
                 0.0
             };
@@ -380,8 +385,8 @@ impl Objects {
     fn disc_with(&self, object: u32, prefix: &Prefix, size: f64, asked: &Asked) -> Disc {
         let (mut radius, mut side) = (size * asked.pixel / 2.0, size * asked.factor);
         let of_all = prefix.radius_of_all();
-        // Discs grow beyond the size asked for only where nothing finer could fill the holes.
-        if !self.has_finer(object) && of_all > radius {
+        // More surfels are asked for than there are: with the size asked for there would be holes.
+        if of_all > radius {
             side *= of_all / radius;
             radius = of_all;
         }
@@ -392,6 +397,8 @@ impl Objects {
     }
 }
 
+/// From n to (1 + this) n surfels asked for, an object gives way to finer ones.
+const FADE: f64 = 0.3;
 /// The most steps by which the size grows until the budget holds.
 const STEPS: usize = 2048;
 /// 2^-100.

@@ -139,16 +139,16 @@ proptest! {
         let [coarse, a, b]: [u32; 3] = counts(&found).try_into().unwrap();
         prop_assert_eq!(a, b);
         let [coarse, finer] = [coarse, a + b].map(f64::from);
-        if wanted <= 512.0 {
+        if wanted <= 1024.0 {
             prop_assert_eq!([coarse, finer], [wanted.ceil(), 0.0]);
-        } else if wanted < 1023.9 {
-            let fade = 2.0 * (wanted / 1024.0) - 1.0;
+        } else if wanted < 1331.1 {
+            let fade = (wanted / 1024.0 - 1.0) / 0.3;
             let [own, other] = [1.0 - fade, fade].map(|share| (2.0 * share).at_most(1.0));
-            prop_assert!((coarse - own * wanted).abs() < 1.001);
+            prop_assert!((coarse - own * 1024.0).abs() < 1.001);
             // Half the size of the geometry: a quarter of the surfels for the same discs, in two
             // objects.
             prop_assert!((finer - 2.0 * (other * wanted / 4.0).at_most(1024.0)).abs() < 2.002, "{finer}");
-        } else if wanted > 1024.1 {
+        } else if wanted > 1331.3 {
             prop_assert_eq!(coarse, 0.0);
         }
     }
@@ -173,7 +173,7 @@ fn surfaces_themselves_are_drawn_close_by() {
         color: None,
     };
     let objects = Objects::new(vec![in_order(10, primitives)], vec![object], Vec3::ONE).unwrap();
-    // 100 (64 / away)^2 surfels of the size 2 are asked for: 50 at 90.5, 100 at 64.
+    // 100 (64 / away)^2 surfels of the size 2 are asked for: 100 at 64, 130 at 56.1.
     let shown_from = |camera: &Camera| {
         let found = seen(&objects, asks(2.0), camera);
         let triangles = found.primitives().unwrap().iter().map(Primitives::len).sum::<usize>();
@@ -181,10 +181,10 @@ fn surfaces_themselves_are_drawn_close_by() {
     };
     let shown = |away: f64| shown_from(&front(away));
     assert_eq!(shown(128.0), (25, 0));
-    assert_eq!(shown(91.0), (50, 0));
-    assert_eq!(shown(81.0), (63, 1), "all that are asked for");
-    assert_eq!(shown(70.0), (55, 1), "of 83.6, where the fade is 0.672");
-    assert_eq!(shown(63.0), (0, 1));
+    assert_eq!(shown(64.5), (99, 0));
+    assert_eq!(shown(62.0), (100, 1), "all that there are, of 106.6 that are asked for");
+    assert_eq!(shown(58.0), (55, 1), "where the fade is 0.7253");
+    assert_eq!(shown(56.0), (0, 1));
     let behind = camera(DVec3::Z * 20.0, DVec3::Z * 40.0, Lens::Focal(64.0));
     assert_eq!(shown_from(&behind), (0, 0));
 }
