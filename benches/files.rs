@@ -87,8 +87,8 @@ fn clouds(arguments: &Arguments, folder: &Path, exec: &Exec) -> Result<()> {
         }
         let path = folder.join("cloud.ply");
         cloud(&path, count).map_err(|error| Error::io(&path, error))?;
-        let read = measured(|| ply::read_with(&path, exec))?;
-        let whole = ply::read_with(&path, exec)?;
+        let read = measured(|| ply::read_with(&path, &ply::ReadOptions::default(), exec))?;
+        let whole = ply::read_with(&path, &ply::ReadOptions::default(), exec)?;
         let mut checks = Vec::new();
         while checks.len() < 9 {
             let cloud = whole.clone();

@@ -1,7 +1,7 @@
 //! Loads scenes and prepares sessions, with progress.
 
 use super::options::SceneOptions;
-use super::progress;
+use super::{progress, warn};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::index::seen::Seen;
@@ -12,7 +12,10 @@ use splatref::method::session::Made;
 /// Loads a scene, with progress.
 pub(super) fn ready(file: &SceneFile, exec: &Exec) -> Result<Ready> {
     let steps = progress::Steps::new("loading");
-    file.ready(exec, &|what, done, of| steps.show(what, done, of))
+    let ready = file.ready(exec, &|what, done, of| steps.show(what, done, of))?;
+    drop(steps);
+    warn(&ready.loaded.warnings);
+    Ok(ready)
 }
 
 /// Prepares a scene for its method, with progress. The session continues from the state that the

@@ -2,7 +2,7 @@
 
 use super::options::named;
 use super::rows::{OfGroupsAlone, RowOptions};
-use super::{Ended, Ending, output, progress, report};
+use super::{Ended, Ending, output, progress, report, warn};
 use splatref::frame::Exec;
 use splatref::index::grouping::{Extended, Extension, Grouping, GroupingReport};
 use splatref::io::ply;
@@ -67,11 +67,12 @@ pub(super) fn run(args: &Args) -> Ended {
     let time = start.elapsed();
     drop(steps);
 
+    warn(&loaded.warnings);
     report::scene(&loaded);
     table(&found, &groups, extended.as_ref());
     report::line("time", format!("{:.2} s", time.as_secs_f64()));
     let mut cloud = loaded.scene.surfels.into_cloud();
-    cloud.groups = Some(groups);
+    (cloud.groups, cloud.offset) = (Some(groups), loaded.scene.offset);
     progress::during("writing", || ply::write(&args.output, &cloud))?;
     report::line("file", args.output.display());
     Ok(Ending::Good)

@@ -1,11 +1,12 @@
 //! `splatref info`: describes a file or a folder of surfels.
 
 use super::report::{self, line};
-use super::{Ended, Ending, hierarchy, progress, say};
+use super::{Ended, Ending, hierarchy, progress, say, warn, warn_of};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::exr::{self, ChannelType};
 use splatref::io::hierarchy::Hierarchy;
+use splatref::io::ply::ReadOptions;
 use splatref::io::scene_file::{Draw, EnvironmentChoice, FileKind, Model, SceneFile, Source};
 use splatref::io::scene_file::{Loaded, read_model};
 use splatref::scene::Light;
@@ -36,7 +37,7 @@ pub(super) fn run(args: &Args) -> Ended {
 }
 
 fn points(path: &Path) -> Result<()> {
-    let cloud = read_model(path, &Exec::sequential())?;
+    let mut cloud = read_model(path, &ReadOptions::default(), &Exec::sequential())?;
     line("points", cloud.position.len());
     line("triangles", cloud.triangles.len());
     let edges = cloud.edges.len();
@@ -47,6 +48,7 @@ fn points(path: &Path) -> Result<()> {
         ("normals", cloud.normal.is_some()),
         ("radii", cloud.radius.is_some()),
         ("colours", cloud.color.is_some()),
+        ("face colours", cloud.triangle_color.is_some()),
         ("opacities", cloud.opacity.is_some()),
         ("half axes", cloud.tangents.is_some()),
         ("tangents", cloud.tangent.is_some()),
@@ -61,6 +63,8 @@ fn points(path: &Path) -> Result<()> {
         line("texture", if name.is_empty() { "none for some polygons" } else { &name });
     }
 
+    warn_of(path, &mut cloud);
+    let offset = cloud.offset;
     let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
     let found = derive::facets_or_surfels(cloud, &Derive::default(), &Exec::new(0, 32)?, &show);
@@ -78,6 +82,7 @@ fn points(path: &Path) -> Result<()> {
     line("  normals", report::normals(derived.normals));
     line("  radii", report::radii(derived.radii));
     line("  dropped", report::dropped(&derived.dropped, 0));
+    report::offset(offset);
     report::bounds(surfels.bounds());
     report::radius(&surfels);
     Ok(())
@@ -92,6 +97,7 @@ fn scene(path: &Path) -> Result<()> {
     let loaded: Loaded =
         file.load_outlined(&Exec::new(0, 32)?, &|what, done, of| steps.show(what, done, of))?;
     drop(steps);
+    warn(&loaded.warnings);
     report::scene(&loaded);
     line("  sha256", loaded.scene.sha256());
     if file.frames > 1 {

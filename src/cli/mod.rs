@@ -38,8 +38,11 @@ mod words;
 use clap::error::ErrorKind;
 use clap::{Parser, Subcommand};
 use ending::{Ended, Ending};
+use splatref::Error;
+use splatref::scene::Cloud;
 use std::fmt::Display;
 use std::io::{self, Write};
+use std::path::Path;
 use std::process::ExitCode;
 use stdout::{printed, say};
 
@@ -150,6 +153,19 @@ fn usage(error: &clap::Error) -> ExitCode {
     let what = what.join(" ");
     complain(format!("{}; see --help", what.strip_prefix("error: ").unwrap_or(&what)));
     ExitCode::from(2)
+}
+
+/// Prints what is to be doubted about the files, one line each, on stderr.
+fn warn(warnings: &[String]) {
+    for what in warnings {
+        complain(format!("warning: {what}"));
+    }
+}
+
+/// Takes the warnings of a file's points, and prints them.
+fn warn_of(path: &Path, cloud: &mut Cloud) {
+    let all = std::mem::take(&mut cloud.warnings).into_iter();
+    warn(&all.map(|what| Error::format(path, what).to_string()).collect::<Vec<_>>());
 }
 
 /// Prints an error as one line on stderr.

@@ -2,6 +2,7 @@
 
 use super::{Ended, Ending, output, progress, report, say};
 use splatref::frame::Exec;
+use splatref::io::ply::ReadOptions;
 use splatref::io::png;
 use splatref::io::replace::write_atomically;
 use splatref::io::scene_file::{FileKind, read_model};
@@ -136,7 +137,7 @@ fn names(files: &[PathBuf]) -> Vec<String> {
 
 /// The points of a file that holds only points.
 fn points(path: &Path, exec: &Exec) -> Result<Vec<glam::Vec3>> {
-    let cloud = read_model(path, exec)?;
+    let cloud = read_model(path, &ReadOptions::default(), exec)?;
     if !cloud.triangles.is_empty() || !cloud.edges.is_empty() {
         let what = "the file has triangles or lines, but ordered points are needed; `splatref \
                     surfels` samples a mesh";

@@ -1,7 +1,7 @@
 //! Reports of scenes, cameras, settings and times in words.
 
 use super::say;
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use splatref::frame::Exec;
 use splatref::index::grouping::GroupCoverage;
 use splatref::index::seen::Seen;
@@ -39,6 +39,7 @@ pub(super) fn scene(loaded: &Loaded) {
         }
     }
     line("  dropped", dropped(&loaded.dropped, loaded.dropped_primitives));
+    offset(scene.offset);
     bounds(scene.bounds());
     radius(&scene.surfels);
 }
@@ -142,6 +143,14 @@ fn origin(model: &ModelReport) -> String {
     }
 }
 
+/// Prints what was subtracted from the coordinates of the files, with every digit.
+pub(super) fn offset(offset: DVec3) {
+    if offset != DVec3::ZERO {
+        let DVec3 { x, y, z } = offset;
+        line("  offset", format!("({x}, {y}, {z}), subtracted from the coordinates of the files"));
+    }
+}
+
 /// Prints the bounding box.
 pub(super) fn bounds((low, high): (Vec3, Vec3)) {
     let [low, high] = [low, high].map(|corner| point(corner.to_array().map(f64::from)));
@@ -187,17 +196,9 @@ pub(super) fn radii(origin: Origin) -> &'static str {
 
 /// How many points were dropped, and why, and how many primitives.
 pub(super) fn dropped(dropped: &Dropped, primitives: u64) -> String {
-    let reasons = [
-        (dropped.position, "not finite"),
-        (dropped.normal, "without normal"),
-        (dropped.radius, "without radius"),
-        (dropped.attribute, "with a bad colour, opacity or tangent"),
-    ];
-    let reasons = reasons.iter().filter(|(count, _)| *count > 0);
-    let reasons: Vec<String> = reasons.map(|(count, why)| format!("{count} {why}")).collect();
-    let points = match reasons.as_slice() {
-        [] => None,
-        _ => Some(format!("{} points: {}", dropped.total(), reasons.join(", "))),
+    let points = match dropped.total() {
+        0 => None,
+        total => Some(format!("{total} points: {}", dropped.reasons())),
     };
     let lost = format!("{primitives} triangles or lines with a degenerate corner");
     match (points, primitives) {

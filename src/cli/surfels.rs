@@ -25,7 +25,8 @@ use std::time::Instant;
 #[command(after_help = "\
 Sample a mesh into points, or order the points of a file; every prefix covers the surface evenly. The
 points of a mesh are the pixels that see it from outside. Each has a normal, and the colour, opacity
-and --properties of the vertices around it.
+and --properties of the vertices around it. The points of a PLY keep every property of the file, in
+its type.
 
 Samplers:
   greedy                  take the point farthest from all points before; ties go to the lower
@@ -48,8 +49,8 @@ Examples:
 pub(super) struct Args {
     /// A .ply or .obj with points or a mesh, or a scene .toml of meshes
     points: PathBuf,
-    /// Write the ordered points, with all that the file says of them, into a PLY; or the hierarchy
-    /// into a folder
+    /// Write the ordered points, with every property of the file, into a PLY; or the hierarchy into
+    /// a folder
     #[arg(short, long, value_name = "FILE.ply|FOLDER")]
     output: PathBuf,
     /// Order the points with this sampler
@@ -85,7 +86,8 @@ pub(super) struct Args {
     /// the file]
     #[arg(long, value_name = "FILE")]
     texture: Option<PathBuf>,
-    /// Keep these further vertex properties of a PLY, such as roughness,metallic
+    /// Sample these further vertex properties of a mesh, such as roughness,metallic; points keep
+    /// all without it
     #[arg(long, value_name = "NAME,...", value_delimiter = ',')]
     properties: Vec<String>,
     /// Choose what the parts in a folder are sampled from [default: bottom-up]
@@ -152,6 +154,7 @@ pub(super) fn run(args: &Args) -> Ended {
     };
     let InputPoints { cloud, pixel } = args.given(&exec, &show).map_err(of_file)?;
     let mesh = pixel.is_some();
+    let kind = FileKind::from_extension(&args.points)?;
     let all = cloud.position.len();
     args.lacks(&cloud, mesh)?;
     let start = Instant::now();
@@ -168,14 +171,21 @@ pub(super) fn run(args: &Args) -> Ended {
 
     report::line(if mesh { "candidates" } else { "points" }, all);
     args.told(&order, graph.as_ref());
-    if let Some(new) = colors {
+    if let Some(new) = &colors {
         report::line(
             "colours",
             format!("means over the nearest points, for the first {}", new.len()),
         );
     }
     report::line("time", format!("{:.2} s", time.as_secs_f64()));
-    progress::during("writing", || ply::write(&args.output, &cloud))?;
+    let recolored = colors.is_some();
+    progress::during("writing", || match kind {
+        // Points keep their place in the file, so that their rows can be copied.
+        FileKind::Ply if !mesh => {
+            ply::write_ordered(&args.output, &args.points, &order.index, &cloud, recolored)
+        }
+        _ => ply::write(&args.output, &cloud),
+    })?;
     report::line("file", args.output.display());
     Ok(Ending::Good)
 }

@@ -1,7 +1,7 @@
 //! What `study` and `plan` share: a scene, its candidates, and its true picture.
 
 use super::options::{ExecOptions, SceneOptions};
-use super::progress;
+use super::{progress, warn};
 use splatref::frame::Exec;
 use splatref::io::scene_file::SceneFile;
 use splatref::scene::Camera;
@@ -73,6 +73,7 @@ impl Tried {
         let ready = bench.visit(&candidates[0], &show)?.ready;
         let known = Known::about(shown, &ready.loaded.scene, exec, &show)?;
         let camera = ready.camera;
+        warn(&ready.loaded.warnings);
         Ok(Loaded { bench, candidates, left_out, known, camera })
     }
 }

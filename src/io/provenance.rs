@@ -5,11 +5,12 @@ use crate::method::Method;
 use crate::method::buffer_formats::Formats;
 use crate::scene::{Camera, Counts, Groups, Projection, Scene};
 use crate::setting::{Fields, Word};
+use glam::DVec3;
 
 /// The text as TOML, for the attribute [`super::exr::ATTRIBUTE`].
 ///
 /// Equal pictures have equal texts: nothing depends on the time, the machine, the directory or the
-/// way the picture was computed. Floats are the shortest decimals that give the same `f32`.
+/// way the picture was computed. The offset is in the text if there is one, [`Scene::offset`]. Floats are the shortest decimals that give the same `f32`.
 /// [`Scene::sha256`] identifies the scene, [`crate::scene::Groups::sha256`] its groups, and the
 /// camera is described by all its numbers. `bins_in_world_units` are `d_min`, `d_max` and n of
 /// \[ZP06, eq. 6\].
@@ -35,7 +36,7 @@ pub fn text(
     };
     format!(
         "splatref = \"{version}\"\nnumber = \"{number}\"\n{formats}\n\
-         [scene]\nname = {name}\nsurfels = {surfels}\n{primitives}sha256 = \"{hash}\"\n\n\
+         [scene]\nname = {name}\nsurfels = {surfels}\n{primitives}{offset}sha256 = \"{hash}\"\n\n\
          [method]\nname = \"{method}\"\n{settings}\n{groups}\
          [camera]\n{camera}",
         version = env!("CARGO_PKG_VERSION"),
@@ -43,10 +44,19 @@ pub fn text(
         formats = formats(output.formats),
         name = toml::Value::String(scene.name.clone()),
         surfels = scene.surfels.len(),
+        offset = offset(scene.offset),
         hash = scene.sha256(),
         method = method.name(),
         camera = self::camera(camera),
     )
+}
+
+/// What was subtracted from the coordinates of the files, as TOML, unless it is 0.
+fn offset(offset: DVec3) -> String {
+    match offset == DVec3::ZERO {
+        true => String::new(),
+        false => format!("offset = {:?}\n", offset.to_array()),
+    }
 }
 
 /// The formats that differ from `f32`, as TOML.
@@ -85,7 +95,6 @@ mod tests {
     use crate::setting::Value;
     use crate::source::Shape;
     use crate::splat::{Epsilon, SplatSettings};
-    use glam::DVec3;
 
     #[test]
     fn the_text_is_toml_with_exact_numbers() {

@@ -74,6 +74,14 @@ pub struct Pose {
     pub up: DVec3,
 }
 
+impl Pose {
+    /// The same pose in coordinates that begin at `origin`.
+    #[must_use]
+    pub fn relative_to(self, origin: DVec3) -> Self {
+        Self { eye: self.eye - origin, target: self.target - origin, ..self }
+    }
+}
+
 /// A camera. Its numbers are `f32`, so that every number type gets the same problem.
 ///
 /// ```

@@ -1,5 +1,6 @@
 //! Points as a file holds them: nothing derived, nothing checked except the lengths of the arrays.
 
+use super::degenerate::unit;
 use super::{Coordinates, Groups, Mipmap, Paint};
 use crate::number::MapInline;
 use glam::{DVec3, Vec3};
@@ -22,6 +23,9 @@ pub struct Property {
 pub struct Cloud {
     /// Positions in world units.
     pub position: Vec<Vec3>,
+    /// What a reader subtracted from the positions of the file, because `f32` would merge places
+    /// that are far from 0; see [`crate::io::ply`].
+    pub offset: DVec3,
     /// Normals of any length.
     pub normal: Option<Vec<Vec3>>,
     /// Radii in world units.
@@ -49,8 +53,13 @@ pub struct Cloud {
     pub paint: Option<Paint>,
     /// Triangles as indices into `position`; polygons of files have been cut into fans.
     pub triangles: Vec<[u32; 3]>,
+    /// Linear RGB of the triangles, one for each; used only where points have no colours.
+    pub triangle_color: Option<Vec<Vec3>>,
     /// Segments of ribbons and tubes as indices into `position`.
     pub edges: Vec<[u32; 2]>,
+    /// What the reader doubts about the file, and what mends it: one line each, without the name
+    /// of the file.
+    pub warnings: Vec<String>,
 }
 
 impl Cloud {
@@ -63,6 +72,7 @@ impl Cloud {
     pub fn some(&self, indices: &[u32]) -> Self {
         Self {
             position: at(&self.position, indices),
+            offset: self.offset,
             normal: self.normal.as_ref().map(|all| at(all, indices)),
             radius: self.radius.as_ref().map(|all| at(all, indices)),
             color: self.color.as_ref().map(|all| at(all, indices)),
@@ -81,8 +91,20 @@ impl Cloud {
             textures: Vec::new(),
             paint: self.paint.clone(),
             triangles: Vec::new(),
+            triangle_color: None,
             edges: Vec::new(),
+            warnings: Vec::new(),
         }
+    }
+
+    /// Takes the normals out; `None` if no point has one, because all are zero or not finite.
+    ///
+    /// `Decided:` such normals count as missing. Programs write zeros where they have no normals. A
+    /// file in which only some points have none keeps its normals: those points are dropped and
+    /// counted, because the program that made the file looked for a normal there and found none.
+    pub fn take_normals(&mut self) -> Option<Vec<Vec3>> {
+        let normal = self.normal.take()?;
+        normal.iter().any(|normal| unit(&mut normal.clone())).then_some(normal)
     }
 
     /// Keeps the points marked in `keep`, which has one mark per point, in their order. Keeps the
@@ -107,13 +129,15 @@ impl Cloud {
         marked(self.properties.iter_mut().map(|one| &mut one.values), keep);
         self.mipmap = self.mipmap.take().map(|mipmap| mipmap.retain(keep));
         self.groups = self.groups.take().map(|groups| groups.retain(keep));
+        let stays = |corners: &[u32; 3]| corners.iter().all(|&i| keep[i as usize]);
+        let stays = || self.triangles.iter().map(stays).collect::<Vec<_>>();
         match &mut self.coordinates {
             Some(Coordinates::Points(all)) => marked([all], keep),
-            Some(Coordinates::Corners(all)) => {
-                let stays = |corners: &[u32; 3]| corners.iter().all(|&i| keep[i as usize]);
-                marked([all], &self.triangles.iter().map(stays).collect::<Vec<_>>());
-            }
+            Some(Coordinates::Corners(all)) => marked([all], &stays()),
             None => {}
+        }
+        if let Some(colors) = &mut self.triangle_color {
+            marked([colors], &stays());
         }
         corners(&mut self.triangles, &index);
         corners(&mut self.edges, &index);

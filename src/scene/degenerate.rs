@@ -29,6 +29,34 @@ impl Dropped {
     pub fn total(&self) -> u64 {
         self.position + self.normal + self.radius + self.attribute
     }
+
+    /// The reasons in words, each with its count: `4 without normal, 2 without radius`.
+    #[must_use]
+    pub fn reasons(&self) -> String {
+        let reasons = [
+            (self.position, "not finite"),
+            (self.normal, "without normal"),
+            (self.radius, "without radius"),
+            (self.attribute, "with a bad colour, opacity or tangent"),
+        ];
+        let reasons = reasons.iter().filter(|(count, _)| *count > 0);
+        let reasons: Vec<String> = reasons.map(|(count, why)| format!("{count} {why}")).collect();
+        reasons.join(", ")
+    }
+
+    /// What mends the reason that is most frequent, the first of equal ones.
+    pub(super) fn cure(&self) -> &'static str {
+        let cures = [
+            (self.position, "give finite positions"),
+            (self.normal, "give normals that are not zero, or none, so that they are derived"),
+            (self.radius, "give finite radii above 0, or none, so that they are derived"),
+            (
+                self.attribute,
+                "give colours of at least 0, opacities in [0, 1], and half axes that span a plane",
+            ),
+        ];
+        cures.iter().rev().max_by_key(|(count, _)| count).map_or("", |(_, cure)| cure)
+    }
 }
 
 impl std::ops::AddAssign for Dropped {
@@ -97,7 +125,7 @@ impl Points<'_> {
 }
 
 /// Makes a normal a unit vector; false if the normal has no direction.
-pub(super) fn unit(normal: &mut Vec3) -> bool {
+pub(crate) fn unit(normal: &mut Vec3) -> bool {
     let n = normal.as_dvec3();
     let length = n.length();
     // A normal shorter than 2^-80 is the rounding error of a sum that cancelled.

@@ -67,6 +67,9 @@ pub struct Scene {
     pub surfels: Surfels,
     /// Triangles, ribbons and tubes beside the surfels.
     pub primitives: Primitives,
+    /// What was subtracted from every coordinate of the files: surfels, primitives, point lights and
+    /// the camera are relative to this place.
+    pub offset: glam::DVec3,
     /// The lights; without any, the resolved colour is shown unlit.
     pub lights: Vec<Light>,
     /// How the surface reflects the lights.
@@ -97,6 +100,7 @@ impl Scene {
             primitives: Primitives::default(),
             lights: Vec::new(),
             material: Phong::default(),
+            offset: glam::DVec3::ZERO,
             environment: None,
             objects: None,
             sides: None,

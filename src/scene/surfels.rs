@@ -68,7 +68,9 @@ impl Surfels {
         let (surfels, dropped) = Self::new_or_none(cloud, exec)?;
         if surfels.is_empty() {
             return Err(Error::Invalid(format!(
-                "the scene is empty: none of its {n} points can be a surfel"
+                "the scene is empty: none of its {n} points can be a surfel: {}; {}",
+                dropped.reasons(),
+                dropped.cure()
             )));
         }
         Ok((surfels, dropped))

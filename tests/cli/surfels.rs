@@ -18,7 +18,7 @@ fn points(n: usize) -> Cloud {
         position: (0..n).map(place).collect(),
         normal: Some((0..n).map(vector).collect()),
         radius: Some((0..n).map(number).collect()),
-        color: Some((0..n).map(vector).collect()),
+        color: Some((0..n).map(|i| vector(i) / 64.0).collect()),
         opacity: Some((0..n).map(number).collect()),
         tangents: Some((0..n).map(|i| [vector(i), vector(i + 1)]).collect()),
         mipmap: Some(Mipmap::new(2, (0..2 * n).map(vector).collect()).unwrap()),
@@ -50,7 +50,8 @@ fn points_are_written_in_the_order_with_all_properties() {
         assert_eq!(found.radius.as_ref().unwrap()[new], old as f32);
         assert_eq!(found.opacity.as_ref().unwrap()[new], old as f32);
         assert_eq!(found.tangents.as_ref().unwrap()[new][1].x, old as f32 + 1.0);
-        for vectors in [&found.normal, &found.color, &found.tangent] {
+        assert_eq!(found.color.as_ref().unwrap()[new].x, old as f32 / 64.0);
+        for vectors in [&found.normal, &found.tangent] {
             assert_eq!(vectors.as_ref().unwrap()[new].x, old as f32);
         }
         assert_eq!(

@@ -1,7 +1,9 @@
 //! The points to choose from: the points of a file, or samples of a mesh or of a scene.
 
+use super::super::{warn, warn_of};
 use super::{Args, report};
 use splatref::frame::Exec;
+use splatref::io::ply::ReadOptions;
 use splatref::io::scene_file::{FileKind, SceneFile, read_model};
 use splatref::io::{ply, texture};
 use splatref::progress::Progress;
@@ -27,7 +29,9 @@ impl Args {
         if FileKind::from_extension(&self.points)? == FileKind::Toml {
             return self.scene(exec, show).map(InputPoints::from);
         }
-        let mut cloud = read_model(&self.points, exec)?;
+        let mut cloud = read_model(&self.points, &ReadOptions::default(), exec)?;
+        warn_of(&self.points, &mut cloud);
+        cloud.normal = cloud.take_normals();
         cloud.properties = ply::properties(&self.points, &self.properties)?;
         if !cloud.triangles.is_empty() {
             return self.candidates(cloud, exec, show).map(InputPoints::from);
@@ -44,6 +48,7 @@ impl Args {
             return Err(Error::Invalid(what.into()));
         }
         let loaded = file.load_polygons(&self.properties, exec, show)?;
+        warn(&loaded.warnings);
         dropped(loaded.dropped_primitives);
         let (directions, side) = self.pictures();
         candidates(&loaded.scene, &directions, side, exec, show)
@@ -84,7 +89,9 @@ impl Args {
     fn candidates(&self, mut mesh: Cloud, exec: &Exec, show: Progress<'_>) -> Result<Candidates> {
         texture::paint(&mut mesh, &self.points, self.texture.as_deref(), 0, exec)?;
         let (directions, side) = self.pictures();
-        let (found, derived) = candidates::of_cloud(mesh, &directions, side, exec, show)?;
+        let offset = mesh.offset;
+        let (mut found, derived) = candidates::of_cloud(mesh, &directions, side, exec, show)?;
+        found.cloud.offset = offset;
         dropped(derived.dropped_primitives);
         Ok(found)
     }

@@ -1,16 +1,20 @@
 //! Read the element `face`: polygons, cut into triangles.
 
+use super::colors;
 use super::header::{Element, PropertyKind, quote};
+use super::layout::Decode;
 use super::values::{BodyValues, Event};
 use crate::scene::{Cloud, Coordinates};
-use glam::Vec2;
+use glam::{Vec2, Vec3};
 
-/// Reads all faces and appends their triangles, and the texture coordinates of their corners if
-/// there are any. Each index must be below `vertices`.
+/// Reads all faces and appends their triangles, and the texture coordinates of their corners and
+/// their colours if there are any. Each index must be below `vertices`. `color_range` is the code
+/// of white, if the caller knows it.
 pub(super) fn read(
     element: &Element,
     values: &mut BodyValues<'_>,
     vertices: u64,
+    color_range: Option<f64>,
     cloud: &mut Cloud,
 ) -> Result<(), String> {
     if element.count == 0 {
@@ -18,6 +22,8 @@ pub(super) fn read(
     }
     let indices = indices(element)?;
     let coordinates = coordinates(element)?;
+    let channels = channels(element, color_range)?;
+    let (mut color, mut colors) = (Vec3::ZERO, Vec::new());
     let (mut corners, mut numbers) = (Vec::new(), Vec::new());
     let mut of_corners = Vec::new();
     values.walk(element, |event| {
@@ -28,12 +34,20 @@ pub(super) fn read(
             Event::Value(property, value) if Some(property) == coordinates => {
                 numbers.push(value as f32);
             }
-            Event::Value(..) => {}
+            Event::Value(property, value) => {
+                let channels = channels.iter().flatten().enumerate();
+                for (channel, (_, decode)) in channels.filter(|(_, (at, _))| *at == property) {
+                    color[channel] = decode.apply(value);
+                }
+            }
             Event::End => {
                 // Fan both alike, so that coordinates stay with their corners.
                 if coordinates.is_some() {
                     let at = places(&numbers, corners.len())?;
                     of_corners.extend(fan(at));
+                }
+                if channels.is_some() {
+                    colors.extend(fan(&corners).map(|_| color));
                 }
                 cloud.triangles.extend(fan(&corners));
                 corners.clear();
@@ -42,6 +56,7 @@ pub(super) fn read(
         }
         Ok(())
     })?;
+    cloud.triangle_color = channels.map(|_| colors);
     if coordinates.is_some() {
         let corners = |at: [[f32; 2]; 3]| at.map(Vec2::from_array);
         cloud.coordinates =
@@ -85,17 +100,29 @@ pub(super) fn corner(value: f64, vertices: u64) -> Result<u32, String> {
     }
 }
 
+/// The properties of a face's colour and how they are decoded, if it has all of them.
+fn channels(
+    element: &Element,
+    color_range: Option<f64>,
+) -> Result<Option<[(usize, Decode); 3]>, String> {
+    let [Some(red), Some(green), Some(blue)] = colors::channels(element) else { return Ok(None) };
+    let of = |at| Ok::<_, String>((at, colors::decode(element, at, color_range)?));
+    Ok(Some([of(red)?, of(green)?, of(blue)?]))
+}
+
 /// The index of the property that lists the corners.
-fn indices(element: &Element) -> Result<usize, String> {
+pub(super) fn indices(element: &Element) -> Result<usize, String> {
     let names = ["vertex_indices", "vertex_index"];
     let found = element.properties.iter().position(|p| names.contains(&p.name.as_str()));
-    let index = found.ok_or("element face has no property list vertex_indices; declare it")?;
+    let index = found.ok_or_else(|| {
+        format!("element {} has no property list vertex_indices; declare it", element.name)
+    })?;
     let property = &element.properties[index];
     match property.kind {
         PropertyKind::List { item, .. } if item.is_integer() => Ok(index),
         PropertyKind::List { .. } | PropertyKind::One(_) => {
             let name = quote(&property.name);
-            Err(format!("element face: property {name} must be a list of integers"))
+            Err(format!("element {}: property {name} must be a list of integers", element.name))
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Parse the header of a PLY file: which elements the body holds, in which order and of which
 //! types.
 
+use glam::DVec3;
 use std::collections::BTreeSet;
 
 /// How numbers are stored in the body.
@@ -99,6 +100,8 @@ pub(super) struct PlyHeader {
     pub(super) elements: Vec<Element>,
     /// The names in lines `comment TextureFile NAME`, each once.
     pub(super) textures: Vec<String>,
+    /// What a line `comment splatref offset X Y Z` says was subtracted from positions.
+    pub(super) offset: Option<DVec3>,
     /// Where the body starts, in bytes.
     pub(super) body: usize,
     /// The line that the body starts on, counted from 1.
@@ -111,7 +114,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<PlyHeader, String> {
     if lines.next().as_deref() != Some("ply") {
         return Err("line 1: not a PLY file: the first line must be `ply`".into());
     }
-    let mut format = None;
+    let (mut format, mut offset) = (None, None);
     let (mut elements, mut textures) = (Vec::new(), Vec::new());
     let mut names = BTreeSet::new();
     loop {
@@ -129,6 +132,13 @@ pub(super) fn parse(bytes: &[u8]) -> Result<PlyHeader, String> {
                 let name = text.split_once("TextureFile").map_or("", |(_, name)| name.trim());
                 if !textures.iter().any(|known| known == name) {
                     textures.push(name.to_owned());
+                }
+            }
+            ["comment", "splatref", "offset", x, y, z] => {
+                let number =
+                    |word: &str| word.parse::<f64>().ok().filter(|value| value.is_finite());
+                if let (Some(x), Some(y), Some(z)) = (number(x), number(y), number(z)) {
+                    offset = Some(DVec3::new(x, y, z));
                 }
             }
             [] | ["comment" | "obj_info", ..] => {}
@@ -156,7 +166,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<PlyHeader, String> {
     let format = format.ok_or_else(|| {
         format!("line {}: no format line; add `format ascii 1.0` or a binary one", lines.number)
     })?;
-    Ok(PlyHeader { format, elements, textures, body: lines.at, line: lines.number + 1 })
+    Ok(PlyHeader { format, elements, textures, offset, body: lines.at, line: lines.number + 1 })
 }
 
 fn unknown_line(text: &str, line: u64) -> String {

@@ -1,12 +1,12 @@
 //! Find the place of each property of a vertex, and how to decode it.
 
-use super::groups;
 use super::header::{Element, PropertyKind, Scalar, quote};
+use super::{colors, groups};
 use crate::number::srgb;
 use crate::scene::mipmap::MOST_LEVELS;
 use crate::scene::{Cloud, Coordinates, Mipmap};
+use glam::DVec3;
 use std::ops::Range;
-use std::sync::LazyLock;
 
 /// The properties that are read; the index of a name is its place in a row.
 const NAMES: [&str; 22] = [
@@ -27,26 +27,29 @@ pub(super) const COORDINATE: Range<usize> = 20..22;
 /// The first place of prefiltered colours; each level takes three.
 pub(super) const MIPMAP: usize = 22;
 
-static SRGB_8: LazyLock<Vec<f32>> = LazyLock::new(|| srgb::table(u8::MAX.into()));
-static SRGB_16: LazyLock<Vec<f32>> = LazyLock::new(|| srgb::table(u16::MAX));
-
 /// How a number of the file becomes a number of the cloud.
 #[derive(Clone, Copy)]
 pub(super) enum Decode {
     /// Rounded to `f32`.
     Keep,
+    /// Less an offset, then rounded to `f32`.
+    Shift(f64),
     /// Divided by the code of 1, then rounded to `f32`.
     Divide(f64),
     /// A code of sRGB, looked up.
     Srgb(&'static [f32]),
+    /// A number of sRGB, of which this one is white; decoded in f64 and rounded once.
+    Encoded(f64),
 }
 
 impl Decode {
     pub(super) fn apply(self, value: f64) -> f32 {
         match self {
             Self::Keep => value as f32,
+            Self::Shift(offset) => (value - offset) as f32,
             Self::Divide(one) => (value / one) as f32,
             Self::Srgb(table) => table[value as usize], // the type of the file bounds the code
+            Self::Encoded(white) => srgb::to_linear(value / white) as f32,
         }
     }
 }
@@ -70,13 +73,29 @@ pub(super) struct Layout {
 }
 
 impl Layout {
-    pub(super) fn new(element: &Element, groups: &groups::Reader) -> Result<Self, String> {
+    /// `color_range` is the code of white, if the caller knows it.
+    pub(super) fn new(
+        element: &Element,
+        groups: &groups::Reader,
+        color_range: Option<f64>,
+    ) -> Result<Self, String> {
         let named = |name: &str| element.properties.iter().any(|p| p.name == name);
         // `s` or `t` alone is a time or some other scalar.
         let pair = named("s") && named("t");
-        let slots = element.properties.iter().map(|p| match p.name.as_str() {
+        let channels = colors::channels(element);
+        let slots = element.properties.iter().enumerate().map(|(i, p)| match p.name.as_str() {
             "s" | "t" if !pair => Ok(PropertyUse::Skip),
-            name => slot(name, p.kind, groups),
+            name => {
+                let channel = channels.iter().position(|&channel| channel == Some(i));
+                let color = channel.map(|channel| COLOR.start + channel);
+                match color.map_or_else(|| prefiltered(name), |place| Ok(Some(place)))? {
+                    Some(place) => {
+                        let decode = colors::decode(element, i, color_range)?;
+                        Ok(PropertyUse::Number(place, decode))
+                    }
+                    None => slot(name, p.kind, groups),
+                }
+            }
         });
         let slots: Vec<PropertyUse> = slots.collect::<Result<_, _>>()?;
         let numbers = slots.iter().filter_map(|slot| match slot {
@@ -111,6 +130,18 @@ impl Layout {
             }
         }
         Ok(Self { slots, given })
+    }
+
+    /// Subtracts an offset from all positions.
+    pub(super) fn shift(&mut self, offset: DVec3) {
+        for slot in &mut self.slots {
+            if let PropertyUse::Number(place, decode) = slot
+                && POSITION.contains(place)
+                && offset[*place - POSITION.start] != 0.0
+            {
+                *decode = Decode::Shift(offset[*place - POSITION.start]);
+            }
+        }
     }
 
     /// How many numbers a row has.
@@ -203,29 +234,24 @@ fn missing_level(given: &[bool], level: usize, before: usize) -> String {
     )
 }
 
-/// How a property of this name and kind is used.
+/// How a property of this name and kind is used, if it is no colour.
 fn slot(name: &str, kind: PropertyKind, groups: &groups::Reader) -> Result<PropertyUse, String> {
     if let Some(part) = groups.part(name, kind)? {
         return Ok(PropertyUse::Group(part));
     }
     let name = ALIASES.iter().find(|(alias, _)| *alias == name).map_or(name, |(_, name)| name);
     let known = NAMES.iter().position(|&known| known == name);
-    let Some(place) = known.map_or_else(|| prefiltered(name), |place| Ok(Some(place)))? else {
-        return Ok(PropertyUse::Skip);
-    };
+    let Some(place) = known else { return Ok(PropertyUse::Skip) };
     let PropertyKind::One(scalar) = kind else {
         let what = format!("property {} is a list, but must be one number", quote(name));
         return Err(format!("element vertex: {what}"));
     };
-    let color = COLOR.contains(&place) || place >= MIPMAP;
     // Only colours and opacities have codes; other integers are numbers.
-    if !color && !OPACITY.contains(&place) {
+    if !OPACITY.contains(&place) {
         return Ok(PropertyUse::Number(place, Decode::Keep));
     }
     let decode = match scalar {
         Scalar::F32 | Scalar::F64 => Decode::Keep,
-        Scalar::U8 if color => Decode::Srgb(&SRGB_8),
-        Scalar::U16 if color => Decode::Srgb(&SRGB_16),
         Scalar::U8 => Decode::Divide(u8::MAX.into()),
         Scalar::U16 => Decode::Divide(u16::MAX.into()),
         Scalar::I8 | Scalar::I16 | Scalar::I32 | Scalar::U32 => {

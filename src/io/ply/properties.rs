@@ -44,7 +44,7 @@ fn whole(path: &Path) -> Result<Vec<u8>> {
 /// For each property of the vertices, its place among the names.
 fn places(header: &PlyHeader, names: &[String]) -> Reason<Vec<Option<usize>>> {
     let vertices = vertex(header)?;
-    let layout = Layout::new(vertices, &groups::Reader::new(vertices))?;
+    let layout = Layout::new(vertices, &groups::Reader::new(vertices), None)?;
     let mut places = vec![None; vertices.properties.len()];
     for (place, name) in names.iter().enumerate() {
         let at = vertices.properties.iter().position(|property| property.name == *name);

@@ -1,11 +1,10 @@
 //! Read large files in slabs: decode one slab of vertices while the next is read.
 
-use super::groups;
 use super::header::{self, PlyHeader};
 use super::layout::Layout;
 use super::rows::Rows;
 use super::values::BodyValues;
-use super::{ask, other, vertex};
+use super::{ReadOptions, ask, doubts, empty, far, gaussians, groups, other, vertex};
 use crate::frame::Exec;
 use crate::scene::Cloud;
 use std::fs::File;
@@ -39,39 +38,54 @@ pub(super) struct Start {
     header: PlyHeader,
     layout: Layout,
     rows: Rows,
+    options: ReadOptions,
 }
 
 /// Examines the start of a file of `length` bytes. `None` means that the file must be read as a
 /// whole, or that something is wrong with it, which the whole read will report.
-pub(super) fn start(file: &mut File, length: u64) -> io::Result<Option<Start>> {
+///
+/// # Errors
+/// If the file cannot be read, or if it holds 3D Gaussians, which is worth no whole read.
+pub(super) fn start(
+    file: &mut File,
+    length: u64,
+    options: &ReadOptions,
+) -> Result<Option<Start>, Error> {
     let mut bytes = Vec::new();
     file.take(MOST_HEADER).read_to_end(&mut bytes)?;
     let Ok(header) = header::parse(&bytes) else { return Ok(None) };
-    Ok(Start::new(header, length))
+    if vertex(&header).is_ok() {
+        gaussians::check(&header)?;
+    }
+    Ok(Start::new(header, length, *options))
 }
 
 impl Start {
-    fn new(header: PlyHeader, length: u64) -> Option<Self> {
+    fn new(header: PlyHeader, length: u64, options: ReadOptions) -> Option<Self> {
         let vertex = vertex(&header).ok()?;
         if header.elements.first()?.name != vertex.name {
             return None;
         }
-        let layout = Layout::new(vertex, &groups::Reader::new(vertex)).ok()?;
+        let layout = Layout::new(vertex, &groups::Reader::new(vertex), options.color_range).ok()?;
+        // Positions that need an offset are read twice.
+        if far::wide(vertex, &layout).is_some() {
+            return None;
+        }
         let rows = Rows::new(vertex, &layout, header.format)?;
         let bytes = vertex.count.checked_mul(rows.stride() as u64)?;
         let there = length.checked_sub(header.body as u64)?;
-        (bytes <= there).then_some(Self { header, layout, rows })
+        (bytes <= there).then_some(Self { header, layout, rows, options })
     }
 
     /// Reads the whole file.
     pub(super) fn read(self, mut file: File, length: u64, exec: &Exec) -> Result<Cloud, Error> {
-        let Self { header, layout, rows } = self;
+        let Self { header, layout, rows, options } = self;
         let vertex = vertex(&header)?;
         let stride = rows.stride() as u64;
         let after = header.body as u64 + vertex.count * stride;
         let slab = ROWS.min(vertex.count) * stride;
         ask(&header, length, 2 * slab + (length - after))?;
-        let mut cloud = Cloud { textures: header.textures.clone(), ..Cloud::default() };
+        let mut cloud = empty(&header);
         layout.arrays(&mut cloud)?;
         rows.reserve(vertex.count as usize, &mut cloud);
         file.seek(SeekFrom::Start(header.body as u64))?;
@@ -83,9 +97,10 @@ impl Start {
         // Vertices with groups are never read in slabs, so this reader stays empty.
         let mut groups = groups::Reader::new(vertex);
         for element in &header.elements[1..] {
-            other(element, &mut values, vertex.count, &mut cloud, &mut groups)?;
+            other(element, &mut values, vertex.count, &mut cloud, &mut groups, &options)?;
         }
         values.finish()?;
+        doubts(&header, &options, &mut cloud);
         Ok(cloud)
     }
 }

@@ -3,7 +3,7 @@
 use super::header::{Element, Format, PlyHeader, PropertyKind, Scalar, quote};
 
 /// A position in the body. Errors say what is wrong; [`BodyValues::walk`] adds where.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct BodyValues<'a> {
     bytes: &'a [u8],
     /// How many bytes of the file come before these.

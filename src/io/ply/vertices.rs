@@ -1,6 +1,5 @@
 //! Read the element `vertex`.
 
-use super::groups;
 use super::header::Element;
 use super::layout::{
     COLOR, COORDINATE, Layout, MIPMAP, NORMAL, OPACITY, POSITION, PropertyUse, RADIUS, TANGENT,
@@ -8,6 +7,7 @@ use super::layout::{
 };
 use super::rows::Rows;
 use super::values::{BodyValues, Event};
+use super::{ReadOptions, far, groups};
 use crate::frame::Exec;
 use crate::scene::{Cloud, Coordinates};
 use glam::{Vec2, Vec3};
@@ -19,9 +19,14 @@ pub(super) fn read(
     values: &mut BodyValues<'_>,
     cloud: &mut Cloud,
     groups: &mut groups::Reader,
+    options: &ReadOptions,
     exec: &Exec,
 ) -> Result<(), String> {
-    let layout = Layout::new(element, groups)?;
+    let mut layout = Layout::new(element, groups, options.color_range)?;
+    if let Some((offset, warning)) = far::shift(element, values, &mut layout, options.keep_place)? {
+        cloud.offset += offset;
+        cloud.warnings.extend(warning);
+    }
     layout.arrays(cloud)?;
     // Rows of one length are decoded in parallel, and cannot fail.
     if let Some(rows) = Rows::new(element, &layout, values.format()) {

@@ -4,6 +4,7 @@ use crate::error::Result;
 use crate::io::replace::write_atomically;
 use crate::scene::Cloud;
 use crate::scene::{Coordinates, Groups, Mipmap};
+use glam::DVec3;
 use std::io::{self, Write};
 use std::path::Path;
 
@@ -16,14 +17,15 @@ use std::path::Path;
 ///
 /// - `comment TextureFile` with the name of each texture, unless the name is empty or has a line
 ///   break;
+/// - `comment splatref offset X Y Z` with the [offset](Cloud::offset), unless it is 0;
 /// - vertices with float properties `x y z`, `nx ny nz`, `radius`, `red green blue` (linear),
 ///   `opacity`, `tux tuy tuz tvx tvy tvz`, `tx ty tz`, `u v`, the further
 ///   [properties](Cloud::properties) under their names, and `mip1_red mip1_green mip1_blue` and so
 ///   on for each level (linear);
 /// - for groups, the vertex properties `uchar group` and, if surfels were added to further groups,
 ///   `list uchar uchar also`;
-/// - triangles as `face` with `list uchar uint vertex_indices` and, if corners have texture
-///   coordinates, `list uchar float texcoord`;
+/// - triangles as `face` with `list uchar uint vertex_indices`, if corners have texture coordinates
+///   `list uchar float texcoord`, and float `red green blue` if triangles have colours (linear);
 /// - edges as `edge` with `uint vertex1 vertex2`;
 /// - the element `group` with `float scale`, if the vertices alone do not tell how many groups
 ///   there are, or if radii are scaled.
@@ -78,6 +80,10 @@ pub(super) fn encode(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
             let mut numbers = all[i].iter().flat_map(|at| at.to_array());
             numbers.try_for_each(|number| out.write_all(&number.to_le_bytes()))?;
         }
+        if let Some(colors) = &cloud.triangle_color {
+            let mut numbers = colors[i].to_array().into_iter();
+            numbers.try_for_each(|number| out.write_all(&number.to_le_bytes()))?;
+        }
     }
     let mut ends = cloud.edges.iter().flatten();
     ends.try_for_each(|index| out.write_all(&index.to_le_bytes()))?;
@@ -103,6 +109,7 @@ fn header(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
     for name in cloud.textures.iter().filter(is_line) {
         writeln!(out, "comment TextureFile {name}")?;
     }
+    offset_line(cloud.offset, out)?;
     writeln!(out, "element vertex {}", cloud.position.len())?;
     let names = names.iter().filter(|n| n.0).flat_map(|n| n.1.split(' '));
     for name in names.chain(properties) {
@@ -125,6 +132,9 @@ fn header(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
         if matches!(cloud.coordinates, Some(Coordinates::Corners(_))) {
             writeln!(out, "property list uchar float texcoord")?;
         }
+        if cloud.triangle_color.is_some() {
+            writeln!(out, "property float red\nproperty float green\nproperty float blue")?;
+        }
     }
     if !cloud.edges.is_empty() {
         writeln!(out, "element edge {}", cloud.edges.len())?;
@@ -136,13 +146,22 @@ fn header(cloud: &Cloud, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "end_header")
 }
 
+/// Writes what was subtracted from positions, unless it is 0.
+pub(super) fn offset_line(offset: DVec3, out: &mut impl Write) -> io::Result<()> {
+    let DVec3 { x, y, z } = offset;
+    match offset == DVec3::ZERO {
+        true => Ok(()),
+        false => writeln!(out, "comment splatref offset {x} {y} {z}"),
+    }
+}
+
 /// The groups, if surfels were added to some.
 fn added(cloud: &Cloud) -> Option<&Groups> {
     cloud.groups.as_ref().filter(|groups| !groups.added().is_empty())
 }
 
 /// The groups, if the vertices alone do not describe them.
-fn scaled(cloud: &Cloud) -> Option<&Groups> {
+pub(super) fn scaled(cloud: &Cloud) -> Option<&Groups> {
     cloud.groups.as_ref().filter(|groups| !tell(groups))
 }
 

@@ -1,17 +1,18 @@
 //! Load a [`SceneFile`] into surfels and primitives.
 
 use super::model::{ModelParts, Purpose, check_draw, prefiltered, read};
-use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, stem};
+use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, offset, stem};
 use crate::error::Result;
 use crate::frame::Exec;
 use crate::io::environment;
 use crate::io::hierarchy::Hierarchy;
 use crate::progress::Progress;
 use crate::scene::merge::{join, merge};
-use crate::scene::{Cloud, Counts, Dropped, Environment, Geometry, Object, Objects};
+use crate::scene::{Cloud, Counts, Dropped, Environment, Geometry, Light, Object, Objects};
 use crate::scene::{Primitives, Scene, Similarity, Surfels, Vertices};
 use crate::source::derive::Derived;
 use crate::source::sampler::estimate;
+use glam::DVec3;
 
 /// A loaded scene, with a report about its models.
 #[derive(Clone, Debug)]
@@ -24,6 +25,8 @@ pub struct Loaded {
     pub dropped: Dropped,
     /// Triangles and edges of all models that should have become primitives, and did not.
     pub dropped_primitives: u64,
+    /// What is to be doubted about the files, each once: one line with the file and the remedy.
+    pub warnings: Vec<String>,
     /// The hierarchy from which views read what they need.
     pub(super) unread: Option<Hierarchy>,
 }
@@ -124,8 +127,9 @@ impl SceneFile {
             environment,
             ..Scene::unlit(&self.name, Surfels::none())
         };
-        let (models, dropped) = (Vec::new(), Dropped::default());
-        let mut loaded = Loaded { scene, models, dropped, dropped_primitives: 0, unread: None };
+        let (models, dropped, warnings) = (Vec::new(), Dropped::default(), Vec::new());
+        let mut loaded =
+            Loaded { scene, models, dropped, dropped_primitives: 0, warnings, unread: None };
         match (hierarchy, objects) {
             (Some(hierarchy), _) => {
                 let view = purpose == Purpose::View;
@@ -155,10 +159,17 @@ impl SceneFile {
         exec: &Exec,
         progress: Progress<'_>,
     ) -> Result<()> {
+        // Candidates of several models are joined later, where an offset of each would be lost.
+        let keep_place = matches!(purpose, Purpose::Candidates(_));
+        let read = |model| read(model, purpose, keep_place, exec, progress);
+        let all = self.models.iter().map(read).collect::<Result<Vec<_>>>()?;
+        let offset = offset::shared(self.models.iter().zip(&all));
+        loaded.move_to(offset);
         let (mut parts, mut primitives) = (Vec::new(), Vec::new());
-        for model in &self.models {
+        for (model, part) in self.models.iter().zip(all) {
+            let model = offset::moved(model, part.offset, offset);
             let (surfels, more) =
-                loaded.read(model, model.source.name(), purpose, exec, progress)?;
+                loaded.place(&model, part, model.source.name(), purpose, exec, progress)?;
             if !surfels.is_empty() {
                 parts.push((model, surfels));
             }
@@ -185,9 +196,10 @@ impl SceneFile {
         let named = named.map(|one| (one.name.clone(), &one.model, one.detail));
         let mut geometries = Vec::new();
         for (name, model, detail) in own.chain(named) {
+            let part = read(model, purpose, true, exec, progress)?;
             let (surfels, primitives) =
-                loaded.read(model, name.clone(), purpose, exec, progress)?;
-            let parts = if surfels.is_empty() { vec![] } else { vec![(model, surfels)] };
+                loaded.place(model, part, name.clone(), purpose, exec, progress)?;
+            let parts = if surfels.is_empty() { vec![] } else { vec![(model.clone(), surfels)] };
             let (surfels, lost) = self.join_surfels(parts, primitives.is_empty(), exec)?;
             loaded.dropped += lost;
             let geometry = Geometry { name, surfels, primitives, detail: None };
@@ -206,15 +218,15 @@ impl SceneFile {
     /// must be at least one.
     fn join_surfels(
         &self,
-        mut parts: Vec<(&Model, Surfels)>,
+        mut parts: Vec<(Model, Surfels)>,
         alone: bool,
         exec: &Exec,
     ) -> Result<(Surfels, Dropped)> {
-        if parts.len() == 1 && is_as_read(parts[0].0) {
+        if parts.len() == 1 && is_as_read(&parts[0].0) {
             // One untransformed model is the usual case; its surfels are already checked.
             return Ok((parts.remove(0).1, Dropped::default()));
         }
-        let clouds = parts.into_iter().map(|(model, surfels)| placed(model, surfels));
+        let clouds = parts.into_iter().map(|(model, surfels)| placed(&model, surfels));
         let all = merge(clouds.collect(), self.material.color);
         if alone { Surfels::new_with(all, exec) } else { Surfels::new_or_none(all, exec) }
     }
@@ -248,17 +260,30 @@ fn of_hierarchy(
 }
 
 impl Loaded {
-    /// Reads a model: its surfels in the coordinates of its file, its primitives in their places.
-    fn read(
+    /// Moves what is in world coordinates by the offset of the files.
+    fn move_to(&mut self, offset: DVec3) {
+        self.scene.offset = offset;
+        for light in &mut self.scene.lights {
+            if let Light::Point { position, .. } = light {
+                *position = (position.as_dvec3() - offset).as_vec3();
+            }
+        }
+    }
+
+    /// Takes a model: its surfels in the coordinates of its file, its primitives in their places.
+    fn place(
         &mut self,
         model: &Model,
+        part: ModelParts,
         name: String,
         purpose: Purpose<'_>,
         exec: &Exec,
         progress: Progress<'_>,
     ) -> Result<(Surfels, Primitives)> {
-        let ModelParts { surfels, primitives, derived, painted } =
-            read(model, purpose, exec, progress)?;
+        let ModelParts { surfels, primitives, derived, painted, warnings, .. } = part;
+        let is_new = |what: &String| !self.warnings.contains(what);
+        let new: Vec<String> = warnings.into_iter().filter(is_new).collect();
+        self.warnings.extend(new);
         let surfels = if painted { surfels } else { prefiltered(surfels, model, exec, progress)? };
         let counts = primitives.counts();
         self.models.push(ModelReport { name, surfels: surfels.len(), primitives: counts, derived });

@@ -53,6 +53,7 @@ mod draw;
 mod load;
 mod model;
 mod objects;
+mod offset;
 mod open;
 pub mod places;
 mod ready;
@@ -162,6 +163,9 @@ pub enum Source {
         prefix: Option<usize>,
         /// The texture, see [`crate::io::texture`]; the file's own if absent.
         texture: Option<PathBuf>,
+        /// The code of white of the colours in a PLY, see
+        /// [`crate::io::ply::ReadOptions::color_range`].
+        color_range: Option<f64>,
     },
     /// A procedural shape.
     Shape {
@@ -357,8 +361,11 @@ impl SceneFile {
         let CameraChoice { size, eye, target, up, ref motion, .. } = self.camera;
         let [width, height] = size.unwrap_or(DEFAULT_SIZE);
         let (shape, lens) = (self.shape(), self.lens());
+        // Poses are in the coordinates of the files.
+        let [eye, target] = [eye, target].map(|place| place.map(|place| place - scene.offset));
         if let Some(motion) = motion {
-            return Camera::new(width, height, motion.at(self.frame), lens);
+            let pose = motion.at(self.frame).relative_to(scene.offset);
+            return Camera::new(width, height, pose, lens);
         }
         if let (Some(eye), Some(target)) = (eye, target) {
             return Camera::new(

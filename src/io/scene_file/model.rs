@@ -4,11 +4,13 @@ use super::{Draw, FileKind, Model, Source, read_model};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::mipmap;
+use crate::io::ply::ReadOptions;
 use crate::io::{ply, texture};
 use crate::progress::Progress;
 use crate::scene::{Cloud, Primitives, Surfels};
 use crate::source::derive::{self, Derive, Derived};
 use crate::source::plant;
+use glam::DVec3;
 use std::path::Path;
 
 /// A model in the coordinates of its file.
@@ -18,11 +20,21 @@ pub(super) struct ModelParts {
     pub(super) derived: Option<Derived>,
     /// Whether all colours, at all levels asked for, come from a texture.
     pub(super) painted: bool,
+    /// What the reader subtracted from the positions of the file.
+    pub(super) offset: DVec3,
+    /// What the reader doubts about the file.
+    pub(super) warnings: Vec<String>,
 }
 
 impl ModelParts {
+    fn none() -> Self {
+        let (surfels, primitives) = (Surfels::none(), Primitives::default());
+        let (offset, warnings) = (DVec3::ZERO, Vec::new());
+        Self { surfels, primitives, derived: None, painted: false, offset, warnings }
+    }
+
     fn new(surfels: Surfels, primitives: Primitives, derived: Derived) -> Self {
-        Self { surfels, primitives, derived: Some(derived), painted: false }
+        Self { surfels, primitives, derived: Some(derived), ..Self::none() }
     }
 }
 
@@ -45,6 +57,12 @@ pub(super) enum Purpose<'a> {
 /// Refuses a model that cannot be drawn as chosen, or with the chosen opacity, texture or mipmaps.
 pub(super) fn check_draw(model: &Model, purpose: Purpose<'_>) -> Result<()> {
     model.draw.check(&model.source).map_err(Error::Invalid)?;
+    if let Source::File { path, color_range: Some(_), .. } = &model.source
+        && FileKind::from_extension(path)? == FileKind::Obj
+    {
+        let what = "color_range applies to a PLY; remove it";
+        return Err(Error::format(path, what));
+    }
     if model.progressive && !matches!(model.source, Source::File { .. }) {
         let name = model.source.name();
         let what = format!(
@@ -84,14 +102,19 @@ pub(super) fn check_draw(model: &Model, purpose: Purpose<'_>) -> Result<()> {
 pub(super) fn read(
     model: &Model,
     purpose: Purpose<'_>,
+    keep_place: bool,
     exec: &Exec,
     progress: Progress<'_>,
 ) -> Result<ModelParts> {
     let further = if let Purpose::Candidates(names) = purpose { names } else { &[] };
     ply_of(model, further)?;
     match &model.source {
-        Source::File { path, radius, prefix, texture } => {
-            let mut cloud = read_model(path, exec)?;
+        Source::File { path, radius, prefix, texture, color_range } => {
+            let options = ReadOptions { color_range: *color_range, keep_place };
+            let mut cloud = read_model(path, &options, exec)?;
+            let offset = cloud.offset;
+            let warnings = std::mem::take(&mut cloud.warnings).into_iter();
+            let warnings = warnings.map(|what| Error::format(path, what).to_string()).collect();
             cloud.properties = ply::properties(path, further)?;
             if model.draw == Draw::Polygons && !matches!(purpose, Purpose::Candidates(_)) {
                 // Polygons are drawn opaque.
@@ -105,23 +128,21 @@ pub(super) fn read(
             let options = Derive { radius: *radius };
             let parts = first(cloud, *prefix, model.progressive)
                 .and_then(|cloud| of_file(cloud, &model.draw, &options, exec, progress));
-            parts.map(|parts| ModelParts { painted, ..parts }).map_err(|error| match error {
-                Error::Invalid(what) => Error::format(path, what),
-                other => other,
+            parts.map(|parts| ModelParts { painted, offset, warnings, ..parts }).map_err(|error| {
+                match error {
+                    Error::Invalid(what) => Error::format(path, what),
+                    other => other,
+                }
             })
         }
-        Source::Shape { shape, count, seed } => Ok(ModelParts {
-            surfels: shape.surfels(*count, *seed)?,
-            primitives: Primitives::default(),
-            derived: None,
-            painted: false,
-        }),
+        Source::Shape { shape, count, seed } => {
+            Ok(ModelParts { surfels: shape.surfels(*count, *seed)?, ..ModelParts::none() })
+        }
         Source::Tree { leaves, seed } => {
             let tree = plant::apple_tree(*leaves, *seed)?;
             let primitives =
                 if model.draw == Draw::Polygons { tree.polygons() } else { tree.lines() }?;
-            let surfels = Surfels::none();
-            Ok(ModelParts { surfels, primitives, derived: None, painted: false })
+            Ok(ModelParts { primitives, ..ModelParts::none() })
         }
     }
 }

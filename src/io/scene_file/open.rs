@@ -4,6 +4,7 @@ use super::{DEFAULT_COUNT, SceneFile, Source};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::io::hierarchy::Hierarchy;
+use crate::io::ply::ReadOptions;
 use crate::io::{extension, input, obj, ply};
 use crate::scene::Cloud;
 use crate::source::{Shape, plant};
@@ -33,14 +34,14 @@ pub enum FileKind {
 }
 
 /// Reads the model at `path`: OBJ by its extension, PLY otherwise. Its texture is not read, see
-/// [`crate::io::texture::paint`].
+/// [`crate::io::texture::paint`]. The options are for a PLY.
 ///
 /// # Errors
 /// As [`obj::read`] and [`ply::read_with`].
-pub fn read_model(path: &Path, exec: &Exec) -> Result<Cloud> {
+pub fn read_model(path: &Path, options: &ReadOptions, exec: &Exec) -> Result<Cloud> {
     match FileKind::from_extension(path) {
         Ok(FileKind::Obj) => obj::read(path),
-        _ => ply::read_with(path, exec),
+        _ => ply::read_with(path, options, exec),
     }
 }
 
@@ -118,6 +119,7 @@ impl SceneFile {
                 radius: None,
                 prefix: None,
                 texture: None,
+                color_range: None,
             })),
             FileKind::Toml => Self::read(path),
             FileKind::Exr => Err(Error::Usage(format!(

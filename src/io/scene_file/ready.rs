@@ -98,7 +98,8 @@ impl Ready {
     /// As [`Camera::new`].
     pub fn camera_at(&self, frame: u32) -> Result<Camera> {
         let Some((motion, lens)) = &self.motion else { return Ok(self.camera) };
-        Camera::new(self.camera.width, self.camera.height, motion.at(frame), *lens)
+        let pose = motion.at(frame).relative_to(self.loaded.scene.offset);
+        Camera::new(self.camera.width, self.camera.height, pose, *lens)
     }
 
     /// Whether the scene is the same in every frame, so that one session draws all of them.

@@ -53,7 +53,13 @@ fn the_example_says_what_it_says() {
     let path = Path::new("a").join("bunny.ply");
     assert_eq!(
         bunny.source,
-        Source::File { path, radius: Some(0.002), prefix: Some(10_000), texture: None }
+        Source::File {
+            path,
+            radius: Some(0.002),
+            prefix: Some(10_000),
+            texture: None,
+            color_range: None
+        }
     );
     assert_eq!(bunny.color, Some(Vec3::new(0.75, 0.5, 0.25)));
     assert_eq!(bunny.draw, Draw::Surfels);
@@ -371,6 +377,7 @@ fn errors_of_models_name_their_file() {
         radius: None,
         prefix: None,
         texture: None,
+        color_range: None,
     });
     let error = missing.load(&Exec::sequential(), &|_, _, _| ()).unwrap_err();
     assert!(error.to_string().starts_with("no/such.ply: "), "{error}");
@@ -387,6 +394,7 @@ fn errors_of_models_name_their_file() {
         radius: None,
         prefix: None,
         texture: None,
+        color_range: None,
     });
     let error = lone.load(&Exec::sequential(), &|_, _, _| ()).unwrap_err();
     assert!(error.to_string().starts_with(&path.display().to_string()), "{error}");

@@ -72,7 +72,7 @@ fn lift(cloud: &mut Cloud) -> Result<Option<Lifted>> {
     let keep: Vec<bool> = cloud.position.iter().map(|place| place.is_finite()).collect();
     cloud.retain(&keep);
     let Some(coordinates) = cloud.coordinates.take() else { return Ok(None) };
-    (cloud.color, cloud.mipmap) = (None, None);
+    (cloud.color, cloud.mipmap, cloud.triangle_color) = (None, None, None);
     let finite = |at: &[Vec2; 3]| at.iter().all(|at| at.is_finite());
     let all = std::mem::take(&mut cloud.triangles).into_iter().enumerate();
     let all = all.map(|(i, corners)| (corners, coordinates.corners(i, corners)));

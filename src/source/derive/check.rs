@@ -42,6 +42,11 @@ impl Cloud {
             let what = format!("{triangles} triangles, but texture coordinates for {length}");
             return Err(Error::Invalid(what));
         }
+        let colors = self.triangle_color.as_ref().map(Vec::len);
+        if let Some(length) = colors.filter(|&length| length != triangles) {
+            let what = format!("{triangles} triangles, but colours for {length}");
+            return Err(Error::Invalid(what));
+        }
         check_mipmap(n, self.color.is_some(), &self.mipmap)?;
         let outside = |triangle: &[u32; 3]| triangle.iter().any(|&i| i as usize >= n);
         if let Some(at) = self.triangles.iter().position(outside) {

@@ -29,7 +29,8 @@ use std::ops::{Add, Div};
 /// Each result is rounded to `f32` once; products x.y and lengths are sums in the order x, y, z.
 /// Colour and opacity are the means of the corners', ((a + b) + c) / 3 in `f32`. A triangle is
 /// dropped and counted if the colour or opacity of a corner is invalid, as the corner itself would
-/// be. If a texture has been read, the colour comes from the texture, see the module.
+/// be. If a texture has been read, the colour comes from the texture, see the module. A colour of
+/// the triangle itself is used if the corners have none.
 ///
 /// `Decided:` the corners' normals say which side is the front, because files wind their triangles
 /// either way. Radii and tangents of the file are ignored. Prefiltered colours are left out,
@@ -104,7 +105,9 @@ fn ellipses(cloud: &Cloud) -> Cloud {
             Facet::new(triangle.map_inline(|i| position[i as usize].as_dvec3()), side)
         })
         .collect();
-    let color = color.as_ref().map(|all| means(triangles, all, |c| is_color(*c), Vec3::NAN));
+    let own = cloud.triangle_color.clone();
+    let color =
+        color.as_ref().map(|all| means(triangles, all, |c| is_color(*c), Vec3::NAN)).or(own);
     let is_opacity = |o: &f32| (0.0..=1.0).contains(o);
     let opacity = opacity.as_ref().map(|all| means(triangles, all, is_opacity, f32::NAN));
     Cloud {

@@ -7,7 +7,7 @@
 //!
 //! Each step derives only what is still missing:
 //!
-//! 1. Points whose position is not finite are dropped and counted, with the triangles at them.
+//! 1. Normals count as missing if no point has one, because all are zero or not finite. Points whose position is not finite are dropped and counted, with the triangles at them.
 //! 2. **Normals** come from the tangents, if the file has them; else from the triangles, weighted
 //!    by area; else from the plane through the [`PLANE_NEIGHBOURS`] nearest neighbours, all on one
 //!    side.
@@ -133,6 +133,19 @@
 //!   from the third step, because colours are linear between vertices, and details finer than an
 //!   edge would alias. Methods know no textures.
 //!
+//! # Colours of faces
+//!
+//! A file may have colours of faces ([`Cloud::triangle_color`]); they are used where it has neither
+//! colours of vertices nor a texture. A facet has the colour of its triangle. A point has the mean of
+//! the colours of its triangles, weighted by area: with w = |(b - a) x (c - a)|, the sums of w and of
+//! w times the colour begin at 0 and take the triangles in ascending order; their quotient is rounded
+//! to `f32` once. A point in no triangle with an area has the colour NaN, so that it is dropped and
+//! counted.
+//!
+//! `Decided:` a vertex of polygons becomes one vertex for each colour of its triangles, because
+//! colours are linear between vertices. The first colour keeps the vertex; the others follow all
+//! vertices, in the order of their first use. Normals are derived before.
+//!
 //! # Why these radii
 //!
 //! `Decided:` the radii. Every point of a triangle lies within 1/sqrt(3) of its longest edge from
@@ -147,6 +160,7 @@
 
 mod check;
 mod distinct;
+mod face_colors;
 mod faces;
 mod facets;
 mod neighbours;
@@ -250,7 +264,7 @@ fn complete(
     cloud.check()?;
     let nowhere = drop_nowhere(&mut cloud)?;
     let places = OnceCell::new();
-    let (normal, normals) = match cloud.normal.take() {
+    let (normal, normals) = match cloud.take_normals() {
         Some(normal) => (normal, Origin::File),
         None => missing_normals(&cloud, &places, exec, progress)?,
     };
@@ -259,7 +273,10 @@ fn complete(
         None => missing_radii(&cloud, options, &places, exec, progress)?,
     };
     let dropped = Dropped { position: nowhere, ..Dropped::default() };
-    let cloud = texture::points(cloud, &radius, exec, progress)?;
+    let mut cloud = texture::points(cloud, &radius, exec, progress)?;
+    if cloud.color.is_none() {
+        cloud.color = face_colors::means(&cloud);
+    }
     let cloud = Cloud { normal: Some(normal), radius: Some(radius), ..cloud };
     Ok((cloud, Derived { normals, radii, dropped, dropped_primitives: 0 }))
 }

@@ -1,7 +1,8 @@
 //! Turn the triangles and edges of a cloud into polygons, ribbons and tubes.
 
 use super::{
-    Derive, Derived, Origin, complete, drop_nowhere, faces, given, missing_normals, texture,
+    Derive, Derived, Origin, complete, drop_nowhere, face_colors, faces, given, missing_normals,
+    texture,
 };
 use crate::error::{Error, Result};
 use crate::frame::Exec;
@@ -33,13 +34,16 @@ pub fn polygons(
     cloud.check()?;
     drop_unsound(&mut cloud)?;
     drop_nowhere(&mut cloud)?;
-    let (normal, normals) = match cloud.normal.take() {
+    let (mut normal, normals) = match cloud.take_normals() {
         Some(normal) => (normal, Origin::File),
         None => missing_normals(&cloud, &OnceCell::new(), exec, progress)?,
     };
     if cloud.paint.is_some() {
         let reach = faces::radii(&cloud.position, &cloud.triangles);
         cloud = texture::points(cloud, &reach, exec, progress)?;
+    }
+    if cloud.color.is_none() {
+        face_colors::split(&mut cloud, &mut normal);
     }
     let radius = vec![0.0; cloud.position.len()];
     let triangles = std::mem::take(&mut cloud.triangles);
@@ -88,7 +92,7 @@ pub fn hybrid(
 pub fn ribbons(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived)> {
     let before = cloud.edges.len();
     let radius = radii(&mut cloud, options, "ribbons")?;
-    let Some(normal) = cloud.normal.take() else {
+    let Some(normal) = cloud.take_normals() else {
         return Err(Error::Invalid("ribbons need normals; give nx, ny and nz".into()));
     };
     let edges = std::mem::take(&mut cloud.edges);
@@ -334,8 +338,8 @@ mod tests {
         assert!(line(ribbons(mesh(), &asked).unwrap_err()).contains("ribbons need normals; give"));
         let asked = Derive { radius: Some(-1.0) };
         assert!(line(tubes(mesh(), &asked).unwrap_err()).contains("give a finite number > 0"));
-        let flat = Cloud { normal: Some(vec![Vec3::ZERO; 5]), ..mesh() };
-        let error = line(drawn(flat).unwrap_err());
+        let none = Cloud { color: Some(vec![Vec3::NAN; 5]), ..mesh() };
+        let error = line(drawn(none).unwrap_err());
         assert_eq!(error, "the scene is empty: none of its 2 triangles can be drawn");
     }
 }

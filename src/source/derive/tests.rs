@@ -208,3 +208,35 @@ proptest! {
         prop_assert_eq!(together, surfels);
     }
 }
+
+/// Programs without normals write zeros.
+#[test]
+fn normals_without_a_direction_are_derived_as_if_there_were_none() {
+    let expected = derive(points(sphere(200))).unwrap();
+    for none in [Vec3::ZERO, Vec3::NAN, Vec3::splat(f32::INFINITY)] {
+        let mut cloud = points(sphere(200));
+        cloud.normal = Some(vec![none; 200]);
+        assert_eq!(derive(cloud.clone()).unwrap(), expected, "{none}");
+        // With one normal in the file, the others are dropped and counted.
+        cloud.normal.as_mut().unwrap()[7] = Vec3::Z;
+        let (one, derived) = derive(cloud).unwrap();
+        assert_eq!((one.normal(), derived.normals), (&[Vec3::Z][..], Origin::File));
+        assert_eq!(derived.dropped.normal, 199);
+    }
+    let mesh = Cloud { triangles: vec![[0, 1, 2]], ..points(vec![Vec3::ZERO, Vec3::X, Vec3::Y]) };
+    let zeros = Cloud { normal: Some(vec![Vec3::ZERO; 3]), ..mesh.clone() };
+    let drawn = |cloud| polygons(cloud, &Exec::sequential(), &|_, _, _| ()).unwrap();
+    assert_eq!(drawn(zeros), drawn(mesh));
+}
+
+#[test]
+fn an_empty_scene_says_why() {
+    let mut cloud = points(sphere(9));
+    cloud.normal = Some(vec![Vec3::Z; 9]);
+    cloud.radius = Some(vec![0.0; 9]);
+    cloud.normal.as_mut().unwrap()[3] = Vec3::ZERO;
+    let error = derive(cloud).unwrap_err().to_string();
+    let what = "none of its 9 points can be a surfel: 1 without normal, 8 without radius; give \
+                finite radii above 0";
+    assert!(error.contains(what), "{error}");
+}

@@ -1,6 +1,8 @@
 //! Check what is read, what is refused and how, and that no bytes make the reader panic.
 
 mod coordinates;
+mod far;
+mod foreign;
 mod refused;
 mod rows;
 
@@ -260,7 +262,8 @@ fn what_is_written_is_read_back_bit_for_bit() {
     let path = directory.path().join("cloud.ply");
     for cloud in clouds {
         write(&path, &cloud).unwrap();
-        let again = read(&path).unwrap();
+        let mut again = read(&path).unwrap();
+        again.warnings.clear(); // of colours that nobody means
         // Compare bits too, because -0 and +0 are equal as floats.
         assert_eq!(again, cloud);
         assert!(

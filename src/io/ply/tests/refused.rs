@@ -69,9 +69,9 @@ fn elements_and_properties() {
         "`mip17_red`, but prefiltered colours have at most 16 levels",
     );
     leveled(&["property float mip99999999999999999999_blue"], "have at most 16 levels");
-    leveled(&["property int mip1_red"], "property `mip1_red` has type int, but its range is known");
+    leveled(&["property char mip1_red"], "property `mip1_red` has type char, which cannot hold");
     leveled(&["property list uchar float mip1_red"], "property `mip1_red` is a list");
-    more(&["property int red"], "property `red` has type int, but its range is known for uchar");
+    more(&["property char red"], "property `red` has type char, which cannot hold a colour");
     let header = |lines: &[&str], expected: &str| refused(ascii(lines, ""), expected);
     header(&[], "there is no element vertex: the file holds no points");
     header(&["element vertex 1"], "element vertex has no properties x, y, z");

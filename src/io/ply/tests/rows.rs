@@ -71,7 +71,7 @@ fn read_back(bytes: &[u8], threads: usize) -> std::result::Result<Cloud, String>
     let folder = tempfile::tempdir().unwrap();
     let path = folder.path().join("a.ply");
     std::fs::write(&path, bytes).unwrap();
-    read_with(&path, &Exec::new(threads, 32).unwrap())
+    read_with(&path, &ReadOptions::default(), &Exec::new(threads, 32).unwrap())
         .map_err(|error| error.to_string().split_once(".ply: ").unwrap().1.to_owned())
 }
 

@@ -21,6 +21,7 @@ pub(super) struct RawModel {
     radius: Option<f32>,
     prefix: Option<usize>,
     texture: Option<PathBuf>,
+    color_range: Option<f64>,
     draw: Option<String>,
     split: Option<Exactly<f64, 4>>,
     shape: Option<String>,
@@ -108,11 +109,12 @@ impl RawModel {
 
     fn of_source(source: &Source, place: &Folder) -> Self {
         match *source {
-            Source::File { ref path, radius, prefix, ref texture } => Self {
+            Source::File { ref path, radius, prefix, ref texture, color_range } => Self {
                 file: Some(place.path(path)),
                 radius,
                 prefix,
                 texture: texture.as_deref().map(|texture| place.path(texture)),
+                color_range,
                 ..Self::default()
             },
             Source::Tree { leaves, seed } => Self {
@@ -150,7 +152,15 @@ impl RawModel {
                 if let Some(points) = prefix {
                     check_prefix(points).map_err(|error| error.to_string())?;
                 }
-                Ok(Source::File { path, radius, prefix, texture: self.texture.take() })
+                let color_range = self.color_range.take();
+                if let Some(range) =
+                    color_range.filter(|range| !(*range > 0.0 && range.is_finite()))
+                {
+                    return Err(format!(
+                        "color_range is {range}; give the code of white, such as 255"
+                    ));
+                }
+                Ok(Source::File { path, radius, prefix, texture: self.texture.take(), color_range })
             }
             (None, Some(name)) if name == TREE => {
                 let leaves = self.leaves.take().unwrap_or(plant::LEAVES);
@@ -175,6 +185,7 @@ impl RawModel {
             ("radius", self.radius.is_some()),
             ("prefix", self.prefix.is_some()),
             ("texture", self.texture.is_some()),
+            ("color_range", self.color_range.is_some()),
             ("square", self.square.is_some()),
             ("gap", self.gap.is_some()),
             ("step", self.step.is_some()),
