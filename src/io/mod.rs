@@ -7,6 +7,7 @@
 //!   picture from a name.
 //! - [`ply`]: read and write point clouds and meshes.
 //! - [`obj`]: read meshes and points as text.
+//! - [`polygon`]: how the polygons of PLY and OBJ are cut into triangles.
 //! - [`texture`]: read textures of models.
 //! - [`environment`]: read environment maps from EXR files.
 //! - [`hierarchy`]: write and read surfel approximations of a whole scene.
@@ -36,6 +37,7 @@ pub mod obj;
 pub mod ply;
 #[cfg(feature = "cli")]
 pub mod png;
+pub mod polygon;
 pub mod provenance;
 pub mod replace;
 pub mod scene_file;

@@ -4,21 +4,27 @@ use super::colors;
 use super::header::{Element, PropertyKind, quote};
 use super::layout::Decode;
 use super::values::{BodyValues, Event};
+use crate::io::polygon;
 use crate::scene::{Cloud, Coordinates};
 use glam::{Vec2, Vec3};
 
+/// The first triangle and the corners of each polygon of more than 3 corners.
+pub(super) type Polygons = Vec<[u32; 2]>;
+
 /// Reads all faces and appends their triangles, and the texture coordinates of their corners and
 /// their colours if there are any. Each index must be below `vertices`. `color_range` is the code
-/// of white, if the caller knows it.
+/// of white, if the caller knows it. Returns the polygons that
+/// [`cut`] looks at.
 pub(super) fn read(
     element: &Element,
     values: &mut BodyValues<'_>,
     vertices: u64,
     color_range: Option<f64>,
     cloud: &mut Cloud,
-) -> Result<(), String> {
+) -> Result<Polygons, String> {
+    let mut polygons = Vec::new();
     if element.count == 0 {
-        return Ok(());
+        return Ok(polygons);
     }
     let indices = indices(element)?;
     let coordinates = coordinates(element)?;
@@ -49,6 +55,9 @@ pub(super) fn read(
                 if channels.is_some() {
                     colors.extend(fan(&corners).map(|_| color));
                 }
+                if corners.len() > 3 {
+                    polygons.push([cloud.triangles.len() as u32, corners.len() as u32]);
+                }
                 cloud.triangles.extend(fan(&corners));
                 corners.clear();
                 numbers.clear();
@@ -62,7 +71,25 @@ pub(super) fn read(
         cloud.coordinates =
             Some(Coordinates::Corners(of_corners.into_iter().map(corners).collect()));
     }
-    Ok(())
+    Ok(polygons)
+}
+
+/// Cuts polygons into ears where the fan leaves them, as soon as all vertices are read.
+pub(super) fn cut(polygons: &Polygons, cloud: &mut Cloud) {
+    for &[start, corners] in polygons {
+        let all = start as usize..(start + corners) as usize - 2;
+        let fan = &mut cloud.triangles[all.clone()];
+        let corners = polygon::corners(fan);
+        let positions = corners.iter().map(|&corner| cloud.position[corner as usize]);
+        let Some(ears) = polygon::ears(&positions.collect::<Vec<_>>()) else { continue };
+        polygon::recut(fan, &corners, &ears);
+        if let Some(Coordinates::Corners(coordinates)) = &mut cloud.coordinates
+            && let Some(fan) = coordinates.get_mut(all)
+        {
+            let corners = polygon::corners(fan);
+            polygon::recut(fan, &corners, &ears);
+        }
+    }
 }
 
 /// Cuts a polygon a b c d ... into the fan abc, acd, ...

@@ -25,7 +25,7 @@
 //! | | `group` | an integer | the surfel's own [group](crate::index::grouping), 0 to 63 |
 //! | | `also` | list of integers | further groups that the surfel was added to, none twice; skipped without `group` |
 //! | `group` | `scale` | any | factor for radii, finite and > 0, one for each group; skipped without `group` |
-//! | `face` | `vertex_indices` or `vertex_index` | list of integers | a polygon becomes a triangle fan around its first corner; with fewer than 3 corners it is dropped |
+//! | `face` | `vertex_indices` or `vertex_index` | list of integers | a polygon, [cut into triangles](crate::io::polygon); with fewer than 3 corners it is dropped |
 //! | | `red green blue` and the other names | as of `vertex` | the colour of its triangles, [`Cloud::triangle_color`]; colours of vertices win |
 //! | | `texcoord` | list of numbers | texture coordinates, two for each corner; they replace the vertices' |
 //! | `tristrips` | `vertex_indices` or `vertex_index` | list of integers | triangle strips; -1, or the greatest number of an unsigned type, ends a strip; triangles with two equal corners are left out |
@@ -125,7 +125,7 @@ use values::BodyValues;
 /// The most memory that a vertex takes while arrays of all attributes grow, and a face of a few
 /// corners.
 const BYTES_A_VERTEX: u64 = 128;
-const BYTES_A_FACE: u64 = 24;
+const BYTES_A_FACE: u64 = 32;
 /// Memory for the texture coordinates of a triangle; they are in memory twice while their array
 /// grows and is handed over.
 const BYTES_OF_COORDINATES: u64 = 24;
@@ -190,14 +190,17 @@ fn parse_with(bytes: &[u8], options: &ReadOptions, exec: &Exec) -> Reason<Cloud>
     let mut cloud = empty(&header);
     let mut groups = groups::Reader::new(vertex);
     let mut values = BodyValues::new(bytes, &header);
+    let mut polygons = Vec::new();
     for element in &header.elements {
         if element.name == "vertex" {
             vertices::read(element, &mut values, &mut cloud, &mut groups, options, exec)?;
         } else {
-            other(element, &mut values, vertex.count, &mut cloud, &mut groups, options)?;
+            let more = other(element, &mut values, vertex.count, &mut cloud, &mut groups, options)?;
+            polygons.extend(more);
         }
     }
     values.finish()?;
+    faces::cut(&polygons, &mut cloud);
     cloud.groups = groups.finish()?;
     doubts(&header, options, &mut cloud);
     Ok(cloud)
@@ -249,7 +252,7 @@ fn ask(header: &PlyHeader, length: u64, more: u64) -> Reason<()> {
     memory::try_ask(needed.saturating_add(more), || format!("a cloud of {vertices} points"))
 }
 
-/// Reads any element except the vertices; the file has `vertices` of them.
+/// Reads any element except the vertices; the file has `vertices` of them. Returns its polygons.
 fn other(
     element: &Element,
     values: &mut BodyValues<'_>,
@@ -257,14 +260,15 @@ fn other(
     cloud: &mut Cloud,
     groups: &mut groups::Reader,
     options: &ReadOptions,
-) -> Reason<()> {
+) -> Reason<faces::Polygons> {
     match element.name.as_str() {
-        "edge" => edges::read(element, values, vertices, &mut cloud.edges),
-        "face" => faces::read(element, values, vertices, options.color_range, cloud),
+        "edge" => edges::read(element, values, vertices, &mut cloud.edges)?,
+        "face" => return faces::read(element, values, vertices, options.color_range, cloud),
         name if strips::NAMES.contains(&name) => {
-            strips::read(element, values, vertices, &mut cloud.triangles)
+            strips::read(element, values, vertices, &mut cloud.triangles)?;
         }
-        "group" => groups.scales(element, values),
-        _ => values.walk(element, |_| Ok(())),
+        "group" => groups.scales(element, values)?,
+        _ => values.walk(element, |_| Ok(()))?,
     }
+    Ok(Vec::new())
 }

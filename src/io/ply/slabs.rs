@@ -1,5 +1,6 @@
 //! Read large files in slabs: decode one slab of vertices while the next is read.
 
+use super::faces;
 use super::header::{self, PlyHeader};
 use super::layout::Layout;
 use super::rows::Rows;
@@ -96,10 +97,14 @@ impl Start {
         let mut values = BodyValues::rest(&rest, after, header.format);
         // Vertices with groups are never read in slabs, so this reader stays empty.
         let mut groups = groups::Reader::new(vertex);
+        let mut polygons = Vec::new();
         for element in &header.elements[1..] {
-            other(element, &mut values, vertex.count, &mut cloud, &mut groups, &options)?;
+            let more =
+                other(element, &mut values, vertex.count, &mut cloud, &mut groups, &options)?;
+            polygons.extend(more);
         }
         values.finish()?;
+        faces::cut(&polygons, &mut cloud);
         doubts(&header, &options, &mut cloud);
         Ok(cloud)
     }
