@@ -108,7 +108,7 @@ pub(super) struct SceneOptions {
     /// Draw at most N of the ordered points, the best first [--surfel-size: 2]
     #[arg(long, value_name = "N", help_heading = "Shapes and models")]
     surfel_budget: Option<u32>,
-    /// Replace the colours of a file by this texture, a .png or an .exr
+    /// Replace the colours of a file by this texture: a .png, a .jpg or an .exr
     #[arg(long, value_name = "FILE", help_heading = "Shapes and models")]
     texture: Option<PathBuf>,
     /// Prefilter this many mip levels of colours for each surfel (method deferred); 0 drops the

@@ -82,7 +82,7 @@ pub(super) struct Args {
     /// Look at a mesh from these corners [default: cube]
     #[arg(long, value_enum)]
     directions: Option<Corners>,
-    /// Replace the colours of a mesh by this texture, a .png or an .exr [default: the texture in
+    /// Replace the colours of a mesh by this texture: a .png, a .jpg or an .exr [default: the texture in
     /// the file]
     #[arg(long, value_name = "FILE")]
     texture: Option<PathBuf>,

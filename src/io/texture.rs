@@ -1,12 +1,15 @@
-//! Read textures from PNG and EXR files, and find the texture of a model.
+//! Read textures from PNG, JPEG and EXR files, and find the texture of a model.
 //!
 //! | file | contents | colours |
 //! |---|---|---|
 //! | `.png` | 8 or 16 bits, grey, a palette or colours | **sRGB**, decoded in `f64` and rounded once ([`crate::number::srgb`]) |
+//! | `.jpg`, `.jpeg` | 8 bits, grey or colours, baseline or progressive | as PNG |
 //! | `.exr` | the channels `R`, `G`, `B`, `HALF` or `FLOAT` | linear, kept |
 //!
-//! Opacity is ignored, and so is the gamma that a PNG declares. Reading PNG needs the feature
-//! `cli`.
+//! Opacity is ignored, and so are the gamma that a PNG declares, and the profile and the orientation
+//! of a JPEG. Reading PNG and JPEG needs the feature `cli`. A JPEG is decoded by integer arithmetic,
+//! so its texels are the same on every machine; another decoder may differ by some codes, because the
+//! standard allows it.
 //!
 //! # Which texture a model has
 //!
@@ -28,13 +31,14 @@ use std::path::{Path, PathBuf};
 /// Reads the texture at `path`.
 ///
 /// # Errors
-/// [`Error::Io`] if it cannot be read. [`Error::Format`] if the name ends neither in `.png` nor in
-/// `.exr`, as the readers of these formats, if a channel is absent, or as [`Texture::new`].
+/// [`Error::Io`] if it cannot be read. [`Error::Format`] if the name ends neither in `.png`, `.jpg`,
+/// `.jpeg` nor in `.exr`, as the readers of these formats, if a channel is absent, or as [`Texture::new`].
 pub fn read(path: &Path, exec: &Exec) -> Result<Texture> {
     let texels = match extension(path).as_deref() {
         Some("exr") => rgb(path, exec, "a texture", Texture::check_size)?,
         Some("png") => png(path)?,
-        _ => return Err(Error::format(path, "not a texture; give a .png or an .exr")),
+        Some("jpg" | "jpeg") => jpeg(path)?,
+        _ => return Err(Error::format(path, "not a texture; give a .png, a .jpg or an .exr")),
     };
     Texture::new(texels).map_err(|error| Error::format(path, error.to_string()))
 }
@@ -42,6 +46,16 @@ pub fn read(path: &Path, exec: &Exec) -> Result<Texture> {
 #[cfg(feature = "cli")]
 fn png(path: &Path) -> Result<Plane<[f32; 3]>> {
     super::png::read_linear(path, Texture::check_size)
+}
+
+#[cfg(feature = "cli")]
+fn jpeg(path: &Path) -> Result<Plane<[f32; 3]>> {
+    super::png::read_jpeg(path, Texture::check_size)
+}
+
+#[cfg(not(feature = "cli"))]
+fn jpeg(path: &Path) -> Result<Plane<[f32; 3]>> {
+    Err(Error::format(path, "reading JPEG needs the feature `cli`; give an EXR"))
 }
 
 #[cfg(not(feature = "cli"))]
@@ -177,8 +191,8 @@ mod tests {
         let line = refused(&mut Cloud::default(), &model, Some(Path::new("x/b.exr")));
         assert!(line.contains("a.ply: no texture coordinates, so x/b.exr"), "{line}");
         assert!(
-            refused(&mut cloud(&[]), &model, Some(Path::new("b.jpg")))
-                .starts_with("b.jpg: not a texture; give a .png")
+            refused(&mut cloud(&[]), &model, Some(Path::new("b.tga")))
+                .starts_with("b.tga: not a texture; give a .png")
         );
         assert!(refused(&mut cloud(&[]), &model, Some(Path::new("b.exr"))).starts_with("b.exr: "));
         let bad = at.path().join("bad.exr");

@@ -1,8 +1,10 @@
 //! Write 8-bit previews for people to look at, and read PNG files to compare them as they are
 //! stored.
 
+mod jpeg;
 mod read;
 
+pub(super) use jpeg::read_linear as read_jpeg;
 pub(super) use read::read_linear;
 pub use read::{Stored, read};
 

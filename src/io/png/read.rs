@@ -46,7 +46,12 @@ pub(in crate::io) fn read_linear(
     path: &Path,
     check_size: fn(u32, u32) -> Result<()>,
 ) -> Result<Plane<[f32; 3]>> {
-    let Stored { image, most } = read_of_size(path, check_size)?;
+    linear(path, read_of_size(path, check_size)?)
+}
+
+/// Decodes codes as sRGB, for the picture at `path`.
+pub(super) fn linear(path: &Path, stored: Stored) -> Result<Plane<[f32; 3]>> {
+    let Stored { image, most } = stored;
     let count = image.width as usize * image.height as usize;
     memory::try_ask(12 * count as u64, || format!("the colours of {count} pixels"))
         .map_err(|what| Error::format(path, what))?;
@@ -97,7 +102,7 @@ fn read_of_size(path: &Path, check_size: fn(u32, u32) -> Result<()>) -> Result<S
 }
 
 /// Separates the decoder's interleaved codes; 16-bit codes are in this machine's order.
-fn codes(width: u32, height: u32, kind: ColorType, bytes: &[u8]) -> Stored {
+pub(super) fn codes(width: u32, height: u32, kind: ColorType, bytes: &[u8]) -> Stored {
     let components = usize::from(kind.channel_count());
     let (codes, most): (Vec<u16>, u16) = if kind.bytes_per_pixel() as usize > components {
         (bytes.as_chunks().0.iter().map(|&pair| u16::from_ne_bytes(pair)).collect(), u16::MAX)
