@@ -1,6 +1,6 @@
 //! `splatref quality`: measures how evenly the prefixes of ordered points cover the surface.
 
-use super::{Ended, Ending, output, progress, report, say};
+use super::{Ended, Ending, output, progress, report, say, warn_of};
 use splatref::frame::Exec;
 use splatref::io::ply::ReadOptions;
 use splatref::io::png;
@@ -137,7 +137,8 @@ fn names(files: &[PathBuf]) -> Vec<String> {
 
 /// The points of a file that holds only points.
 fn points(path: &Path, exec: &Exec) -> Result<Vec<glam::Vec3>> {
-    let cloud = read_model(path, &ReadOptions::default(), exec)?;
+    let mut cloud = read_model(path, &ReadOptions::default(), exec)?;
+    warn_of(path, &mut cloud);
     if !cloud.triangles.is_empty() || !cloud.edges.is_empty() {
         let what = "the file has triangles or lines, but ordered points are needed; `splatref \
                     surfels` samples a mesh";

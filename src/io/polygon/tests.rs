@@ -1,5 +1,5 @@
 use super::*;
-use glam::Vec2;
+use glam::{DVec2, Vec2};
 
 const AXES: [fn(Vec2) -> Vec3; 6] = [
     |p| Vec3::new(p.x, p.y, 0.0),
@@ -21,9 +21,9 @@ fn turned(points: &[Vec2], by: usize) -> Vec<Vec2> {
 }
 
 /// How often triangles cover a place, each with the sign of its turn; none may have its edge there.
-fn covers(corners: &[Vec2], triangles: &[[u32; 3]], at: Vec2) -> i32 {
+fn covers(corners: &[Vec2], triangles: &[[u32; 3]], at: DVec2) -> i32 {
     let covers = |triangle: &[u32; 3]| {
-        let [a, b, c] = triangle.map(|i| corners[i as usize]);
+        let [a, b, c] = triangle.map(|i| corners[i as usize].as_dvec2());
         let sides = [(a, b), (b, c), (c, a)].map(|(a, b)| (b - a).perp_dot(at - a));
         let inside = sides.iter().all(|side| *side > 0.0) || sides.iter().all(|side| *side < 0.0);
         i32::from(inside) * if sides[0] > 0.0 { 1 } else { -1 }
@@ -58,21 +58,21 @@ fn triangles_cover_the_polygon_once() {
                 corners.reverse();
             }
             let whole = fan(corners.len() as u32);
-            for axes in AXES {
-                let placed: Vec<Vec3> = corners.iter().copied().map(axes).collect();
-                let cut = ears(&placed).unwrap_or_else(|| whole.clone());
-                assert_eq!(cut.len(), corners.len() - 2, "{name}");
-                for i in 0..70 * 70 {
-                    let at = Vec2::new(
-                        (i % 70) as f32 * 0.1013 + 0.0431,
-                        (i / 70) as f32 * 0.0987 + 0.0317,
-                    );
-                    let (found, needed) =
-                        (covers(&corners, &cut, at), covers(&corners, &whole, at));
-                    assert_eq!(found, needed, "{name} from {by} at {at}: {cut:?}");
-                    let most = cut.iter().filter(|one| covers(&corners, &[**one], at) != 0).count();
-                    assert!(most <= 1, "{name} from {by}: {most} triangles at {at}");
-                }
+            let placed = |axes: fn(Vec2) -> Vec3| -> Vec<Vec3> {
+                corners.iter().copied().map(axes).collect()
+            };
+            let all_ears = AXES.map(|axes| ears(&placed(axes)));
+            assert!(all_ears.iter().all(|one| *one == all_ears[0]), "{name} from {by}");
+            let cut = all_ears[0].clone().unwrap_or_else(|| whole.clone());
+            assert_eq!(cut.len(), corners.len() - 2, "{name}");
+            for i in 0..36 * 36 {
+                let steps = DVec2::new(f64::from(i % 36), f64::from(i / 36)) + 0.217;
+                // No place is on a line between corners.
+                let at = steps * DVec2::new(0.14 * 2.0_f64.sqrt(), 0.114 * 3.0_f64.sqrt());
+                let (found, needed) = (covers(&corners, &cut, at), covers(&corners, &whole, at));
+                assert_eq!(found, needed, "{name} from {by} at {at}: {cut:?}");
+                let most = cut.iter().filter(|one| covers(&corners, &[**one], at) != 0).count();
+                assert!(most <= 1, "{name} from {by}: {most} triangles at {at}");
             }
         }
     }

@@ -58,6 +58,32 @@ fn corners_have_coordinates_of_their_own() {
     assert_eq!(parse(&turned).unwrap(), cloud);
 }
 
+/// Ears where the fan leaves the polygon; coordinates stay with their corners, and faces may come
+/// before their vertices.
+#[test]
+fn concave_polygons_are_cut_into_ears() {
+    let vertex = ["element vertex 6", "property float x", "property float y", "property float z"];
+    let face = [
+        "element face 3",
+        "property list uchar int vertex_indices",
+        "property list uchar float texcoord",
+    ];
+    let vertices = "2 0 0\n2 1 0\n1 1 0\n1 2 0\n0 2 0\n0 0 0\n";
+    let faces =
+        "3 0 1 2 6 0 0 1 0 2 0\n6 0 1 2 3 4 5 12 0 0 1 0 2 0 3 0 4 0 5 0\n3 3 4 5 6 3 0 4 0 5 0\n";
+    let expected = [[0, 1, 2], [5, 0, 1], [2, 3, 4], [5, 1, 2], [2, 4, 5], [3, 4, 5]];
+    for bytes in [
+        ascii(&[vertex.as_slice(), &face].concat(), &format!("{vertices}{faces}")),
+        ascii(&[face.as_slice(), &vertex].concat(), &format!("{faces}{vertices}")),
+    ] {
+        let found = parse(&bytes).unwrap();
+        assert_eq!(found.triangles, expected);
+        let Some(Coordinates::Corners(at)) = found.coordinates else { panic!() };
+        let at: Vec<[u32; 3]> = at.iter().map(|one| one.map(|at| at.x as u32)).collect();
+        assert_eq!(at, expected);
+    }
+}
+
 #[test]
 fn what_is_written_comes_back() {
     let points = Cloud {
