@@ -49,7 +49,7 @@ pub(super) fn line(text: &str, at: usize) -> usize {
 ///
 /// # Errors
 /// If the process may not hold so many bytes, or the file cannot be read.
-pub(super) fn rest(file: File, length: u64) -> io::Result<Vec<u8>> {
+pub(super) fn rest(file: impl Read, length: u64) -> io::Result<Vec<u8>> {
     memory::try_ask(length, || "the file".to_owned())
         .map_err(|what| io::Error::new(io::ErrorKind::OutOfMemory, what))?;
     let mut bytes = Vec::new();

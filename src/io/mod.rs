@@ -24,8 +24,10 @@
 //! Shared by all:
 //!
 //! - `input`: open files to read.
+//! - `checksum`: notice damage in files of this crate.
 //! - [`replace`]: write files that are complete or absent.
 
+mod checksum;
 pub mod client;
 pub mod environment;
 pub mod exr;
