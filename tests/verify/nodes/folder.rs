@@ -82,7 +82,8 @@ fn rim(node: &Node, off: f64) -> [f64; 2] {
         [3.0 - (6.25 * (1.0 + off) - 0.49).sqrt(), 0.3]
     } else {
         // The radius 2, or more where more surfels are asked for than there are.
-        let square = 4.0 * (node.asked / f64::from(node.count)).max(1.0);
+        let least = node.asked / f64::from(node.count);
+        let square = 4.0 * if least > 1.0 { least } else { 1.0 };
         [2.0 - (square * (1.0 + off) - 1.44).sqrt(), -0.2]
     }
 }

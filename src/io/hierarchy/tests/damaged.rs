@@ -153,7 +153,7 @@ fn a_flipped_bit_is_noticed_in_every_file_and_mended_by_another_run() {
         // Some bits of the beginning, then one here and there; all of them in all bits of a byte.
         let bits = 8 * whole.len();
         let start = (0..640).step_by(13);
-        for bit in start.chain((640..bits).step_by(bits / 60 | 1)).filter(|&bit| bit < bits) {
+        for bit in start.chain((640..bits).step_by(bits / 60 + 1)).filter(|&bit| bit < bits) {
             let mut flipped = whole.clone();
             flipped[bit / 8] ^= 1 << (bit % 8);
             fs::write(out.join(name), flipped).unwrap();
