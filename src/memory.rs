@@ -31,14 +31,21 @@ pub(crate) fn try_ask(
     if limit == u64::MAX || bytes <= limit.saturating_sub(held()) {
         return Ok(());
     }
+    let held = held();
+    let digits = digits_apart(bytes.saturating_add(held), limit);
     Err(format!(
         "{} needs up to {} of memory, beside {} in use, but the limit is {}; reduce the work, or \
          raise --memory",
         what(),
-        in_words(bytes),
-        in_words(held()),
-        in_words(limit)
+        in_words(bytes, digits),
+        in_words(held, digits),
+        in_words(limit, digits)
     ))
+}
+
+/// How many digits after the point tell two numbers of bytes apart, in words.
+fn digits_apart(one: u64, other: u64) -> usize {
+    (1..9).find(|&digits| in_words(one, digits) != in_words(other, digits)).unwrap_or(9)
 }
 
 /// How many bytes the process holds; 0 where the system does not tell.
@@ -49,12 +56,14 @@ fn held() -> u64 {
     kilobytes.unwrap_or(0).saturating_mul(1024)
 }
 
-/// Bytes as people say them: 1.5 GiB.
-fn in_words(bytes: u64) -> String {
+/// Bytes as people say them, with at most this many digits after the point: 1.5 GiB.
+fn in_words(bytes: u64, digits: usize) -> String {
     const UNITS: [&str; 5] = ["bytes", "KiB", "MiB", "GiB", "TiB"];
     let power = (bytes.max(1).ilog2() / 10).min(4);
     let value = bytes as f64 / (1_u64 << (10 * power)) as f64;
-    format!("{} {}", (value * 10.0).round() / 10.0, UNITS[power as usize])
+    let value = format!("{value:.digits$}");
+    let value = value.trim_end_matches('0').trim_end_matches('.');
+    format!("{value} {}", UNITS[power as usize])
 }
 
 #[cfg(test)]
@@ -63,9 +72,23 @@ mod tests {
 
     #[test]
     fn bytes_in_words() {
-        let words = [0, 1023, 1024, 1536, 3 << 29, u64::MAX].map(in_words);
+        let words = [0, 1023, 1024, 1536, 3 << 29, u64::MAX].map(|bytes| in_words(bytes, 1));
         let expected = ["0 bytes", "1023 bytes", "1 KiB", "1.5 KiB", "1.5 GiB", "16777216 TiB"];
         assert_eq!(words, expected);
+    }
+
+    #[test]
+    fn numbers_that_differ_look_different() {
+        let limit = 1 << 30;
+        for more in [1 << 29, 1 << 24, 1 << 20, 1 << 10, 8] {
+            let digits = digits_apart(limit + more, limit);
+            assert_ne!(in_words(limit + more, digits), in_words(limit, digits), "{more}");
+        }
+        assert_eq!(digits_apart(3 << 29, 1 << 30), 1);
+        assert_eq!(
+            in_words((1 << 30) + (1 << 20), digits_apart((1 << 30) + (1 << 20), 1 << 30)),
+            "1.001 GiB"
+        );
     }
 
     #[cfg(target_os = "linux")]

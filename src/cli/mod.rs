@@ -40,6 +40,7 @@ use clap::{Parser, Subcommand};
 use ending::{Ended, Ending};
 use splatref::Error;
 use splatref::scene::Cloud;
+use std::ffi::OsStr;
 use std::fmt::Display;
 use std::io::{self, Write};
 use std::path::Path;
@@ -52,7 +53,8 @@ use stdout::{printed, say};
 struct Cli {
     #[command(subcommand)]
     command: Command,
-    /// Use at most this much memory, such as 2G [default: three quarters of the machine's]
+    /// Use at most this much memory, such as 2G [default: three quarters of what
+    /// the machine, the container and `ulimit` allow]
     #[arg(long, global = true, value_name = "BYTES", value_parser = memory::bytes)]
     memory: Option<u64>,
 }
@@ -99,6 +101,14 @@ enum Command {
 
 /// Runs the program.
 pub(crate) fn run() -> ExitCode {
+    if let Some(argument) = std::env::args_os().skip(1).find(|argument| is_dash(argument)) {
+        let argument = argument.to_string_lossy();
+        complain(format!(
+            "{argument}: `-` stands for neither standard input nor standard output here; give the \
+             name of a file, or ./- for a file with the name -"
+        ));
+        return ExitCode::from(2);
+    }
     let cli = match Cli::try_parse() {
         Ok(cli) => cli,
         Err(error) => return usage(&error),
@@ -128,6 +138,16 @@ pub(crate) fn run() -> ExitCode {
             complain(&error);
             ExitCode::from(error.exit_code())
         }
+    }
+}
+
+/// Whether an argument is `-`, or gives it to an option: `-o-`, `--output=-`.
+fn is_dash(argument: &OsStr) -> bool {
+    match argument.as_encoded_bytes() {
+        b"-" => true,
+        [b'-', letter, b'-'] => letter.is_ascii_alphabetic(),
+        [b'-', b'-', .., b'=', b'-'] => true,
+        _ => false,
     }
 }
 

@@ -145,11 +145,11 @@ impl SceneOptions {
         replace(&mut camera.lens, self.ortho.map(Lens::Orthographic));
         replace(&mut file.environment, self.environment.clone());
         if let Some(opacity) = self.opacity {
-            check_opacity(opacity)?;
+            usage(check_opacity(opacity))?;
             file.all_models_mut().for_each(|model| model.opacity = Some(opacity));
         }
         if let Some(levels) = self.mipmaps {
-            check_mipmaps(levels)?;
+            usage(check_mipmaps(levels))?;
             file.all_models_mut().for_each(|model| model.mipmaps = Some(levels));
         }
         self.choose_of_files(&mut file)?;
@@ -181,7 +181,7 @@ impl SceneOptions {
 
     /// Sets the prefix and the texture of every model; each must be a file.
     fn choose_of_files(&self, file: &mut SceneFile) -> Result<()> {
-        self.prefix.map_or(Ok(()), check_prefix)?;
+        usage(self.prefix.map_or(Ok(()), check_prefix))?;
         let what = match (self.prefix, &self.texture) {
             (None, None) => return Ok(()),
             (Some(_), _) => "--prefix applies to the points of a file",
@@ -212,7 +212,7 @@ impl SceneOptions {
         let refinement = &mut file.refinement;
         refinement.surfel_size = self.surfel_size.unwrap_or(refinement.surfel_size);
         refinement.budget = self.surfel_budget.or(refinement.budget);
-        refinement.check()?;
+        usage(refinement.check())?;
         if file.all_models().all(|model| !model.progressive) {
             if let Some(geometry) = file.geometries.iter().find(|one| one.detail.is_some()) {
                 let name = &geometry.name;
@@ -253,7 +253,10 @@ impl SceneOptions {
             file.method.replace(name)?;
         }
         file.method.settings.extend(self.settings.chosen.clone());
-        let method = file.method.method()?;
+        let method = file.method.method();
+        // Without options the settings are the file's own, and so is the error.
+        let given = self.method.is_some() || !self.settings.chosen.is_empty();
+        let method = if given { usage(method)? } else { method? };
         if let (Some(_), Some(default)) = (self.method, method.grouping()) {
             file.groups.settings = file.groups.settings.fitting(default);
         }
@@ -266,6 +269,9 @@ impl SceneOptions {
             return Err(Error::Usage(what));
         }
         file.groups.settings.extend(self.groups.chosen.clone());
+        if !self.groups.chosen.is_empty() {
+            usage(file.grouping(&method))?;
+        }
         Ok(())
     }
 }
@@ -291,6 +297,14 @@ pub(super) fn named(name: &Path, count: Option<usize>, seed: Option<u64>) -> Res
             Ok(SceneFile::of_model(source))
         }
     }
+}
+
+/// What an option says is wrong usage if it cannot be; the same in a scene file is not.
+fn usage<T>(checked: Result<T>) -> Result<T> {
+    checked.map_err(|error| match error {
+        Error::Invalid(what) => Error::Usage(what),
+        other => other,
+    })
 }
 
 /// Replaces a value if there is a new one.

@@ -298,6 +298,12 @@ pub(super) fn tally(tally: &Tally) {
             tally.visible, tally.behind, tally.degenerate, tally.back_facing, tally.outside
         ),
     );
+    if tally.visible == 0 && tally.back_facing > 0 {
+        let all = tally.behind + tally.degenerate + tally.outside == 0;
+        let who = if all { "all surfels" } else { "all surfels in view" };
+        let what = "face away from the camera, so the picture shows none; give --cull=off to draw";
+        line("", format!("{who} {what} their backs"));
+    }
 }
 
 /// The number of threads in words.

@@ -22,7 +22,8 @@ ctor::declarative::ctor! {
 }
 
 /// Prints a line on stdout. A full disk, or a reader such as `head` that has gone, does not stop
-/// the command, because files are still to be written. The command fails at its end.
+/// the command, because files are still to be written. If the disk is full, the command fails at
+/// its end.
 pub(super) fn say(text: impl Display) {
     if let Err(error) = writeln!(io::stdout(), "{}", words::visible(&text.to_string())) {
         let _ = FAILURE.set(error);
@@ -30,12 +31,16 @@ pub(super) fn say(text: impl Display) {
 }
 
 /// Returns the first failure to print, if any.
+///
+/// A reader that has gone is no failure, because it has read what it wanted: the command ends as if
+/// it had read all, with the same exit code.
 pub(super) fn printed() -> Result<()> {
     if let Err(error) = io::stdout().flush() {
         let _ = FAILURE.set(error);
     }
     match FAILURE.get() {
         None => Ok(()),
+        Some(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
         Some(error) => Err(Error::Invalid(format!("standard output: {error}"))),
     }
 }

@@ -106,8 +106,8 @@
 //!
 //! The list is in bands of `far`, descending. A band has all values of one exponent and one pair of
 //! highest bits of the mantissa, so that no value is 5/4 of another or more; +inf is a band. Within
-//! a band nodes are in the order of the tree, a node before its children, and the children in the
-//! order above. `Decided:` \[DVS03\] sorts by `far` itself, which puts neighbours of the surface
+//! a band nodes are in the order of the tree, in preorder: a node, then all of its first child's
+//! subtree, then all of the second's, and so on, with the children in the order above. `Decided:` \[DVS03\] sorts by `far` itself, which puts neighbours of the surface
 //! anywhere in the list. In bands of the tree's order consecutive nodes are neighbours. So boxes
 //! around them are small, as \[GBP04, 7.2\] asks for with its clusters by position, and a flag
 //! stands for a small piece of the surface \[GBP04, 4.3\].

@@ -29,6 +29,21 @@ pub(super) fn bytes(path: &Path) -> io::Result<Vec<u8>> {
     rest(file, length)
 }
 
+/// How many times the length of a text its parsed TOML may take, in short tables and arrays.
+const TOML_IN_MEMORY: u64 = 100;
+
+/// Asks for the memory that a text takes when it is parsed as TOML, before it is.
+///
+/// # Errors
+/// [`Error::Format`] if the process may not hold so much.
+pub(super) fn ask_for_toml(path: &Path, text: &str) -> Result<(), Error> {
+    let bytes = text.len() as u64;
+    memory::try_ask(bytes.saturating_mul(TOML_IN_MEMORY), || {
+        format!("parsing {bytes} bytes of TOML")
+    })
+    .map_err(|what| Error::format(path, what))
+}
+
 /// Describes why a text is not TOML, and in which line.
 pub(super) fn no_toml(path: &Path, text: &str, error: &toml::de::Error) -> Error {
     let line = error.span().map(|span| line(text, span.start));
@@ -49,7 +64,7 @@ pub(super) fn line(text: &str, at: usize) -> usize {
 ///
 /// # Errors
 /// If the process may not hold so many bytes, or the file cannot be read.
-pub(super) fn rest(file: File, length: u64) -> io::Result<Vec<u8>> {
+pub(super) fn rest(file: impl Read, length: u64) -> io::Result<Vec<u8>> {
     memory::try_ask(length, || "the file".to_owned())
         .map_err(|what| io::Error::new(io::ErrorKind::OutOfMemory, what))?;
     let mut bytes = Vec::new();

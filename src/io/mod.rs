@@ -24,12 +24,16 @@
 //!
 //! Shared by all:
 //!
+//! - `guard`: turn a panic of a decoder into an error of its file.
 //! - `input`: open files to read.
+//! - `checksum`: notice damage in files of this crate.
 //! - [`replace`]: write files that are complete or absent.
 
+mod checksum;
 pub mod client;
 pub mod environment;
 pub mod exr;
+mod guard;
 pub mod hierarchy;
 mod input;
 pub mod npy;

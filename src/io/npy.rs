@@ -3,6 +3,7 @@
 //! Format: [NEP 1](https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html),
 //! versions 1.0 to 3.0.
 
+use super::guard::guarded;
 use super::{Reason, input};
 use crate::error::{Error, Result};
 use crate::frame::Image;
@@ -40,6 +41,10 @@ const LONGEST_HEADER: u64 = 10_000;
 /// [`Error::Io`] if the file cannot be read. [`Error::Format`] if it is no NPY file, has another
 /// type, order (Fortran) or shape, is empty, or its length does not match its shape.
 pub fn read(path: &Path, name: &str) -> Result<Image> {
+    guarded(|| decode(path, name)).map_err(|what| Error::format(path, what))?
+}
+
+fn decode(path: &Path, name: &str) -> Result<Image> {
     let (file, length) = input::open(path).map_err(|source| Error::io(path, source))?;
     // The length is taken once, so that nothing more is read if the file grows meanwhile.
     let mut file = file.take(length);

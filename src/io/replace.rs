@@ -33,7 +33,8 @@ impl Pending {
     ///
     /// No other process can have that file, because it is created exclusively, under a random name.
     /// The name does not grow with the name of `path`. The file is removed if `write` fails or
-    /// panics, and by [`remove_partial_files`]. A file that is already at `path` stays as it is;
+    /// panics, and by [`remove_partial_files`]. If the process is killed, it stays until a process
+    /// writes its first file to the same directory. A file that is already at `path` stays as it is;
     /// the new file gets its permissions. If `path` is a symbolic link, the file behind the link is
     /// replaced.
     ///
@@ -103,6 +104,43 @@ fn place(path: &Path) -> io::Result<PathBuf> {
     Err(io::Error::other("a circle of symbolic links"))
 }
 
+/// Removes the partial files of processes that are gone, such as one that SIGKILL ended.
+///
+/// A process holds a lock on its partial files while they exist, and the system releases the lock
+/// when the process ends, in whatever way. So only files without a lock are removed. Where files
+/// cannot be locked, nothing is removed. Errors are ignored: the files are in nobody's way.
+fn remove_abandoned(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    let partial = |name: &str| {
+        let random = name.strip_prefix(PREFIX).and_then(|name| name.strip_suffix(SUFFIX));
+        random.is_some_and(|random| {
+            random.len() == RANDOM && random.bytes().all(|byte| byte.is_ascii_alphanumeric())
+        })
+    };
+    for entry in entries.flatten() {
+        if !entry.file_name().to_str().is_some_and(partial)
+            || !entry.file_type().is_ok_and(|kind| kind.is_file())
+        {
+            continue;
+        }
+        let path = entry.path();
+        // Locked until the end of the loop's body, so that its writer notices if it is just made.
+        if let Ok(file) = File::options().write(true).open(&path)
+            && file.try_lock().is_ok()
+        {
+            let _ = fs::remove_file(&path);
+        }
+    }
+}
+
+/// The name of a partial file: the prefix, letters and digits, the suffix.
+const PREFIX: &str = ".splatref-";
+const SUFFIX: &str = ".partial";
+const RANDOM: usize = 12;
+
+/// The folders that this process has looked at for abandoned files.
+static LOOKED_AT: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
+
 /// The partial files of this process. Hold the lock to create, rename or remove a file.
 static PARTIAL_FILES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
@@ -124,30 +162,44 @@ pub fn remove_partial_files() -> impl Sized {
     files
 }
 
-/// A file beside its final place, removed on drop.
+/// A file beside its final place, removed on drop. The open file keeps its lock.
 #[derive(Debug)]
-struct Partial(Option<TempPath>);
+struct Partial(Option<(TempPath, File)>);
 
 impl Partial {
     fn new(folder: &Path) -> io::Result<(Self, File)> {
+        {
+            let mut known = LOOKED_AT.lock().unwrap_or_else(PoisonError::into_inner);
+            if !known.iter().any(|other| other == folder) {
+                known.push(folder.to_owned());
+                remove_abandoned(folder);
+            }
+        }
         let mut files = partial_files();
         let mut builder = tempfile::Builder::new();
-        builder.prefix(".splatref-").suffix(".partial").rand_bytes(12);
+        builder.prefix(PREFIX).suffix(SUFFIX).rand_bytes(RANDOM);
         if let Some(permissions) = of_new_files() {
             builder.permissions(permissions);
         }
-        let (file, path) = builder.tempfile_in(folder).map(NamedTempFile::into_parts)?;
-        files.push(path.to_path_buf());
-        Ok((Self(Some(path)), file))
+        loop {
+            let (file, path) = builder.tempfile_in(folder).map(NamedTempFile::into_parts)?;
+            // Where files cannot be locked, no other process removes this one either.
+            let _ = file.lock();
+            // Another process may have removed it before it was locked; then make another.
+            if path.exists() {
+                files.push(path.to_path_buf());
+                return Ok((Self(Some((path, file.try_clone()?))), file));
+            }
+        }
     }
 
     fn path(&self) -> &Path {
-        self.0.as_deref().unwrap_or_else(|| Path::new(""))
+        self.0.as_ref().map_or_else(|| Path::new(""), |(path, _)| path)
     }
 
     fn put(mut self, place: &Path) -> io::Result<()> {
         let mut files = partial_files();
-        let Some(path) = self.0.take() else { return Ok(()) };
+        let Some((path, _lock)) = self.0.take() else { return Ok(()) };
         files.retain(|file| file != &*path);
         path.persist(place).map_err(|failed| failed.error)
     }
@@ -155,7 +207,7 @@ impl Partial {
 
 impl Drop for Partial {
     fn drop(&mut self) {
-        if let Some(path) = self.0.take() {
+        if let Some((path, _lock)) = self.0.take() {
             partial_files().retain(|file| file != &*path);
             // Dropping the path removes the file.
         }

@@ -4,7 +4,7 @@
 //! The file is little-endian, without gaps:
 //!
 //! ```text
-//!   "splatref state 2\n"
+//!   "splatref state 3\n"
 //!   64 hexadecimal digits: the SHA-256 of the scene, of objects in frame 0, see Scene::sha256
 //!   u32  the frame that saw
 //!   u32  m, how many surfels share a flag
@@ -12,18 +12,25 @@
 //!     many u64 its flags take
 //!   the flags of each object, a bit a group, the lowest bit of a u64 first; each object begins with a
 //!     u64, and its last u64 is not 0
+//!   u32  the CRC-32 of all bytes before, as `zlib.crc32` gives it
 //! ```
+//!
+//! `Decided:` a state of an older version, without a checksum, is refused, because nobody can tell
+//! whether it is damaged. Write it again.
 
-use super::input;
 use super::replace::Pending;
+use super::{checksum, input};
 use crate::error::{Error, Result};
 use crate::index::seen::Seen;
 use crate::scene::objects::Ids;
 use std::io::Write;
 use std::path::Path;
 
-const MAGIC: &[u8] = b"splatref state 2\n";
+const MAGIC: &[u8] = b"splatref state 3\n";
+/// How earlier versions began, without a checksum.
+const OLDER: &[u8] = b"splatref state 2\n";
 const DIGITS: usize = 64;
+const NO_STATE: &str = "not a state of splatref; give one that render --keep-state wrote";
 
 /// The surfels that a frame saw, and the number of the frame.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -39,39 +46,54 @@ pub struct State {
 /// # Errors
 /// As [`Pending::write`].
 pub fn pending(path: &Path, state: &State, scene: &str) -> Result<Pending> {
-    let State { frame, seen } = state;
-    Pending::write(path, |to| {
-        to.write_all(MAGIC)?;
-        to.write_all(scene.as_bytes())?;
-        to.write_all(&frame.to_le_bytes())?;
-        to.write_all(&seen.group().to_le_bytes())?;
-        to.write_all(&(seen.counts().len() as u64).to_le_bytes())?;
-        let objects = 0..seen.counts().len() as u32;
-        for object in objects.clone() {
-            let [count, selected] = [seen.counts(), seen.selected()].map(|of| of[object as usize]);
-            for number in [count, selected, seen.words(object).len() as u32] {
-                to.write_all(&number.to_le_bytes())?;
-            }
+    let bytes = checksum::seal(bytes(state, scene));
+    Pending::write(path, |to| to.write_all(&bytes))
+}
+
+/// The file without its checksum.
+fn bytes(State { frame, seen }: &State, scene: &str) -> Vec<u8> {
+    let mut to = [MAGIC, scene.as_bytes()].concat();
+    to.extend(frame.to_le_bytes());
+    to.extend(seen.group().to_le_bytes());
+    to.extend((seen.counts().len() as u64).to_le_bytes());
+    let objects = 0..seen.counts().len() as u32;
+    for object in objects.clone() {
+        let [count, selected] = [seen.counts(), seen.selected()].map(|of| of[object as usize]);
+        for number in [count, selected, seen.words(object).len() as u32] {
+            to.extend(number.to_le_bytes());
         }
-        let mut words = objects.flat_map(|object| seen.words(object));
-        words.try_for_each(|word| to.write_all(&word.to_le_bytes()))
-    })
+    }
+    objects.flat_map(|object| seen.words(object)).for_each(|word| to.extend(word.to_le_bytes()));
+    to
 }
 
 /// Reads the state of a scene whose surfels have these ids.
 ///
 /// # Errors
-/// [`Error::Io`] if the file cannot be read; [`Error::Format`] if it is no state, or belongs to
-/// another scene.
+/// [`Error::Io`] if the file cannot be read; [`Error::Format`] if it is no state, is damaged, or
+/// belongs to another scene.
 pub fn read(path: &Path, scene: &str, ids: &Ids) -> Result<State> {
     let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
-    parse(&bytes, scene, ids).map_err(|what| Error::format(path, what))
+    let found = check(&bytes).and_then(|bytes| parse(bytes, scene, ids));
+    found.map_err(|what| Error::format(path, what))
+}
+
+/// The file without its checksum, if this version wrote it and it is undamaged.
+fn check(bytes: &[u8]) -> std::result::Result<&[u8], String> {
+    if bytes.starts_with(OLDER) {
+        let what = "an older version wrote this state, without a checksum; write it again with \
+                    render --keep-state";
+        return Err(what.into());
+    }
+    if !bytes.starts_with(MAGIC) {
+        return Err(NO_STATE.into());
+    }
+    let checked = checksum::open(bytes);
+    checked.ok_or_else(|| "damaged: its checksum is wrong; write the state again".into())
 }
 
 fn parse(bytes: &[u8], scene: &str, ids: &Ids) -> std::result::Result<State, String> {
-    let rest = bytes
-        .strip_prefix(MAGIC)
-        .ok_or("not a state of splatref; give one that render --keep-state wrote")?;
+    let rest = bytes.strip_prefix(MAGIC).ok_or(NO_STATE)?;
     let mut rest = Numbers(rest);
     if rest.take::<DIGITS>()? != scene.as_bytes() {
         return Err(
@@ -137,8 +159,9 @@ mod tests {
         let seen = Seen::from_selected(&ids, group, &some.collect::<Vec<_>>());
         let (state, path) = (State { frame: 56, seen }, folder.join("s.bin"));
         pending(&path, &state, SCENE).unwrap().put().unwrap();
-        let bytes = std::fs::read(&path).unwrap();
         assert_eq!(read(&path, SCENE, &ids).unwrap(), state);
+        let sealed = std::fs::read(&path).unwrap();
+        let bytes = check(&sealed).unwrap().to_vec();
         (state, bytes)
     }
 
@@ -180,6 +203,27 @@ mod tests {
         let mut many = bytes;
         many[MAGIC.len() + DIGITS + 16 + 12 + 4] = 200;
         assert_eq!(words(&many, SCENE, &counts), "the state is damaged; write it again");
+    }
+
+    #[test]
+    fn a_flipped_bit_is_never_a_state() {
+        let folder = tempfile::tempdir().unwrap();
+        let counts = [100, 3];
+        let (_, bytes) = file(folder.path(), &counts, 5);
+        let sealed = checksum::seal(bytes);
+        let path = folder.path().join("flipped.bin");
+        for bit in 0..8 * sealed.len() {
+            let mut flipped = sealed.clone();
+            flipped[bit / 8] ^= 1 << (bit % 8);
+            std::fs::write(&path, flipped).unwrap();
+            let line = read(&path, SCENE, &ids(&counts)).unwrap_err().to_string();
+            let known = ["damaged", "not a state", "an older version"];
+            assert!(known.iter().any(|why| line.contains(why)), "{bit}: {line}");
+        }
+        let older = [OLDER, &sealed[MAGIC.len()..]].concat();
+        std::fs::write(&path, older).unwrap();
+        let line = read(&path, SCENE, &ids(&counts)).unwrap_err().to_string();
+        assert!(line.contains("an older version"), "{line}");
     }
 
     proptest! {

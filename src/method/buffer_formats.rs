@@ -25,6 +25,11 @@
 //!   [`mod@super::transparent`] and [`mod@super::transparent_hq`] are rounded after every layer
 //!   that is laid over the layers before. The layers of [`mod@super::peeling`] are rounded after
 //!   every layer that is laid under them.
+//! - The depth that **normalization** shows, as the plane `Z`, is the depth that it reads back from
+//!   the depth buffer: `visibility.Z` of [`mod@super::ewa`], `difference.Z` of
+//!   [`mod@super::deferred`], each as it is stored. Like every plane that a stage leaves, `Z` is then
+//!   rounded itself. Where `deferred` shows a polygon, or without its second pass a fragment of
+//!   B(i), the depth is that fragment's in `f32`, rounded once.
 //! - Diagnostics that no buffer holds (`margin`, `voronoi`) are not rounded.
 //!
 //! # Rounding

@@ -143,8 +143,8 @@ impl<'a> Session<'a> {
         self.index.groups.as_ref()
     }
 
-    /// What the next frame receives from the last one: what [`Session::render`] saw, or what
-    /// [`Session::resume`] put in its place. It is none before the first frame, and for a method
+    /// What the next frame receives from the last one: what [`Session::render`] or
+    /// [`Session::emulate`] saw, or what [`Session::resume`] put in its place. It is none before the first frame, and for a method
     /// without temporal state.
     #[must_use]
     pub fn seen(&self) -> Option<&Seen> {
@@ -189,6 +189,10 @@ impl<'a> Session<'a> {
 
     /// Renders the picture by the definition, in any number; with `stages`, also the planes of
     /// every stage, which [`Method::stages`] lists.
+    ///
+    /// A definition leaves the session as it was: the next call renders the same frame again. Its
+    /// [`Picture::seen`] is what this frame saw in the number `R`; hand it to [`Session::resume`] to
+    /// go on to the next frame.
     ///
     /// # Errors
     /// As [`Session::render`].

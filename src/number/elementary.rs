@@ -4,8 +4,9 @@
 //! platform. Clippy's `disallowed-methods` rejects the functions of std everywhere. A function that
 //! no formula needs is not here.
 //!
-//! - **f64**: the functions of the crate `libm` 0.2.16 (pinned), which give the same bits on every
-//!   target: `exp`, `log`, `pow`, `sin`, `cos`, `tan`, `atan2` and `j0`, ports of FreeBSD's msun.
+//! - **f64**: the functions of the crate `libm` 0.2.16 (pinned; <https://docs.rs/libm/0.2.16>),
+//!   which give the same bits on every target. They are neither the functions of the platform's
+//!   libm nor correctly rounded. A second implementation has to call or port this version: `exp`, `log`, `pow`, `sin`, `cos`, `tan`, `atan2` and `j0`, ports of FreeBSD's msun.
 //!   Other libraries, newer versions of musl among them, differ in the last digit here and there.
 //! - **f32**: the definition is *the correctly rounded value*. It is computed in f64 and rounded
 //!   once. [`exp_f32`] uses the polynomial below, which an ignored test checks over every `f32` in

@@ -30,8 +30,9 @@ impl Scene {
     ///     (3 f32) after a byte 1, or a byte 0 alone; u64 count of primitives; the vertices of
     ///     each (u32)
     ///   objects: nothing if there are none; else a byte 4, then
-    ///     u64 count of geometries, each: surfels and primitives as above, primitives also if there
-    ///       are none; of a hierarchy in a folder, of which a view reads what it needs, the count
+    ///     u64 count of geometries, each: surfels as above, from their count to their tangents; then
+    ///       triangles, ribbons and tubes as above, without the byte 3, and all three lists even if
+    ///       they are empty; of a hierarchy in a folder, of which a view reads what it needs, the count
     ///       and the hash of the hierarchy (32 bytes)
     ///     the colour of objects without one (3 f32)
     ///     u64 count of objects, each: geometry (u64), colour (3 f32) after a byte 1, or a byte 0
@@ -44,6 +45,11 @@ impl Scene {
     ///   prefiltered colours: nothing if no surfel has any; else a byte 5, then for the surfels, or for
     ///     those of each geometry, u64 count of levels, and the colours surfel by surfel (3 f32 each)
     /// ```
+    ///
+    /// A list of primitives without vertices takes 17 bytes: a count of 0, the byte for colours, a
+    /// count of 0. The byte for colours is 1 in all three lists if the geometry's model has a
+    /// `color`, because this colour replaces the colours of all lists, the empty ones too. Else it
+    /// is 0 in a list without colours.
     ///
     /// A scene of objects has no surfels and no primitives except the ones of its geometries,
     /// whether it is [flat](mod@crate::source::flatten) or not.

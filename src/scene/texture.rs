@@ -200,16 +200,18 @@ fn coarser(fine: &Plane<[f32; 3]>, level: u32, size: [u32; 2]) -> Plane<[f32; 3]
     let [columns, rows] =
         size.map_inline(|texels| Axis { texels: texels.into(), side: 1 << level, repeats: false });
     let half = |n: u32| n.div_ceil(2);
+    // A product of whole numbers below 2^53 is exact, so it may be computed in any way.
+    let area = |i: u32, j: u32| (columns.length(i.into()) * rows.length(j.into())) as f64;
     Plane::from_pixels([half(fine.width()), half(fine.height())], |x, y| {
-        let (mut sum, mut area) = (DVec3::ZERO, 0.0);
+        let (mut sum, mut total) = (DVec3::ZERO, 0.0);
         for j in 2 * y..fine.height().min(2 * y + 2) {
             for i in 2 * x..fine.width().min(2 * x + 2) {
-                let own = columns.cell(i.into()).1 * rows.cell(j.into()).1;
+                let own = area(i, j);
                 sum += DVec3::from_array(fine.at(i, j).map_inline(f64::from)) * own;
-                area += own;
+                total += own;
             }
         }
-        (sum / area).as_vec3().to_array()
+        (sum / total).as_vec3().to_array()
     })
 }
 
@@ -226,6 +228,11 @@ struct Axis {
 impl Axis {
     fn cells(self) -> i64 {
         (self.texels + self.side - 1) / self.side
+    }
+
+    /// The length of a cell of the tile at the origin.
+    fn length(self, cell: i64) -> i64 {
+        self.texels.min((cell + 1) * self.side) - cell * self.side
     }
 
     /// The centre of a cell, and its length.

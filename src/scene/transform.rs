@@ -143,7 +143,17 @@ pub(crate) fn is_axis(axis: DVec3) -> bool {
 /// viewer.
 ///
 /// With k the axis divided by its length, and c and s the cosine and sine of the angle:
-/// `c I + s [k]x + (1 - c) k k^T`.
+/// `c I + s [k]x + (1 - c) k k^T`. In f64, each operation rounded in the order written, e one of
+/// the axes x, y and z:
+///
+/// ```text
+///   angle    = degrees q                       q = PI / 180 in f64, 0.017453292519943295
+///   c, s     = cos(angle), sin(angle)          of number::elementary
+///   k        = axis (1 / sqrt((ax ax + ay ay) + az az))      the quotient once, then three products
+///   column e = (e c + (k x e) s) + k ((k . e) (1 - c))
+///   a x b    = (a.y b.z - b.y a.z, a.z b.x - b.z a.x, a.x b.y - b.x a.y)
+///   a . b    = (a.x b.x + a.y b.y) + a.z b.z
+/// ```
 #[must_use]
 pub fn rotation(axis: DVec3, degrees: f64) -> DMat3 {
     let k = axis.normalize();

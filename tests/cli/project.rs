@@ -43,7 +43,7 @@ fn what_has_no_records_is_refused() {
         (&["-o", "a.ply"], "give a name that ends in .bin", 2),
         (&[], "--output", 2),
         (&["-o", "missing/a.bin"], "missing", 1),
-        (&["-o", "a.bin", "--cutoff", "9"], "cut-off of 9", 1),
+        (&["-o", "a.bin", "--cutoff", "9"], "cut-off of 9", 2),
     ] {
         let arguments = [&["project", "sphere", "--count", "50", "--size", "8x8"], more].concat();
         let line = fails(at.path(), &arguments, code);

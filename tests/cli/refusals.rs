@@ -50,6 +50,35 @@ fn wrong_usage_is_exit_code_2() {
 #[test]
 fn pictures_that_cannot_be_are_refused() {
     let at = TempDir::new().unwrap();
+    // A setting that cannot be is wrong usage, whatever the scene.
+    for (more, what) in [
+        (&["--epsilon", "-1"] as &[&str], "epsilon"),
+        (&["--epsilon", "nan"], "epsilon"),
+        (&["--cutoff", "9"], "cut-off of 9"),
+        (&["--low-pass", "-1"], "low-pass"),
+        (&["--opacity", "1.5"], "opacity of 1.5"),
+        (&["--mipmaps", "99"], "mipmaps of 99 levels"),
+        (&["--surfel-size", "0"], "discs of 0 pixels"),
+        (&["--bins", "5"], "`bins` does not apply to the method ewa"),
+        (&["--flags", "3"], "`flags` does not apply to the method ewa"),
+        (&["--method", "deferred", "--flags", "0"], "flags: 0 surfels"),
+        (&["--method", "deferred", "--share", "2"], "share: 2"),
+        (&["--method", "single-pass", "--overlap", "-0.5"], "c = -0.5"),
+        (&["--method", "single-pass", "--overlap", "nan"], "c = NaN"),
+        (&["--method", "single-pass", "--groups", "0"], "0 groups"),
+        (&["--method", "transparent", "--groups", "65"], "1 to 64"),
+        (&["--method", "transparent", "--bins", "0"], "bins: 0;"),
+        (&["--method", "transparent", "--bins", "65536"], "bins: 65536"),
+        (&["--method", "transparent", "--refraction", "0.7"], "`refraction` does not apply to"),
+        (
+            &["--method", "transparent-hq", "--environment", "sky", "--refraction", "5"],
+            "a ratio of 5",
+        ),
+        (&["--method", "peeling", "--peel", "0"], "peel: 0"),
+    ] {
+        let line = fails(at.path(), &small(more), 2);
+        assert!(line.contains(what), "{line}");
+    }
     for (more, what) in [
         (&["--eye", "1e308,0,0"] as &[&str], "farther away than 1e38"),
         (&["--eye", "0,1e39,0", "--up", "1,0,0"], "farther away than 1e38"),
@@ -61,28 +90,10 @@ fn pictures_that_cannot_be_are_refused() {
         (&["--fov", "180"], "180"),
         (&["--focal", "0"], "focal length"),
         (&["--ortho", "-1"], "height"),
-        (&["--epsilon", "-1"], "epsilon"),
-        (&["--epsilon", "nan"], "epsilon"),
-        (&["--cutoff", "9"], "cut-off of 9"),
-        (&["--low-pass", "-1"], "low-pass"),
         (&["--environment", "none.exr"], "none.exr"),
-        (&["--opacity", "1.5"], "opacity of 1.5"),
-        (&["--bins", "5"], "`bins` does not apply to the method ewa"),
-        (&["--method", "single-pass", "--overlap", "-0.5"], "c = -0.5"),
-        (&["--method", "single-pass", "--overlap", "nan"], "c = NaN"),
-        (&["--method", "single-pass", "--groups", "0"], "0 groups"),
-        (&["--method", "transparent", "--groups", "65"], "1 to 64"),
-        (&["--method", "transparent", "--bins", "0"], "bins: 0;"),
-        (&["--method", "transparent", "--bins", "65536"], "bins: 65536"),
         (&["--method", "transparent", "--epsilon", "1e-9"], "at most 65535 bins"),
         (&["--method", "single-pass", "--epsilon", "0"], "at most 65535 bins"),
-        (&["--method", "transparent", "--refraction", "0.7"], "`refraction` does not apply to"),
         (&["--method", "transparent-hq", "--refraction", "0.7"], "give an environment"),
-        (
-            &["--method", "transparent-hq", "--environment", "sky", "--refraction", "5"],
-            "a ratio of 5",
-        ),
-        (&["--method", "peeling", "--peel", "0"], "peel: 0"),
     ] {
         let line = fails(at.path(), &small(more), 1);
         assert!(line.contains(what), "{line}");

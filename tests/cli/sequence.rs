@@ -216,9 +216,9 @@ fn a_frame_goes_on_from_the_state_of_the_one_before() {
 
     // What cannot be.
     let refused = |more: &[&'static str], code| fails(at.path(), &with(more), code);
-    let line = refused(&["--frame", "1", "--state", "s.bin", "-o", "x.exr"], 1);
+    let line = refused(&["--frame", "1", "--state", "s.bin", "-o", "x.exr"], 2);
     assert!(line.contains("the state after frame 1 is for frame 2, but this is frame 1"), "{line}");
-    let line = refused(&["--frame", "2", "--state", "s.bin", "--flags", "8", "-o", "x.exr"], 1);
+    let line = refused(&["--frame", "2", "--state", "s.bin", "--flags", "8", "-o", "x.exr"], 2);
     assert!(line.contains("flags of 64 surfels, but the method has 8; set --flags 64"), "{line}");
     let line = refused(&["--frame", "2", "--state", "walk.toml", "-o", "x.exr"], 1);
     assert!(line.contains("not a state of splatref"), "{line}");

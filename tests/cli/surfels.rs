@@ -198,7 +198,7 @@ fn a_prefix_is_the_file_of_its_points() {
         assert_eq!(all.status.code(), Some(1), "{method}");
     }
     for (arguments, code, what) in [
-        (["all.ply", "--prefix", "0"], 1, "a prefix of 0 points"),
+        (["all.ply", "--prefix", "0"], 2, "a prefix of 0 points"),
         (["sphere", "--prefix", "9"], 2, "sphere is not one"),
         (["mesh.ply", "--prefix", "9"], 1, "mesh.ply: a prefix needs points"),
     ] {
@@ -238,8 +238,8 @@ fn a_view_draws_as_much_of_an_order_as_it_needs() {
         assert!((96..=100).contains(&few), "{method}: {few}");
     }
     for (arguments, code, what) in [
-        (["all.ply", "--surfel-size", "0"], 1, "discs of 0 pixels"),
-        (["all.ply", "--surfel-budget", "0"], 1, "a budget of 0 surfels"),
+        (["all.ply", "--surfel-size", "0"], 2, "discs of 0 pixels"),
+        (["all.ply", "--surfel-budget", "0"], 2, "a budget of 0 surfels"),
         (["mesh.ply", "--surfel-budget", "9"], 1, "mesh.ply: a prefix needs points"),
         (
             ["sphere", "--surfel-budget", "9"],

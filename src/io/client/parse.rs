@@ -131,6 +131,7 @@ impl Sidecar {
 
     /// Parses the text of the file at `path`; other files are relative to its folder.
     pub(super) fn parse(text: &str, path: &Path) -> Result<Self> {
+        input::ask_for_toml(path, text)?;
         let table = text.parse::<toml::Table>();
         let table = table.map_err(|error| input::no_toml(path, text, &error))?;
         let mut read = Self::of_keys(Keys::new(table)).map_err(|what| Error::format(path, what))?;

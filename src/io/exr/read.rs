@@ -4,6 +4,7 @@ use super::{ATTRIBUTE, ChannelType, PictureHeader, batch};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::frame::image::{Image, Values};
+use crate::io::guard::guarded;
 use crate::io::{Reason, input};
 use crate::memory;
 use exr::block::UncompressedBlock;
@@ -14,12 +15,9 @@ use exr::meta::attribute::{AttributeValue, SampleType, Text as ExrText};
 use exr::meta::header::Header as PartHeader;
 use exr::meta::{BlockDescription, MetaData};
 use exr::prelude::{Compression, Vec2, f16};
-use std::cell::Cell;
 use std::fs::File;
 use std::io::{BufReader, Read, Seek};
-use std::panic::{self, AssertUnwindSafe};
 use std::path::Path;
-use std::sync::Once;
 
 /// Deflate expands one byte to at most 1032; PXR24 drops one byte in four before deflate: 1376.
 const MOST_EXPANSION: u64 = 1376;
@@ -55,7 +53,7 @@ pub fn read(path: &Path) -> Result<Image> {
 pub fn read_with(path: &Path, exec: &Exec) -> Result<Image> {
     let (file, length) = open(path)?;
     let bytes = input::rest(file, length).map_err(|source| Error::io(path, source))?;
-    guarded(|| decode(&bytes, exec)).map_err(|what| Error::format(path, what))
+    guarded(|| decode(&bytes, exec)).flatten().map_err(|what| Error::format(path, what))
 }
 
 /// Reads the header of the EXR file at `path`, and no pixel.
@@ -65,6 +63,7 @@ pub fn read_with(path: &Path, exec: &Exec) -> Result<Image> {
 pub fn read_header(path: &Path) -> Result<PictureHeader> {
     let (file, length) = open(path)?;
     guarded(|| Ok(summary(&metadata(BufReader::new(file), length)?)))
+        .flatten()
         .map_err(|what| Error::format(path, what))
 }
 
@@ -85,25 +84,6 @@ fn open(path: &Path) -> Result<(File, u64)> {
         ));
     }
     Ok((file, length))
-}
-
-/// Runs a decoder, and turns a panic into an error without printing a message. No panic is known.
-pub(super) fn guarded<T>(decode: impl FnOnce() -> Reason<T>) -> Reason<T> {
-    thread_local!(static SILENT: Cell<bool> = const { Cell::new(false) });
-    static HOOK: Once = Once::new();
-    HOOK.call_once(|| {
-        let loud = panic::take_hook();
-        panic::set_hook(Box::new(move |what| {
-            if !SILENT.get() {
-                loud(what);
-            }
-        }));
-    });
-    // Calls may nest: on one thread, a block is decoded inside its file.
-    let outside = SILENT.replace(true);
-    let result = panic::catch_unwind(AssertUnwindSafe(decode));
-    SILENT.set(outside);
-    result.unwrap_or_else(|_| Err("too damaged to decode; write it again".into()))
 }
 
 /// Parses the header, and checks that a file of `length` bytes can hold what the header promises.
@@ -287,6 +267,7 @@ fn decode_block(
             .map(Some)
             .map_err(|error| reason(&place(), error))
     })
+    .flatten()
 }
 
 /// The planes of a part, filled with 0.

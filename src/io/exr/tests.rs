@@ -347,13 +347,6 @@ fn a_file_that_promises_more_than_it_can_hold_is_refused() {
     assert!(line.contains("268435456 x 12 pixels"), "{line}");
 }
 
-#[test]
-fn a_panic_of_the_decoder_is_an_error_of_the_file() {
-    let gone: Result<(), String> = read::guarded(|| panic!("not to be seen"));
-    assert!(gone.unwrap_err().contains("damaged"));
-    assert_eq!(read::guarded(|| Ok(1)), Ok(1));
-}
-
 /// A small generator with a full period: Steele and Vigna's splitmix64.
 fn random(state: &mut u64) -> u64 {
     *state = state.wrapping_add(0x9E37_79B9_7F4A_7C15);

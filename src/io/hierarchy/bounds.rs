@@ -1,17 +1,17 @@
 //! The file with the bounds of each node's surfels and triangles, see the [module](super).
 
-use super::bytes::{Hash, Reader, Writer};
+use super::bytes::{Hash, Reader, Writer, check_magic, checked};
 use super::read::Hierarchy;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::io::replace::write_atomically;
-use crate::io::{Reason, input};
+use crate::io::{Reason, checksum, input};
 use crate::progress::Progress;
 use crate::scene::bounds::Bounds;
 use crate::scene::objects::outline::Needed;
 use std::io::Write;
 
-const MAGIC: &[u8; 16] = b"splatref ball 1\n";
+const MAGIC: &[u8; 16] = b"splatref ball 2\n";
 const HEADER: u64 = 56;
 const OF_A_NODE: u64 = 32;
 /// The name of the file.
@@ -40,7 +40,8 @@ impl Hierarchy {
             to.vector(high);
             to.double(radius);
         }
-        write_atomically(&self.folder.join(FILE), |file| file.write_all(&to.0))
+        let bytes = checksum::seal(to.0);
+        write_atomically(&self.folder.join(FILE), |file| file.write_all(&bytes))
     }
 
     fn bounds_of_nodes(&self, exec: &Exec, progress: Progress<'_>) -> Result<Vec<Bounds>> {
@@ -56,10 +57,10 @@ impl Hierarchy {
 }
 
 fn parse(bytes: &[u8], nodes: usize, hash: &Hash) -> Reason<Vec<Bounds>> {
+    check_magic(bytes, MAGIC, "the bounds")?;
+    let bytes = checked(bytes)?;
     let mut rest = Reader(bytes);
-    if &rest.take::<16>()? != MAGIC {
-        return Err("not the bounds of a splatref hierarchy".into());
-    }
+    rest.take::<16>()?;
     if &rest.take::<32>()? != hash {
         return Err("the bounds belong to another hierarchy than the index".into());
     }

@@ -173,7 +173,7 @@ impl<'a> Work<'a> {
     /// Writes the bounds and the index, once all nodes are made.
     pub(super) fn finish(self) -> Result<Built> {
         self.hierarchy.write_bounds(self.exec, self.progress)?;
-        let bytes = self.hierarchy.index.bytes();
+        let bytes = self.hierarchy.index.file();
         write_atomically(&self.hierarchy.folder.join("index"), |to| to.write_all(&bytes))?;
         Ok(self.built)
     }

@@ -1,6 +1,6 @@
 //! Convert numbers to bytes and back.
 
-use crate::io::Reason;
+use crate::io::{Reason, checksum};
 use glam::{DMat3, DVec3, Vec3};
 
 /// A SHA-256 hash.
@@ -39,6 +39,28 @@ impl Writer {
 
     pub(super) fn double(&mut self, double: f64) {
         self.bytes(&double.to_le_bytes());
+    }
+}
+
+/// Why a file with a wrong checksum is refused.
+pub(super) const DAMAGED: &str =
+    "damaged: its checksum is wrong; rerun `splatref surfels` to make the file again";
+
+/// The bytes before the checksum at the end of a file or a block.
+pub(super) fn checked(bytes: &[u8]) -> Reason<&[u8]> {
+    checksum::open(bytes).ok_or_else(|| DAMAGED.into())
+}
+
+/// Checks that a file begins with its `magic`; `what` is what it should be.
+pub(super) fn check_magic(bytes: &[u8], magic: &[u8; 16], what: &str) -> Reason<()> {
+    let mut older = *magic;
+    older[14] = b'1';
+    match bytes.first_chunk::<16>() {
+        Some(found) if found == magic => Ok(()),
+        Some(found) if *found == older => Err("an older version wrote this file, without a \
+             checksum; rerun `splatref surfels` to make it again"
+            .into()),
+        _ => Err(format!("not {what} of a splatref hierarchy")),
     }
 }
 

@@ -1,9 +1,9 @@
 //! The index of a hierarchy, see the [module](super).
 
-use super::bytes::{Hash, Reader, Writer};
+use super::bytes::{Hash, Reader, Writer, check_magic, checked};
 use super::kind::Kind;
 use super::surfels;
-use crate::io::Reason;
+use crate::io::{Reason, checksum};
 use crate::scene::Similarity;
 use crate::scene::light::is_color;
 use crate::scene::objects::detail::prefix::Estimate;
@@ -11,7 +11,7 @@ use crate::source::hierarchy::Flaws;
 use glam::Vec3;
 use std::ops::Range;
 
-const MAGIC: &[u8; 16] = b"splatref tree 1\n";
+const MAGIC: &[u8; 16] = b"splatref tree 2\n";
 const HEADER: u64 = 80;
 const OF_A_NODE: u64 = 88;
 const OF_AN_OBJECT: u64 = 136;
@@ -93,6 +93,18 @@ pub(super) struct Index {
 }
 
 impl Index {
+    /// The whole file.
+    pub(super) fn file(&self) -> Vec<u8> {
+        checksum::seal(self.bytes())
+    }
+
+    /// Reads the whole file.
+    pub(super) fn from_file(bytes: &[u8]) -> Reason<Self> {
+        check_magic(bytes, MAGIC, "the index")?;
+        Self::parse(checked(bytes)?)
+    }
+
+    /// The file without its checksum.
     pub(super) fn bytes(&self) -> Vec<u8> {
         let mut to = Writer::default();
         to.bytes(MAGIC);
@@ -132,11 +144,10 @@ impl Index {
         to.0
     }
 
+    /// Parses the file without its checksum.
     pub(super) fn parse(bytes: &[u8]) -> Reason<Self> {
         let mut rest = Reader(bytes);
-        if &rest.take::<16>()? != MAGIC {
-            return Err("not the index of a splatref hierarchy".into());
-        }
+        rest.take::<16>()?;
         let hash = rest.take::<32>()?;
         let [nodes, upper, objects, geometries] = rest.words()?;
         let fill = rest.vector()?;

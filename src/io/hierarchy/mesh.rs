@@ -1,23 +1,24 @@
 //! The file of a geometry: its tree and its triangles, see the [module](super).
 
-use super::bytes::{Hash, Reader, Writer};
+use super::bytes::{Hash, Reader, Writer, check_magic, checked};
 use super::index::{self, NONE, Node};
 use super::kind::Kind;
 use crate::error::{Error, Result};
 use crate::io::replace::write_atomically;
-use crate::io::{Reason, input};
+use crate::io::{Reason, checksum, input};
 use crate::memory;
 use crate::scene::objects::detail::prefix::Estimate;
 use crate::scene::{Property, Triangles};
 use crate::source::hierarchy::parts::tree;
 use crate::source::hierarchy::{BOUND, Flaws, Numbers, Part};
 use sha2::{Digest, Sha256};
-use std::io::{self, Read, Seek, SeekFrom, Write};
+use std::io::{Read, Seek, SeekFrom, Write};
 use std::path::{Path, PathBuf};
 
-const MAGIC: &[u8; 16] = b"splatref mesh 1\n";
+const MAGIC: &[u8; 16] = b"splatref mesh 2\n";
 const HEADER: u64 = 88;
 const OF_A_NODE: u64 = 56;
+const CHECKSUM: u64 = checksum::BYTES as u64;
 /// Bytes in the file: a triangle.
 const TRIANGLE: u64 = 12;
 /// How many times the bytes of the file a loaded block may take in memory.
@@ -100,9 +101,10 @@ pub(super) fn write(
         header.long(node.weight);
     }
     write_atomically(&path(folder, geometry), |to| {
-        to.write_all(&header.0)?;
+        to.write_all(&checksum::seal(header.0))?;
         for number in 0..tree.nodes.len() as u32 {
-            to.write_all(&block(&Part::from_triangles(triangles, tree.own(number))))?;
+            let block = block(&Part::from_triangles(triangles, tree.own(number)));
+            to.write_all(&checksum::seal(block))?;
         }
         Ok(())
     })
@@ -124,13 +126,14 @@ fn block(part: &Part) -> Vec<u8> {
     to.0
 }
 
+/// The bytes of a node's triangles, without their checksum.
 fn size(node: &Node, kind: Kind) -> u64 {
     let vertices = u64::from(node.vertices).saturating_mul(kind.vertex());
     vertices.saturating_add(u64::from(node.triangles) * TRIANGLE)
 }
 
-/// Reads the header of a geometry's file, if there is a file; its nodes get the number of the
-/// geometry.
+/// Reads the header of a geometry's file, if there is a file, and checks all of the file; its nodes
+/// get the number of the geometry.
 pub(super) fn read(folder: &Path, geometry: u32) -> Result<Option<Header>> {
     let path = path(folder, geometry);
     if !path.exists() {
@@ -141,25 +144,29 @@ pub(super) fn read(folder: &Path, geometry: u32) -> Result<Option<Header>> {
     let (mut file, length) = input::open(&path).map_err(io)?;
     let mut start = vec![0; length.min(HEADER) as usize];
     file.read_exact(&mut start).map_err(io)?;
-    let mut rest = Reader(&start);
-    let (mut header, nodes) = beginning(&mut rest).map_err(format)?;
-    let records = u64::from(nodes) * OF_A_NODE;
+    let (mut header, nodes) = beginning(&start).map_err(format)?;
+    let records = u64::from(nodes) * OF_A_NODE + CHECKSUM;
     if records > length - HEADER {
         let what = format!("{nodes} nodes need more bytes than the {length} of the file");
         return Err(format(what));
     }
-    let bytes = input::rest(file, records).map_err(io)?;
-    header.nodes = records_of(&bytes, nodes, geometry, header.kind, length).map_err(format)?;
+    start.extend(input::rest(&file, records).map_err(io)?);
+    let records = checked(&start).map_err(format)?.get(HEADER as usize..).unwrap_or_default();
+    header.nodes = records_of(records, nodes, geometry, header.kind, length).map_err(format)?;
+    for node in &header.nodes {
+        let bytes = size(node, header.kind) + CHECKSUM;
+        checked(&input::rest(&file, bytes).map_err(io)?).map_err(format)?;
+    }
     Ok(Some(header))
 }
 
-fn beginning(rest: &mut Reader<'_>) -> Reason<(Header, u32)> {
-    if &rest.take::<16>()? != MAGIC {
-        return Err("not a geometry of a splatref hierarchy".into());
-    }
+fn beginning(start: &[u8]) -> Reason<(Header, u32)> {
+    check_magic(start, MAGIC, "a geometry")?;
+    let mut rest = Reader(start);
+    rest.take::<16>()?;
     let hash = rest.take()?;
     let [nodes, kind] = rest.words()?;
-    let flaws = index::read_flaws(rest)?;
+    let flaws = index::read_flaws(&mut rest)?;
     Ok((Header { hash, kind: Kind::of_word(kind), flaws, nodes: Vec::new() }, nodes))
 }
 
@@ -171,7 +178,7 @@ fn records_of(
     length: u64,
 ) -> Reason<Vec<Node>> {
     let mut rest = Reader(bytes);
-    let mut offset = HEADER + bytes.len() as u64;
+    let mut offset = HEADER + bytes.len() as u64 + CHECKSUM;
     let mut all = Vec::with_capacity(nodes as usize);
     for _ in 0..nodes {
         let [parent, first, children, triangles, vertices, _] = rest.words()?;
@@ -190,7 +197,7 @@ fn records_of(
             surfels: 0,
             estimate: Estimate { count: 0, distance: 0.0 },
         };
-        offset = offset.saturating_add(size(&node, kind));
+        offset = offset.saturating_add(size(&node, kind)).saturating_add(CHECKSUM);
         all.push(node);
     }
     if offset != length {
@@ -224,22 +231,19 @@ pub(super) fn part(
     let mut start = vec![0; length.min(HEADER) as usize];
     file.read_exact(&mut start).map_err(io)?;
     let format = |what: String| Error::format(&path, what);
-    let (header, _) = beginning(&mut Reader(&start)).map_err(format)?;
+    let (header, _) = beginning(&start).map_err(format)?;
     // The hash says whether the offsets of the index belong to this file.
     if header.hash != *hash || header.kind != kind {
         return Err(format("the geometry belongs to another index".into()));
     }
-    let bytes = size(node, kind);
+    let bytes = size(node, kind).saturating_add(CHECKSUM);
     if node.offset.checked_add(bytes).is_none_or(|end| end > length) {
         return Err(format("the triangles of a node lie beyond the end of the file".into()));
     }
     memory::ask(bytes.saturating_mul(IN_MEMORY), || format!("{} triangles", node.triangles))?;
     file.seek(SeekFrom::Start(node.offset)).map_err(io)?;
     let bytes = input::rest(file, bytes).map_err(io)?;
-    if (bytes.len() as u64) < size(node, kind) {
-        return Err(io(io::ErrorKind::UnexpectedEof.into()));
-    }
-    parse(&bytes, node, part).map_err(format)
+    checked(&bytes).and_then(|bytes| parse(bytes, node, part)).map_err(format)
 }
 
 fn parse(bytes: &[u8], node: &Node, mut part: Part) -> Reason<Part> {

@@ -35,7 +35,7 @@ impl Hierarchy {
             return Err(Error::format(folder, what));
         }
         let bytes = input::bytes(&path).map_err(|source| Error::io(&path, source))?;
-        let index = Index::parse(&bytes).map_err(|what| Error::format(&path, what))?;
+        let index = Index::from_file(&bytes).map_err(|what| Error::format(&path, what))?;
         Ok(Self { folder: folder.to_owned(), index })
     }
 
@@ -78,11 +78,12 @@ impl Hierarchy {
     }
 
     /// Reads the first `most` surfels of a node, or all: positions, normals, colours and
-    /// [numbers](Hierarchy::numbers) in their order. Reads no more than these.
+    /// [numbers](Hierarchy::numbers) in their order. Reads at most 1,023 more than these, because a
+    /// checksum covers a block of 1,024.
     ///
     /// # Errors
-    /// [`Error::Io`] if they cannot be read. [`Error::Format`] if they differ from the index, or if
-    /// the process may not hold them. [`Error::Invalid`] if there is no such node.
+    /// [`Error::Io`] if they cannot be read. [`Error::Format`] if they differ from the index or from
+    /// their checksum, or if the process may not hold them. [`Error::Invalid`] if there is no such node.
     pub fn surfels(&self, node: u32, most: u32) -> Result<Cloud> {
         let Node { surfels: count, estimate, .. } = *self.node(node)?;
         if count == 0 {

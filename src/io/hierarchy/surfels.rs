@@ -1,9 +1,9 @@
 //! The file of a node's surfels, see the [module](super).
 
-use super::bytes::{Hash, Reader, Writer};
+use super::bytes::{Hash, Reader, Writer, check_magic, checked};
 use crate::error::{Error, Result};
 use crate::io::replace::write_atomically;
-use crate::io::{Reason, input};
+use crate::io::{Reason, checksum, input};
 use crate::memory;
 use crate::number::srgb;
 use crate::scene::Cloud;
@@ -15,8 +15,11 @@ use std::fs::File;
 use std::io::{Read, Write};
 use std::path::{Path, PathBuf};
 
-const MAGIC: &[u8; 16] = b"splatref blue 1\n";
-const HEADER: u64 = 64;
+const MAGIC: &[u8; 16] = b"splatref blue 2\n";
+/// Bytes before the surfels, the checksum included.
+const HEADER: u64 = 68;
+/// How many surfels have one checksum.
+const BLOCK: u32 = 1024;
 /// Bytes of a surfel without further properties, of one property; and of both in memory, with the
 /// file's bytes.
 const BYTES: u64 = 20;
@@ -26,6 +29,12 @@ const IN_MEMORY: [u64; 2] = [BYTES + 40, 2 * PROPERTY];
 /// The bytes of a surfel with `further` properties.
 pub(super) fn size(further: usize) -> u64 {
     BYTES + PROPERTY * further as u64
+}
+
+/// The bytes of `count` surfels of `size` bytes, with the checksums of their blocks.
+fn body_size(count: u32, size: u64) -> u64 {
+    let sums = u64::from(count.div_ceil(BLOCK)) * checksum::BYTES as u64;
+    u64::from(count).saturating_mul(size).saturating_add(sums)
 }
 
 /// The contents of a file's header.
@@ -64,13 +73,17 @@ pub(super) fn write(folder: &Path, hash: &Hash, node: u32, cloud: &Cloud) -> Res
     header.words(&[node, count as u32, p_m]);
     header.float(distance);
     write_atomically(&path(folder, node), |to| {
-        to.write_all(&header.0)?;
-        to.write_all(&body.0)
+        to.write_all(&checksum::seal(header.0))?;
+        for block in body.0.chunks(BLOCK as usize * size(cloud.properties.len()) as usize) {
+            to.write_all(block)?;
+            to.write_all(&checksum::of(block))?;
+        }
+        Ok(())
     })
 }
 
-/// Reads the header, if there is a complete file for this hierarchy, this node and this number of
-/// further properties.
+/// Reads the header, if there is a complete and undamaged file for this hierarchy, this node and
+/// this number of further properties.
 pub(super) fn header(
     folder: &Path,
     hash: &Hash,
@@ -81,26 +94,29 @@ pub(super) fn header(
     if !path.exists() {
         return Ok(None);
     }
-    let (mut file, length) = input::open(&path).map_err(|source| Error::io(&path, source))?;
-    let mut bytes = [0; HEADER as usize];
-    if length < HEADER {
-        return Ok(None);
-    }
-    file.read_exact(&mut bytes).map_err(|source| Error::io(&path, source))?;
-    Ok(parse(&bytes, (length, size(further)), hash).ok().filter(|header| header.node == node))
+    let bytes = input::bytes(&path).map_err(|source| Error::io(&path, source))?;
+    let Some((first, body)) = bytes.split_first_chunk() else { return Ok(None) };
+    let size = size(further);
+    let header = parse(first, (bytes.len() as u64, size), hash).ok();
+    let whole = |_: &Header| blocks(body, size).all(|block| block.is_ok());
+    Ok(header.filter(|header| header.node == node).filter(whole))
+}
+
+/// The blocks of surfels in the bytes after the header, without their checksums.
+fn blocks(body: &[u8], size: u64) -> impl Iterator<Item = Reason<&[u8]>> {
+    body.chunks(body_size(BLOCK, size) as usize).map(checked)
 }
 
 fn parse(bytes: &[u8; HEADER as usize], (length, size): (u64, u64), hash: &Hash) -> Reason<Header> {
-    let mut rest = Reader(bytes);
-    if &rest.take::<16>()? != MAGIC {
-        return Err("not a surfel file of a splatref hierarchy".into());
-    }
+    check_magic(bytes, MAGIC, "a surfel file")?;
+    let mut rest = Reader(checked(bytes)?);
+    rest.take::<16>()?;
     if &rest.take::<32>()? != hash {
         return Err("the surfels belong to another hierarchy than the index".into());
     }
     let [node, count, p_m] = rest.words()?;
     let estimate = Estimate { count: p_m, distance: rest.float()? };
-    let expected = HEADER.saturating_add(u64::from(count).saturating_mul(size));
+    let expected = HEADER.saturating_add(body_size(count, size));
     if length != expected {
         return Err(format!("{count} surfels need {expected} bytes, but the file has {length}"));
     }
@@ -138,25 +154,30 @@ pub(super) fn read(
     if found != *expected {
         return Err(Error::format(&path, "the surfels belong to another index"));
     }
-    body(file, found.count.min(most), numbers).map_err(|error| match error {
+    body(file, [found.count, most], numbers).map_err(|error| match error {
         Error::Io { source, .. } => io(source),
         Error::Invalid(what) => Error::format(&path, what),
         other => other,
     })
 }
 
-fn body(mut file: File, count: u32, numbers: &Numbers) -> Result<Cloud> {
+/// Reads the first `most` of `total` surfels, in whole blocks.
+fn body(mut file: File, [total, most]: [u32; 2], numbers: &Numbers) -> Result<Cloud> {
     let further = numbers.properties.len();
+    let count = total.min(most);
+    let read = total.min(count.next_multiple_of(BLOCK));
     let in_memory = IN_MEMORY[0] + IN_MEMORY[1] * further as u64;
-    memory::ask(u64::from(count) * in_memory, || format!("{count} surfels"))?;
-    let size = size(further) as usize;
-    let mut bytes = vec![0; count as usize * size];
+    memory::ask(u64::from(read) * in_memory, || format!("{count} surfels"))?;
+    let size = size(further);
+    let mut bytes = vec![0; body_size(read, size) as usize];
     file.read_exact(&mut bytes).map_err(|source| Error::io(Path::new(""), source))?;
+    let blocks = blocks(&bytes, size).collect::<Reason<Vec<_>>>().map_err(Error::Invalid)?;
     let table = srgb::table(255);
     let count = count as usize;
     let [mut position, mut normal, mut color] = [(); 3].map(|()| Vec::with_capacity(count));
     let (mut opacity, mut properties) = (numbers.opacity.then(Vec::new), numbers.of_none());
-    for surfel in bytes.chunks_exact(size) {
+    let surfels = blocks.iter().flat_map(|block| block.chunks_exact(size as usize));
+    for surfel in surfels.take(count) {
         let mut rest = Reader(surfel);
         position.push(rest.vector().map_err(Error::Invalid)?);
         let [u, v] = [rest.take(), rest.take()].map(|code| code.map(i16::from_le_bytes));

@@ -1,14 +1,14 @@
 //! Read JPEG files, as textures.
 
-use super::read::{codes, linear};
+use super::read::Codes;
 use crate::error::{Error, Result};
 use crate::frame::Plane;
+use crate::io::guard::guarded;
 use crate::io::input;
 use crate::memory;
 use image::ImageDecoder;
 use image::codecs::jpeg::JpegDecoder;
 use std::io::Cursor;
-use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 
 /// Bytes for each pixel: the decoder's coefficients, its codes, their copy in 16 bits, and up to four
@@ -46,12 +46,9 @@ pub(in crate::io) fn read_linear(
         let kind = decoder.color_type();
         let mut found = vec![0; decoder.total_bytes() as usize];
         decoder.read_image(&mut found).map_err(reason)?;
-        Ok(codes(width, height, kind, &found))
+        Ok(Codes::separate([width, height], kind, &found))
     };
-    // Damaged files may hit an assertion of the decoder.
-    let stored = catch_unwind(AssertUnwindSafe(read))
-        .unwrap_or_else(|_| Err(Error::format(path, "the JPEG is damaged; write it again")))?;
-    linear(path, stored)
+    guarded(read).map_err(|what| Error::format(path, what))??.linear(path)
 }
 
 #[cfg(test)]

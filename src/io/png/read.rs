@@ -4,6 +4,7 @@ use super::{quantize, straight};
 use crate::error::{Error, Result};
 use crate::frame::image::Values;
 use crate::frame::{Image, Plane};
+use crate::io::guard::guarded;
 use crate::io::input;
 use crate::memory;
 use crate::number::srgb;
@@ -34,7 +35,7 @@ pub struct Stored {
 /// [`Error::Io`] if the file cannot be read. [`Error::Format`] if the file is no PNG, is damaged,
 /// or promises more pixels than its bytes can hold; this is found before the pixels are allocated.
 pub fn read(path: &Path) -> Result<Stored> {
-    read_of_size(path, |_, _| Ok(()))
+    Ok(codes_of_size(path, |_, _| Ok(()))?.stored())
 }
 
 /// Reads the colours of the PNG file at `path` in linear light: each code is decoded as sRGB and
@@ -46,27 +47,14 @@ pub(in crate::io) fn read_linear(
     path: &Path,
     check_size: fn(u32, u32) -> Result<()>,
 ) -> Result<Plane<[f32; 3]>> {
-    linear(path, read_of_size(path, check_size)?)
+    codes_of_size(path, check_size)?.linear(path)
 }
 
-/// Decodes codes as sRGB, for the picture at `path`.
-pub(super) fn linear(path: &Path, stored: Stored) -> Result<Plane<[f32; 3]>> {
-    let Stored { image, most } = stored;
-    let count = image.width as usize * image.height as usize;
-    memory::try_ask(12 * count as u64, || format!("the colours of {count} pixels"))
-        .map_err(|what| Error::format(path, what))?;
-    let table = srgb::table(most);
-    let codes = |name: &str| match image.channel(name) {
-        Some(Values::Float(values)) => values.as_slice(),
-        Some(Values::Index(_)) | None => &[],
-    };
-    let linear = |part: f32| table[quantize(part.into(), most) as usize];
-    let colors = codes("R").iter().zip(codes("G")).zip(codes("B"));
-    let pixels = colors.map(|((&r, &g), &b)| [r, g, b].map(linear)).collect();
-    Ok(Plane::from_values(image.width, image.height, pixels))
+fn codes_of_size(path: &Path, check_size: fn(u32, u32) -> Result<()>) -> Result<Codes> {
+    guarded(|| decode(path, check_size)).map_err(|what| Error::format(path, what))?
 }
 
-fn read_of_size(path: &Path, check_size: fn(u32, u32) -> Result<()>) -> Result<Stored> {
+fn decode(path: &Path, check_size: fn(u32, u32) -> Result<()>) -> Result<Codes> {
     let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
     let length = bytes.len() as u64;
     // Keep the error on one line, even if the decoder's message has several.
@@ -98,31 +86,66 @@ fn read_of_size(path: &Path, check_size: fn(u32, u32) -> Result<()>) -> Result<S
     let kind = decoder.color_type();
     let mut bytes = vec![0; decoder.total_bytes() as usize];
     decoder.read_image(&mut bytes).map_err(reason)?;
-    Ok(codes(width, height, kind, &bytes))
+    Ok(Codes::separate([width, height], kind, &bytes))
 }
 
-/// Separates the decoder's interleaved codes; 16-bit codes are in this machine's order.
-pub(super) fn codes(width: u32, height: u32, kind: ColorType, bytes: &[u8]) -> Stored {
-    let components = usize::from(kind.channel_count());
-    let (codes, most): (Vec<u16>, u16) = if kind.bytes_per_pixel() as usize > components {
-        (bytes.as_chunks().0.iter().map(|&pair| u16::from_ne_bytes(pair)).collect(), u16::MAX)
-    } else {
-        (bytes.iter().map(|&code| u16::from(code)).collect(), 255)
-    };
-    // Places of the components in a pixel: grey, grey and alpha, colour, colour and alpha.
-    let places: &[(&str, usize)] = match components {
-        1 => &[("B", 0), ("G", 0), ("R", 0)],
-        2 => &[("A", 1), ("B", 0), ("G", 0), ("R", 0)],
-        3 => &[("B", 2), ("G", 1), ("R", 0)],
-        _ => &[("A", 3), ("B", 2), ("G", 1), ("R", 0)],
-    };
-    let channels = places.iter().map(|&(name, place)| {
-        let codes = codes.iter().skip(place).step_by(components);
-        let values = codes.map(|&code| f32::from(code) / f32::from(most)).collect();
-        (name.to_owned(), Values::Float(values))
-    });
-    let channels = channels.collect();
-    Stored { image: Image { width, height, channels, text: None }, most }
+/// The codes of a file, as many for each pixel as the file has components.
+pub(super) struct Codes {
+    size: [u32; 2],
+    components: usize,
+    /// The greatest code.
+    most: u16,
+    codes: Vec<u16>,
+}
+
+impl Codes {
+    /// Reads the decoder's bytes; 16-bit codes are in this machine's order.
+    pub(super) fn separate(size: [u32; 2], kind: ColorType, bytes: &[u8]) -> Self {
+        let components = usize::from(kind.channel_count());
+        let (codes, most) = if kind.bytes_per_pixel() as usize > components {
+            let pairs = bytes.as_chunks().0.iter();
+            (pairs.map(|&pair| u16::from_ne_bytes(pair)).collect(), u16::MAX)
+        } else {
+            (bytes.iter().map(|&code| u16::from(code)).collect(), 255)
+        };
+        Self { size, components, most, codes }
+    }
+
+    /// Decodes the codes as sRGB, for the picture at `path`.
+    pub(super) fn linear(&self, path: &Path) -> Result<Plane<[f32; 3]>> {
+        let Self { size: [width, height], components, most, ref codes } = *self;
+        let count = codes.len() / components;
+        memory::try_ask(12 * count as u64, || format!("the colours of {count} pixels"))
+            .map_err(|what| Error::format(path, what))?;
+        let table = srgb::table(most);
+        let linear = |code: u16| table[usize::from(code)];
+        // Grey, with or without alpha, is one colour three times.
+        let pixels = codes.chunks_exact(components).map(|pixel| match *pixel {
+            [r, g, b, ..] => [linear(r), linear(g), linear(b)],
+            [grey, ..] => [linear(grey); 3],
+            [] => [0.0; 3],
+        });
+        Ok(Plane::from_values(width, height, pixels.collect()))
+    }
+
+    /// The channels of the picture.
+    fn stored(&self) -> Stored {
+        let Self { size: [width, height], components, most, ref codes } = *self;
+        // Places of the components in a pixel: grey, grey and alpha, colour, colour and alpha.
+        let places: &[(&str, usize)] = match components {
+            1 => &[("B", 0), ("G", 0), ("R", 0)],
+            2 => &[("A", 1), ("B", 0), ("G", 0), ("R", 0)],
+            3 => &[("B", 2), ("G", 1), ("R", 0)],
+            _ => &[("A", 3), ("B", 2), ("G", 1), ("R", 0)],
+        };
+        let channels = places.iter().map(|&(name, place)| {
+            let codes = codes.iter().skip(place).step_by(components);
+            let values = codes.map(|&code| f32::from(code) / f32::from(most)).collect();
+            (name.to_owned(), Values::Float(values))
+        });
+        let channels = channels.collect();
+        Stored { image: Image { width, height, channels, text: None }, most }
+    }
 }
 
 impl Stored {
@@ -272,6 +295,95 @@ mod tests {
             assert_eq!(line.lines().count(), 1, "{line}");
         }
         assert!(matches!(read(Path::new("no such.png")), Err(Error::Io { .. })));
+    }
+
+    /// A chunk with its length and its checksum.
+    fn chunk(kind: &[u8; 4], data: &[u8]) -> Vec<u8> {
+        let body = [&kind[..], data].concat();
+        let crc = crc32(&body);
+        [&(data.len() as u32).to_be_bytes()[..], &body, &crc.to_be_bytes()].concat()
+    }
+
+    /// A PNG of 3 x 3 pixels of this colour type and depth, as chunks.
+    fn chunks(kind: u8, depth: u8) -> Vec<([u8; 4], Vec<u8>)> {
+        let samples = match kind {
+            2 => 3,
+            4 => 2,
+            6 => 4,
+            _ => 1,
+        };
+        let row = 1 + (3 * samples * usize::from(depth)).div_ceil(8);
+        let rows: Vec<u8> =
+            (0..3 * row).map(|i| if i % row == 0 { 0 } else { (37 * i) as u8 }).collect();
+        let mut all = vec![(*b"IHDR", vec![0, 0, 0, 3, 0, 0, 0, 3, depth, kind, 0, 0, 0])];
+        if kind == 3 {
+            all.push((*b"PLTE", (0..3_usize << depth).map(|i| (7 * i) as u8).collect()));
+            all.push((*b"tRNS", vec![9, 200]));
+        }
+        let data = miniz_oxide::deflate::compress_to_vec_zlib(&rows, 6);
+        all.extend([(*b"IDAT", data), (*b"IEND", Vec::new())]);
+        all
+    }
+
+    fn joined(chunks: &[([u8; 4], Vec<u8>)]) -> Vec<u8> {
+        let each = chunks.iter().flat_map(|(kind, data)| chunk(kind, data));
+        b"\x89PNG\r\n\x1a\n".iter().copied().chain(each).collect()
+    }
+
+    const KINDS: [(u8, &[u8]); 5] =
+        [(0, &[1, 2, 4, 8, 16]), (2, &[8, 16]), (3, &[1, 2, 4, 8]), (4, &[8, 16]), (6, &[8, 16])];
+
+    /// Whatever the decoder does, the reader returns; an error is one line.
+    fn returns(bytes: &[u8]) {
+        if let Err(error) = read_bytes(bytes) {
+            assert_eq!(error.to_string().lines().count(), 1, "{error}");
+        }
+    }
+
+    #[test]
+    fn no_mutation_of_any_colour_type_makes_it_panic() {
+        for (kind, depths) in KINDS {
+            for &depth in depths {
+                let whole = chunks(kind, depth);
+                let good = joined(&whole);
+                read_bytes(&good).unwrap();
+                (0..good.len()).step_by(3).for_each(|end| returns(&good[..end]));
+                for at in (8..good.len()).step_by(2) {
+                    let mut flipped = good.clone();
+                    flipped[at] ^= 1 << (at % 8);
+                    returns(&flipped);
+                }
+                // The checksums are right, so that the damage gets through to the decoder.
+                for (i, (_, data)) in whole.iter().enumerate() {
+                    for byte in 0..data.len() {
+                        let mut other = whole.clone();
+                        other[i].1[byte] ^= 1 << (byte % 8);
+                        returns(&joined(&other));
+                        other[i].1.truncate(byte);
+                        returns(&joined(&other));
+                    }
+                    let mut without = whole.clone();
+                    without.remove(i);
+                    returns(&joined(&without));
+                    let mut twice = whole.clone();
+                    twice.insert(i, whole[i].clone());
+                    returns(&joined(&twice));
+                    let mut longer = whole.clone();
+                    longer[i].1.push(7);
+                    returns(&joined(&longer));
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn a_palette_that_is_none_is_an_error() {
+        for length in [0, 1, 4, 5] {
+            let mut broken = chunks(3, 8);
+            broken[1].1.truncate(length);
+            let line = read_bytes(&joined(&broken)).unwrap_err().to_string();
+            assert!(line.contains("a.png: ") && line.contains("write it again"), "{line}");
+        }
     }
 
     fn crc32(bytes: &[u8]) -> u32 {

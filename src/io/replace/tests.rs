@@ -76,6 +76,31 @@ fn writers_of_one_file_do_not_meet() {
     assert_eq!(names(directory.path()), ["a.ply"]);
 }
 
+/// A file without a lock stands for the file of a killed process.
+#[test]
+fn abandoned_partial_files_are_removed_and_no_others() {
+    let directory = tempfile::tempdir().unwrap();
+    let at = |name: &str| directory.path().join(name);
+    let others = [".splatref-short.partial", ".splatref-abcdefGHIJ12.part", "a.partial"];
+    for name in others.iter().chain(&[".splatref-abcdefGHIJ12.partial"]) {
+        fs::write(at(name), "half").unwrap();
+    }
+    fs::create_dir(at(".splatref-abcdefGHIJ34.partial")).unwrap();
+    let alive = File::create(at(".splatref-stillWRITING.partial")).unwrap();
+    alive.lock().unwrap();
+    let waiting = Pending::write(&at("b"), |out| out.write_all(b"whole")).unwrap();
+    assert!(!at(".splatref-abcdefGHIJ12.partial").exists());
+    remove_abandoned(directory.path());
+    assert!(at(".splatref-stillWRITING.partial").exists(), "its writer holds the lock");
+    assert!(others.iter().all(|name| at(name).exists()));
+    drop(alive);
+    remove_abandoned(directory.path());
+    assert!(!at(".splatref-stillWRITING.partial").exists());
+    waiting.put().unwrap();
+    assert_eq!(fs::read(at("b")).unwrap(), b"whole");
+    assert_eq!(names(directory.path()).len(), others.len() + 2);
+}
+
 #[test]
 fn a_name_may_be_as_long_as_the_file_system_has_them() {
     let directory = tempfile::tempdir().unwrap();

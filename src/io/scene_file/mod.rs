@@ -351,7 +351,8 @@ impl SceneFile {
     /// `scene`, which is this scene after loading.
     ///
     /// A scene of one untransformed shape has the shape's own pose and lens. Any other scene is
-    /// framed from [`DEFAULT_SIDE`], see [`Camera::framing`]. If only the eye was chosen, it looks
+    /// framed from [`DEFAULT_SIDE`], (0.5, 0.375, 1), see [`Camera::framing`], with a vertical field
+    /// of view of [`DEFAULT_FIELD_OF_VIEW`], 34 degrees, unless a lens is chosen. If only the eye was chosen, it looks
     /// at the middle of [`Scene::bounding_sphere`]. If only the target was chosen, the camera looks
     /// from [`DEFAULT_SIDE`] at a sphere of that radius around the target.
     ///

@@ -16,6 +16,7 @@
 
 use crate::error::{Error, Result};
 use crate::io::{Reason, extension, input, ply};
+use crate::memory;
 use crate::scene::light::{MAX_RADIANCE, is_color};
 use crate::scene::{Similarity, transform};
 use glam::{DMat3, DVec3, Vec3};
@@ -51,9 +52,21 @@ pub(super) fn read(path: &Path) -> Result<Vec<Row>> {
 fn of_ply(bytes: &[u8]) -> Reason<Vec<Row>> {
     let (names, rows) = ply::numbers(bytes)?;
     let columns = Columns::new(names.iter().map(String::as_str))?;
+    let mut all = room(rows.len() / names.len())?;
     let row =
         |(i, row): (usize, &[f64])| columns.row(row).map_err(|what| format!("vertex {i}: {what}"));
-    rows.chunks_exact(names.len()).enumerate().map(row).collect()
+    for row in rows.chunks_exact(names.len()).enumerate().map(row) {
+        all.push(row?);
+    }
+    Ok(all)
+}
+
+/// Makes room for the rows of a table, before they are read.
+fn room(rows: usize) -> Reason<Vec<Row>> {
+    memory::try_ask((rows as u64).saturating_mul(size_of::<Row>() as u64), || {
+        format!("a table of {rows} rows")
+    })?;
+    Ok(Vec::with_capacity(rows))
 }
 
 fn csv(bytes: &[u8]) -> Reason<Vec<Row>> {
@@ -67,12 +80,15 @@ fn csv(bytes: &[u8]) -> Reason<Vec<Row>> {
         return Err(format!("line 1: unknown column `{name}`; the columns are {known}"));
     }
     let columns = Columns::new(names.iter().copied()).map_err(|what| format!("line 1: {what}"))?;
+    let mut rows = room(text.lines().count())?;
     let mut values = Vec::new();
-    let rows = lines.map(|(number, line): (usize, _)| {
+    let read = lines.map(|(number, line): (usize, _)| {
         let row = numbers(line, &names, &mut values).and_then(|()| columns.row(&values));
         row.map_err(|what| format!("line {number}: {what}"))
     });
-    let rows = rows.collect::<Reason<Vec<_>>>()?;
+    for row in read {
+        rows.push(row?);
+    }
     if rows.is_empty() { Err("no rows below the header; add one".into()) } else { Ok(rows) }
 }
 

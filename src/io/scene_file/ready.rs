@@ -135,15 +135,15 @@ impl Ready {
     /// Reads from a file what the frame before saw.
     ///
     /// # Errors
-    /// As [`state::read`]; [`Error::Invalid`] if the method carries nothing from frame to frame,
-    /// and [`Error::Format`] if the state does not belong to the frame before.
+    /// As [`state::read`]; [`Error::Usage`] if the method carries nothing from frame to frame, if the
+    /// state is not that of the frame before, or if the method has another number of `flags`.
     pub fn state(&self, path: &Path) -> Result<Seen> {
         let Method::Deferred(settings) = &self.method else {
             let what = format!(
                 "the method {} has no state between frames; give --method deferred, or no state",
                 self.method.name()
             );
-            return Err(Error::Invalid(what));
+            return Err(Error::Usage(what));
         };
         let scene = &self.loaded.scene;
         let ids = deferred::ids(scene);
@@ -151,11 +151,14 @@ impl Ready {
         if frame.checked_add(1) != Some(self.frame) {
             let (next, own) = (u64::from(frame) + 1, self.frame);
             let what = format!(
-                "the state after frame {frame} is for frame {next}, but this is frame {own}"
+                "{}: the state after frame {frame} is for frame {next}, but this is frame {own}; give \
+                 --frame {next}, or the state after the frame before",
+                path.display()
             );
-            return Err(Error::format(path, what));
+            return Err(Error::Usage(what));
         }
-        seen.check(&ids, settings.flags).map_err(|error| Error::format(path, error.to_string()))?;
+        seen.check(&ids, settings.flags)
+            .map_err(|error| Error::Usage(format!("{}: {error}", path.display())))?;
         Ok(seen)
     }
 

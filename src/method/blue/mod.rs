@@ -75,7 +75,10 @@
 //! **Triangles** beside the surfels are the original geometry of \[BJFM19, 4\].
 //! [`mod@super::projection`] draws them, with the same culling and the corners snapped to 1/256 px,
 //! into the same depth. A triangle takes a pixel if it is strictly nearer than the disc there. Its
-//! id is its index, counted on after the surfels. Its normal is turned to world space and divided
+//! id is its index, counted on after the surfels. In a scene of objects, surfels have ids of
+//! [`crate::scene::objects::ids`] in a view that draws no triangle. In a view that draws at least
+//! one, both are counted: the drawn surfels from 0 in the order of their ids, then the triangles in
+//! the order of the scene. A triangle's normal is turned to world space and divided
 //! by its length.
 //!
 //! # What to expect

@@ -16,7 +16,8 @@ pub struct Settings {
     pub second: bool,
     /// An object is left out of the frame if the last frame selected some of its surfels, but at
     /// most this share of the surfels that the high level leaves now \[GBP04, 7\]. In [0, 1]; 0
-    /// leaves none out.
+    /// leaves none out. A number such as 0.1 is rounded to `f32` first, and the comparison widens
+    /// the `f32` to f64.
     pub share: f32,
 }
 

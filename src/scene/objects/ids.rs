@@ -27,8 +27,13 @@
 //!
 //! Where surfels are counted, they are counted in the order of their ids. This applies to the text
 //! of an explanation or of a verdict by a method that draws all surfels one by one. It also applies
-//! to a verdict on wide ids, and to the ids of a scene that has primitives: there the count
-//! continues with the primitives after the surfels.
+//! to a verdict on wide ids, and to planes of ids by a method that draws primitives beside surfels,
+//! [`blue`](crate::method::blue), if the view draws at least one primitive: there the count
+//! continues with the primitives after the surfels. In a view that draws no primitive, the planes of
+//! `blue` hold ids.
+//!
+//! [`deferred`](crate::method::deferred) never counts: its planes hold ids, whether the scene has
+//! primitives or not, and a pixel that shows a polygon holds [`NO_ID`].
 //!
 //! In an object with [levels of detail](super::detail) only the surfels that a view looks at have
 //! ids, so the split may change from frame to frame. \[GBP04, 4.2\] has its two schemes for the

@@ -16,7 +16,9 @@
 //! nothing has a colour, the colour of the material applies. Objects that lack what others have get
 //! these values:
 //!
-//! - the colour [`Objects::fill`];
+//! - the colour [`Objects::fill`]: the colour of the scene's material, (0.75, 0.75, 0.75) by
+//!   default. In a hierarchy of a folder it is the colour in its index, so the material's when the
+//!   folder was made;
 //! - the opacity 1;
 //! - the half axes of [`super::cloud::half_axes`], from the placed normal and radius, before the
 //!   normal is made a unit vector again.
@@ -208,7 +210,8 @@ impl Objects {
         &self.ids
     }
 
-    /// The colour of objects without one, if some have one.
+    /// The colour of objects without one, if some have one: the material's, see the
+    /// [module](self).
     #[must_use]
     pub fn fill(&self) -> Vec3 {
         self.fill

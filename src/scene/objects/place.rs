@@ -98,12 +98,15 @@ impl Objects {
         Ok((self.gather(jobs(all.collect()), exec), self.primitives()?))
     }
 
-    /// Places the primitives of all objects that draw theirs, in the order of the scene.
+    /// Places the primitives of all objects that have some and draw them, in the order of the scene.
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] as [`crate::scene::indexed::Indexed::new`].
     pub fn primitives(&self) -> Result<Vec<Primitives>> {
-        let shown = (0..self.objects.len()).filter(|&object| self.shown[object].primitives);
+        // A million objects without primitives would take half a gigabyte for empty lists.
+        let has = |object: u32| !self.geometry(object).primitives.is_empty();
+        let shown = (0..self.objects.len())
+            .filter(|&object| self.shown[object].primitives && has(object as u32));
         let placed = shown.map(|object| {
             let primitives = self.geometry(object as u32).primitives.clone();
             let color = self.objects[object].color;

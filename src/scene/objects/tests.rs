@@ -170,3 +170,8 @@ fn a_scene_of_objects_becomes_one_of_surfels() {
     let plain = Scene::lit("plain", ellipses());
     assert_eq!(flatten(&plain, &exec).unwrap().surfels, plain.surfels);
 }
+
+#[test]
+fn objects_without_primitives_have_no_empty_lists() {
+    assert!(objects().primitives().unwrap().is_empty());
+}

@@ -14,6 +14,8 @@
 //! 3. **Radii**: the radius that you ask for; else the longer tangent; else, in a mesh, the longest
 //!    edge of the triangles around the vertex; else the distance to the [`RADIUS_NEIGHBOURS`]th
 //!    nearest neighbour.
+//!    All of these are lengths in the coordinates of the file. A model's `transform` and the place
+//!    of an object scale the radii afterwards.
 //! 4. **Colours** come from the texture, if it has been [read](Cloud::paint): see below.
 //! 5. [`Surfels::new`] checks the rest.
 //!
@@ -195,7 +197,7 @@ pub const RADIUS_NEIGHBOURS: usize = 10;
 /// Options of the derivation.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Derive {
-    /// The radius of points whose file gives none, in world units, > 0; derived if absent.
+    /// The radius of points whose file gives none, in the units of the file, > 0; derived if absent.
     pub radius: Option<f32>,
 }
 

@@ -62,6 +62,9 @@ pub const MAX_PARAMETER: f32 = 1024.0;
 
 /// A shape; parameters are world units in (0, [`MAX_PARAMETER`]].
 ///
+/// A parameter is an `f32`: a number in a scene file, such as `gap = 0.1`, is rounded to `f32`
+/// first. All formulas then take the `f32`, widened to f64.
+///
 /// Surfaces have two sides: a ray hits them from either, and the normal is the surface's own.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Shape {

@@ -8,8 +8,8 @@ use glam::Vec3;
 /// `p_m` for orders with at least this many points: the paper's example.
 pub const COUNT: usize = 1000;
 
-/// The estimate for ordered points, each with a normal. `p_m` is the lesser of [`COUNT`] and the
-/// number of points. The squared distances are those of [`super::greedy`] in `f32`, among the first
+/// The estimate for ordered points, each with a normal. `p_m` is the lesser of [`COUNT`], 1000, and
+/// the number of points. The squared distances are those of [`super::greedy`] in `f32`, among the first
 /// `p_m` points:
 ///
 /// ```text

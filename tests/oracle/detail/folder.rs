@@ -156,7 +156,7 @@ impl World {
 
     /// What bounds the surfels and the own triangles of each node.
     fn bounds(&self, hash: &[u8; 32]) -> Vec<u8> {
-        let mut bytes = Bytes::begin("splatref ball 1\n");
+        let mut bytes = Bytes::begin("splatref ball 2\n");
         bytes.0.extend(hash);
         let total = self.first(self.meshes.len());
         bytes.u32(&[total, 0]);
@@ -185,11 +185,12 @@ impl World {
             bytes.f32(&high);
             bytes.f64(&[all.iter().map(reach).fold(0.0, f64::max)]);
         }
+        bytes.seal(0);
         bytes.0
     }
 
     fn index(&self, hash: &[u8; 32], begins: &[Vec<u64>]) -> Vec<u8> {
-        let mut bytes = Bytes::begin("splatref tree 1\n");
+        let mut bytes = Bytes::begin("splatref tree 2\n");
         bytes.0.extend(hash);
         let total = self.first(self.meshes.len());
         let of = [self.upper.len(), self.objects.len(), self.meshes.len()].map(|n| n as u32);
@@ -224,6 +225,7 @@ impl World {
             bytes.u32(&[0]);
         }
         self.rest(&mut bytes);
+        bytes.seal(0);
         bytes.0
     }
 

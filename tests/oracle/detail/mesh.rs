@@ -38,6 +38,15 @@ impl Bytes {
         self.0.extend(name.as_bytes());
     }
 
+    /// Appends the CRC-32 of the bytes from `start` on, bit by bit as the standard writes it.
+    pub(crate) fn seal(&mut self, start: usize) {
+        let crc = !self.0[start..].iter().fold(!0, |crc: u32, byte| {
+            let step = |crc: u32, _| (crc >> 1) ^ if crc & 1 == 1 { 0xEDB8_8320 } else { 0 };
+            (0..8).fold(crc ^ u32::from(*byte), step)
+        });
+        self.u32(&[crc]);
+    }
+
     pub(crate) fn hash(&self) -> [u8; 32] {
         Sha256::digest(&self.0).into()
     }
@@ -148,7 +157,7 @@ impl Mesh {
 
     /// The bytes of its file, and where the own triangles of each node begin.
     pub(crate) fn file(&self) -> (Vec<u8>, Vec<u64>) {
-        let mut bytes = Bytes::begin("splatref mesh 1\n");
+        let mut bytes = Bytes::begin("splatref mesh 2\n");
         bytes.0.extend(self.hash());
         bytes.u32(&[self.tree.len() as u32, self.kind()]);
         bytes.u64(&self.flaws());
@@ -161,6 +170,7 @@ impl Mesh {
             bytes.f32(&node.high);
             bytes.u64(&[node.weight]);
         }
+        bytes.seal(0);
         let mut begin = Vec::new();
         for node in &self.tree {
             begin.push(bytes.0.len() as u64);
@@ -178,6 +188,7 @@ impl Mesh {
                 let at = |v| vertices.iter().position(|own| *own == v).expect("a vertex") as u32;
                 bytes.u32(&self.corners[t as usize].map(at));
             }
+            bytes.seal(begin[begin.len() - 1] as usize);
         }
         (bytes.0, begin)
     }

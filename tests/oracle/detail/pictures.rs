@@ -93,18 +93,27 @@ impl Surfels {
 
     /// The bytes of its file, with so many further properties.
     pub(crate) fn file(&self, hash: &[u8; 32], number: u32, further: usize) -> Vec<u8> {
-        let mut bytes = Bytes::begin("splatref blue 1\n");
+        let mut bytes = Bytes::begin("splatref blue 2\n");
         bytes.0.extend(hash);
         let (count, p, r) = self.header();
         bytes.u32(&[number, count, p]);
         bytes.f32(&[r]);
+        bytes.seal(0);
+        let mut start = bytes.0.len();
         let further = |numbers: &[f32]| numbers[numbers.len() - further..].to_vec();
         let all = self.position.iter().zip(&self.codes).zip(&self.numbers);
-        for ((position, (normal, color)), numbers) in all {
+        for (i, ((position, (normal, color)), numbers)) in all.enumerate() {
+            if i > 0 && i % 1024 == 0 {
+                bytes.seal(start);
+                start = bytes.0.len();
+            }
             bytes.f32(&position.to_array());
             normal.iter().for_each(|v| bytes.0.extend(v.to_le_bytes()));
             bytes.0.extend(color);
             bytes.f32(&further(numbers));
+        }
+        if count > 0 {
+            bytes.seal(start);
         }
         bytes.0
     }

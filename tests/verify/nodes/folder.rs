@@ -82,7 +82,8 @@ fn rim(node: &Node, off: f64) -> [f64; 2] {
         [3.0 - (6.25 * (1.0 + off) - 0.49).sqrt(), 0.3]
     } else {
         // The radius 2, or more where more surfels are asked for than there are.
-        let square = 4.0 * (node.asked / f64::from(node.count)).max(1.0);
+        let least = node.asked / f64::from(node.count);
+        let square = 4.0 * if least > 1.0 { least } else { 1.0 };
         [2.0 - (square * (1.0 + off) - 1.44).sqrt(), -0.2]
     }
 }
@@ -98,6 +99,15 @@ impl Bytes {
 
     fn f32(&mut self, all: &[f32]) {
         all.iter().for_each(|v| self.0.extend(v.to_le_bytes()));
+    }
+
+    /// Appends the CRC-32 of the bytes from `start` on.
+    fn seal(&mut self, start: usize) {
+        let crc = !self.0[start..].iter().fold(!0, |crc: u32, byte| {
+            let step = |crc: u32, _| (crc >> 1) ^ if crc & 1 == 1 { 0xEDB8_8320 } else { 0 };
+            (0..8).fold(crc ^ u32::from(*byte), step)
+        });
+        self.u32(&[crc]);
     }
 
     fn u64(&mut self, all: &[u64]) {
@@ -155,10 +165,12 @@ pub(crate) fn files() -> BTreeMap<String, Vec<u8>> {
     let (mut cell, mut cells) = (0, Vec::new());
     for (number, node) in (2..).zip(&nodes) {
         cells.push(cell);
-        let mut bytes = Bytes(b"splatref blue 1\n".to_vec());
+        let mut bytes = Bytes(b"splatref blue 2\n".to_vec());
         bytes.0.extend(hash);
         bytes.u32(&[number, node.count, node.count]);
         bytes.f32(&[distance(node)]);
+        bytes.seal(0);
+        let start = bytes.0.len();
         for i in 0..node.count {
             let off = node.rim.filter(|_| i == 0).map(|off| rim(node, off));
             bytes.f32(&place(cell, off.unwrap_or([0.25, 0.125])));
@@ -166,6 +178,7 @@ pub(crate) fn files() -> BTreeMap<String, Vec<u8>> {
             bytes.0.extend([0, 0, 0, 0, 255 - 40 * i as u8, (number * 9) as u8, 128, 255]);
             cell += 1;
         }
+        bytes.seal(start);
         // The triangle has the cell behind its surfels.
         cell += usize::from(node.triangle);
         all.insert(format!("surfels-{number}"), bytes.0);
@@ -177,7 +190,7 @@ pub(crate) fn files() -> BTreeMap<String, Vec<u8>> {
 }
 
 fn mesh(nodes: &[Node], records: &[Record], cells: &[usize], hash: &[u8]) -> (Vec<u8>, Vec<u64>) {
-    let mut bytes = Bytes(b"splatref mesh 1\n".to_vec());
+    let mut bytes = Bytes(b"splatref mesh 2\n".to_vec());
     bytes.0.extend(hash);
     bytes.u32(&[records.len() as u32, 1]);
     bytes.u64(&[0; 4]);
@@ -187,7 +200,10 @@ fn mesh(nodes: &[Node], records: &[Record], cells: &[usize], hash: &[u8]) -> (Ve
         bytes.f32(&HIGH);
         bytes.u64(&[*below]);
     }
+    bytes.seal(0);
     let mut begins = vec![bytes.0.len() as u64];
+    // The root has no triangles.
+    bytes.u32(&[0]);
     for (node, cell) in nodes.iter().zip(cells) {
         begins.push(bytes.0.len() as u64);
         if node.triangle {
@@ -197,12 +213,13 @@ fn mesh(nodes: &[Node], records: &[Record], cells: &[usize], hash: &[u8]) -> (Ve
             }
             bytes.u32(&[0, 1, 2]);
         }
+        bytes.seal(begins[begins.len() - 1] as usize);
     }
     (bytes.0, begins)
 }
 
 fn index(nodes: &[Node], records: &[Record], begins: &[u64], [hash, mesh]: [&[u8]; 2]) -> Vec<u8> {
-    let mut bytes = Bytes(b"splatref tree 1\n".to_vec());
+    let mut bytes = Bytes(b"splatref tree 2\n".to_vec());
     bytes.0.extend(hash);
     bytes.u32(&[1 + records.len() as u32, 1, 1, 1]);
     bytes.f32(&[0.5; 3]);
@@ -237,5 +254,6 @@ fn index(nodes: &[Node], records: &[Record], begins: &[u64], [hash, mesh]: [&[u8
     bytes.u32(&[1, records.len() as u32, 1, 0]);
     bytes.0.extend(mesh);
     bytes.u64(&[0; 4]);
+    bytes.seal(0);
     bytes.0
 }

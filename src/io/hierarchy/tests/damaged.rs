@@ -1,7 +1,9 @@
 //! Read folders with false contents.
 
+use super::super::bytes::checked;
 use super::super::index::Index;
 use super::*;
+use crate::io::checksum;
 use crate::scene::Property;
 use proptest::prelude::*;
 
@@ -26,7 +28,8 @@ fn an_index_comes_back_as_it_is_and_no_beginning_of_one_does() {
     let mut bytes = Vec::new();
     for numbers in [true, false] {
         let at = whole(numbers);
-        bytes = fs::read(at.path().join("out/index")).unwrap();
+        let file = fs::read(at.path().join("out/index")).unwrap();
+        bytes = checked(&file).unwrap().to_vec();
         let index = Index::parse(&bytes).unwrap();
         assert_eq!(index.bytes(), bytes);
         for end in 0..bytes.len() {
@@ -50,8 +53,8 @@ proptest! {
         thread_local! {
             static WHOLE: (TempDir, Vec<u8>) = {
                 let at = whole(true);
-                let bytes = fs::read(at.path().join("out/index")).unwrap();
-                (at, bytes)
+                let file = fs::read(at.path().join("out/index")).unwrap();
+                (at, checked(&file).unwrap().to_vec())
             };
         }
         WHOLE.with(|(at, whole)| {
@@ -108,9 +111,13 @@ fn what_is_missing_or_of_another_is_told_in_a_line() {
     fs::write(out.join("surfels-1"), &other).unwrap();
     assert!(told(1).contains("belong to another index"), "{}", told(1));
     fs::write(out.join("surfels-1"), &one[..one.len() - 1]).unwrap();
-    assert!(told(1).contains("50 surfels need 1064 bytes, but the file has 1063"), "{}", told(1));
+    assert!(told(1).contains("50 surfels need 1072 bytes, but the file has 1071"), "{}", told(1));
     let mut foreign = one.clone();
     foreign[20] ^= 1;
+    fs::write(out.join("surfels-1"), &foreign).unwrap();
+    assert!(told(1).contains("damaged: its checksum is wrong"), "{}", told(1));
+    let header = checksum::of(&foreign[..64]);
+    foreign[64..68].copy_from_slice(&header);
     fs::write(out.join("surfels-1"), &foreign).unwrap();
     assert!(told(1).contains("belong to another hierarchy"), "{}", told(1));
     fs::write(out.join("surfels-1"), &one).unwrap();
@@ -121,4 +128,54 @@ fn what_is_missing_or_of_another_is_told_in_a_line() {
     let line = hierarchy.triangles(leaf).unwrap_err().to_string();
     assert!(line.contains("mesh-0: ") && line.contains("beyond the end of the file"), "{line}");
     assert!(Hierarchy::open(at.path()).unwrap_err().to_string().contains("index"));
+}
+
+/// All that can be read of a folder, or the first error.
+fn everything(folder: &Path) -> Result<(Hierarchy, Vec<(Cloud, crate::scene::Triangles)>)> {
+    let hierarchy = Hierarchy::open(folder)?;
+    hierarchy.outlined(&Exec::sequential(), &quiet)?;
+    let nodes = 0..hierarchy.nodes().len() as u32;
+    let each = nodes.map(|node| Ok((hierarchy.surfels(node, 9)?, hierarchy.triangles(node)?)));
+    let all = each.collect::<Result<Vec<_>>>()?;
+    Ok((hierarchy, all))
+}
+
+#[test]
+fn a_flipped_bit_is_noticed_in_every_file_and_mended_by_another_run() {
+    let at = whole(true);
+    let out = at.path().join("out");
+    let all = bytes(&out);
+    let properties = vec!["heat".into()];
+    let settings = Settings { most: 50, side: 200, properties, ..Settings::default() };
+    let expected = everything(&out).unwrap();
+    for name in ["index", "bounds", "mesh-0", "surfels-1"] {
+        let whole = &all[name];
+        // Some bits of the beginning, then one here and there; all of them in all bits of a byte.
+        let bits = 8 * whole.len();
+        let start = (0..640).step_by(13);
+        for bit in start.chain((640..bits).step_by(bits / 60 + 1)).filter(|&bit| bit < bits) {
+            let mut flipped = whole.clone();
+            flipped[bit / 8] ^= 1 << (bit % 8);
+            fs::write(out.join(name), flipped).unwrap();
+            match everything(&out).map_err(|error| error.to_string()) {
+                // The tree in a geometry's file is for resuming; views use the index.
+                Ok(found) => assert!(found == expected, "{name}: bit {bit} is not noticed"),
+                Err(line) => assert!(line.contains(&format!("out/{name}: ")), "{line}"),
+            }
+            if name == "mesh-0" {
+                mesh::read(&out, 0).err().unwrap();
+            }
+        }
+        let mut older = whole.clone();
+        older[14] = b'1';
+        fs::write(out.join(name), older).unwrap();
+        let line = everything(&out).unwrap_err().to_string();
+        assert!(line.contains("an older version wrote this file"), "{line}");
+        // Resuming must not take the file for done.
+        let mut flipped = whole.clone();
+        flipped[whole.len() / 2] ^= 4;
+        fs::write(out.join(name), flipped).unwrap();
+        make(&at, "mesh.ply", "out", &settings).unwrap();
+        assert!(bytes(&out) == all, "{name}");
+    }
 }

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::frame::Frame;
+use crate::io::checksum;
 use crate::io::scene_file::Ready;
 use crate::number::Real;
 use crate::scene::bounds::Bounds;
@@ -181,12 +182,14 @@ fn bounds_are_those_of_each_node_and_are_not_needed() {
         bytes
     };
     assert!(told(&changed(0, 0)).contains("not the bounds of a splatref hierarchy"));
-    assert!(told(&changed(20, whole[20] ^ 1)).contains("belong to another hierarchy"));
+    assert!(told(&changed(20, whole[20] ^ 1)).contains("damaged: its checksum is wrong"));
+    let sealed = |bytes: &[u8]| told(&checksum::seal(bytes[..bytes.len() - 4].to_vec()));
+    assert!(sealed(&changed(20, whole[20] ^ 1)).contains("belong to another hierarchy"));
     // The radius of node 0 below 0, and the highest byte of its low x not finite.
     for (at, value) in [(56 + 31, 0xc0), (56 + 3, 0xff)] {
         let mut bytes = changed(at, value);
         bytes[56 + 2] |= if at == 56 + 3 { 0x80 } else { 0 };
-        assert!(told(&bytes).contains("the bounds of node 0 are invalid"), "{at}");
+        assert!(sealed(&bytes).contains("the bounds of node 0 are invalid"), "{at}");
     }
     fs::write(out.join("bounds"), &whole).unwrap();
     assert!(read(&file).unwrap().0 == expected);

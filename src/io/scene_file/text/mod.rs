@@ -44,6 +44,7 @@ use serde::de::{self, Deserialize, Deserializer};
 use std::path::{Path, PathBuf};
 
 pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
+    input::ask_for_toml(path, text)?;
     let file: File = toml::from_str(text).map_err(|error| input::no_toml(path, text, &error))?;
     for (i, geometry) in file.geometry.iter().enumerate() {
         if file.geometry[..i].iter().any(|other| other.name == geometry.name) {

@@ -109,8 +109,9 @@ impl Prefix {
 }
 
 impl Geometry {
-    /// Gives the geometry the order of its surfels. From here on the radii of the surfels are used
-    /// only where no camera is known.
+    /// Gives the geometry the order of its surfels. From here on no view draws the radii of the
+    /// surfels. They are used where no camera is known, and in the sphere around the geometry: the
+    /// test of the view frustum, the zones and the bounding sphere of the scene read this sphere.
     ///
     /// # Errors
     /// [`Error::Invalid`] if there are no surfels, or levels of detail already; if the estimate
