@@ -141,12 +141,7 @@ fn timed<'s>(
 }
 
 /// Prints the times. `which` says which pictures were timed.
-fn print_times(
-    exec: &Exec,
-    loading: Duration,
-    (times, which): (Times, &str),
-    writing: Duration,
-) {
+fn print_times(exec: &Exec, loading: Duration, (times, which): (Times, &str), writing: Duration) {
     let threads = report::threads(exec);
     let of = match times.len() {
         1 => String::new(),
