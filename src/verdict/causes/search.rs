@@ -5,6 +5,7 @@ use super::depths::digits;
 use super::{Change, wrong_of};
 use crate::error::Result;
 use crate::method::Session;
+use crate::number::Real;
 use crate::scene::Camera;
 use crate::setting::{Fields, Value};
 use crate::verdict::Verdict;
@@ -120,7 +121,7 @@ fn search(
         }
         // People choose short numbers, and only the very number leaves nothing wrong.
         let short = digits((low + high) / 2.0);
-        let range = low.min(high)..low.max(high);
+        let range = low.at_most(high)..low.at_least(high);
         if range.contains(&short) && (high - low).abs() < 0.01 * right {
             let round = [10.0, 100.0].map(|by: f64| (short * by).round() / by);
             for value in round.into_iter().filter(|value| range.contains(value)) {
