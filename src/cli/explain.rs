@@ -49,7 +49,8 @@ pub(super) fn run(args: &Args) -> Ended {
         None => Vec::new(),
         Some(path) => {
             let described = Description::open(path)?;
-            let client = verify::read((&described, args.promise), &session, &ready.camera, &exec)?;
+            let numbers = (file.output.number, &ready.camera);
+            let client = verify::read((&described, args.promise), numbers, &session, &exec)?;
             session.checks(&ready.camera, &client, pixel)?
         }
     };

@@ -276,27 +276,36 @@ impl SceneOptions {
     }
 }
 
-/// The scene that `name` stands for. Only shapes take a count and a seed; the count of a tree is
-/// its leaves.
+/// The scene that `name` stands for. Only shapes take a count and a seed, by name or as the one model
+/// of a scene file; the count of a tree is its leaves.
 pub(super) fn named(name: &Path, count: Option<usize>, seed: Option<u64>) -> Result<SceneFile> {
-    let procedural = name.to_str().and_then(Source::procedural);
-    if procedural.is_none() && (count.is_some() || seed.is_some()) {
-        let what = "--count and --seed apply to procedural shapes, but this scene is a file; \
-                    remove them";
-        return Err(Error::Usage(what.into()));
+    let mut file = match name.to_str().and_then(Source::procedural) {
+        Some(source) => SceneFile::of_model(source),
+        None => SceneFile::open(name)?,
+    };
+    if count.is_none() && seed.is_none() {
+        return Ok(file);
     }
-    match procedural {
-        None => SceneFile::open(name),
-        Some(mut source) => {
-            if let Source::Shape { count: items, seed: number, .. }
-            | Source::Tree { leaves: items, seed: number } = &mut source
-            {
-                *items = count.unwrap_or(*items);
-                *number = seed.unwrap_or(*number);
-            }
-            Ok(SceneFile::of_model(source))
+    let mut models = file.all_models_mut();
+    match (models.next().map(|model| &mut model.source), models.next()) {
+        (
+            Some(
+                Source::Shape { count: items, seed: number, .. }
+                | Source::Tree { leaves: items, seed: number },
+            ),
+            None,
+        ) => {
+            *items = count.unwrap_or(*items);
+            *number = seed.unwrap_or(*number);
+        }
+        _ => {
+            let what = "--count and --seed apply to a procedural shape, or to a scene file whose \
+                        one model is such a shape; remove them";
+            return Err(Error::Usage(what.into()));
         }
     }
+    drop(models);
+    Ok(file)
 }
 
 /// What an option says is wrong usage if it cannot be; the same in a scene file is not.

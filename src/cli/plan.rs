@@ -2,6 +2,7 @@
 
 use super::study::loss;
 use super::tried::{Loaded, Tried, truth_in_words};
+use super::words::quoted;
 use super::{Ended, Ending, output, progress, report, say};
 use splatref::compare::metrics::METRICS;
 use splatref::io::replace::write_atomically;
@@ -134,20 +135,28 @@ const LEFT: [&str; 6] = ["--error", "--time", "--metric", "--truth", "--output",
 fn own_options(chosen: &Candidate) -> String {
     let rows: Vec<_> = MethodChoice::rows().into_iter().chain(GroupChoice::rows()).collect();
     let replaced: Vec<&str> = chosen.options.split([' ', '=']).collect();
-    let mut all = std::env::args().skip(1);
-    let (mut kept, mut begun) = (String::new(), false);
+    let mut all = std::env::args_os().skip(1);
+    let (mut kept, mut begun, mut places) = (String::new(), false, false);
     while let Some(word) = all.next() {
-        let (name, with_value) = match word.split_once('=') {
+        // A name that is no text cannot be an option.
+        let text = word.to_string_lossy();
+        let (name, with_value) = match text.split_once('=') {
             Some((name, _)) => (name, true),
-            None => (word.as_str(), false),
+            None => (&*text, false),
         };
-        let attached = word.starts_with("-o") && word.len() > 2;
+        let attached = text.starts_with("-o") && text.len() > 2;
         let row = rows.iter().find(|row| name.strip_prefix("--") == Some(&row.option));
         let means_nothing =
             row.is_some_and(|row| row.owners.iter().all(|(owner, _)| *owner != chosen.method));
         let is_said = name.starts_with("--") && replaced.contains(&name);
-        if !begun && word == "plan" {
+        if places {
+            // Options follow, so a name that looks like one is made to look like a path.
+            let path = if text.starts_with('-') { "./" } else { "" };
+            kept.push_str(&format!("{path}{} ", quoted(&word)));
+        } else if !begun && text == "plan" {
             begun = true;
+        } else if begun && text == "--" {
+            places = true;
         } else if means_nothing || is_said || attached || LEFT.contains(&name) {
             if !with_value && !attached && !row.is_some_and(Setting::is_switch) {
                 all.next();
@@ -158,16 +167,6 @@ fn own_options(chosen: &Candidate) -> String {
         }
     }
     kept
-}
-
-/// Quotes a word for a shell.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_=./,:+@%".contains(c);
-    if !word.is_empty() && word.chars().all(plain) {
-        word.to_owned()
-    } else {
-        format!("'{}'", word.replace('\'', "'\\''"))
-    }
 }
 
 /// Parses the name of a scene file.

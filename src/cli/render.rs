@@ -8,7 +8,7 @@ use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::provenance;
 use splatref::io::scene_file::Ready;
-use splatref::method::Picture;
+use splatref::method::{Method, Picture};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -33,7 +33,8 @@ pub(super) struct Args {
     output: Option<PathBuf>,
     #[command(flatten)]
     files: RowOptions<OfFiles>,
-    /// Render N times; print the minimum and the median of each stage
+    /// Render N times; print the minimum and the median of each stage. For the method deferred these
+    /// are the N frames that follow, because the first frame does other work
     #[arg(long, value_name = "N", default_value_t = 1,
         value_parser = clap::value_parser!(u32).range(1..))]
     repeat: u32,
@@ -80,11 +81,20 @@ pub(super) fn run(args: &Args) -> Ended {
 
     let mut times = Vec::new();
     let drawing = progress::during("rendering", || -> Result<_> {
-        let before = session.seen().cloned();
+        if args.repeat > 1 && matches!(method, Method::Deferred(_)) {
+            let before = session.seen().cloned();
+            let mut seen = file.output.draw(&mut session, camera)?.seen.clone();
+            for _ in 0..args.repeat {
+                session.resume(seen);
+                let next = timed(&mut times, || file.output.draw(&mut session, camera))?;
+                seen = next.seen.clone();
+            }
+            // The picture itself is still the frame that was asked for.
+            session.resume(before);
+            return file.output.draw(&mut session, camera);
+        }
         for _ in 1..args.repeat {
             timed(&mut times, || file.output.draw(&mut session, camera))?;
-            // Repeat the same frame, not the next one.
-            session.resume(before.clone());
         }
         timed(&mut times, || file.output.draw(&mut session, camera))
     })?;
@@ -106,7 +116,8 @@ pub(super) fn run(args: &Args) -> Ended {
     report::groups(session.groups(), made.as_ref());
     report::tally(&tally);
     report::selection(scene, seen.as_ref());
-    print_times(&exec, loading, times, writing);
+    let steady = if seen.is_some() { " after this one" } else { "" };
+    print_times(&exec, loading, (times, steady), writing);
     report::time("total", vec![start.elapsed()]);
     report::line("files", picture.display());
     report::line("", preview.display());
@@ -129,11 +140,12 @@ fn timed<'s>(
     Ok(drawing)
 }
 
-fn print_times(exec: &Exec, loading: Duration, times: Times, writing: Duration) {
+/// Prints the times. `which` says which pictures were timed.
+fn print_times(exec: &Exec, loading: Duration, (times, which): (Times, &str), writing: Duration) {
     let threads = report::threads(exec);
     let of = match times.len() {
         1 => String::new(),
-        n => format!(", minimum and median of {n} pictures"),
+        n => format!(", minimum and median of {n} pictures{which}"),
     };
     report::line("time", format!("{threads}{of}"));
     report::time("loading", vec![loading]);

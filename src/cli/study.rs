@@ -223,7 +223,7 @@ impl Folder {
     }
 
     fn picture(&self, record: &Record) -> PathBuf {
-        self.0.join(PICTURES).join(record.file_name()).with_extension("png")
+        self.0.join(PICTURES).join(record.picture_name())
     }
 
     fn has_picture(&self, record: &Record) -> bool {

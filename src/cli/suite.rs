@@ -3,10 +3,11 @@
 use super::verify::report::{JsonShift, leaning};
 use super::{Ended, Ending, say};
 use serde::Deserialize;
+use splatref::verdict::Doubt;
 use splatref::verdict::shift::{LIMITS, Shift, Shifts};
 use splatref::{Error, Result};
 use std::collections::BTreeMap;
-use std::fs::File;
+use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -21,8 +22,8 @@ Examples:
   splatref verify b.toml b.exr --promise ieee --json b.json
   splatref suite a.json b.json
 
-Exit codes: 0 all right, 1 any wrong, or their decisions biased to one side, 2 wrong usage, 3 any
-undecidable.")]
+Exit codes: 0 all right, 1 any wrong, or their decisions biased to one side, 2 wrong usage or
+no verdict, 3 any undecidable.")]
 pub(super) struct Args {
     /// Verdicts that `verify --json` wrote
     #[arg(required = true, value_name = "VERDICT.json")]
@@ -37,13 +38,38 @@ struct Verdict {
     shifts: Vec<JsonShift>,
 }
 
+/// The words of the outcomes and of the promises.
+const OUTCOMES: [&str; 3] = ["right", "wrong", "undecidable"];
+const PROMISES: [&str; 2] = ["ieee", "gpu"];
+
+impl Verdict {
+    /// Checks the words, because one that is not known would count as nothing.
+    fn check(&self) -> std::result::Result<(), String> {
+        let limits = LIMITS.map(Doubt::name);
+        let shifts = self.shifts.iter().map(|shift| ("shifts.limit", &shift.limit, &limits[..]));
+        let own =
+            [("outcome", &self.outcome, &OUTCOMES[..]), ("promise", &self.promise, &PROMISES[..])];
+        for (key, word, known) in own.into_iter().chain(shifts) {
+            if !known.contains(&word.as_str()) {
+                let known = known.join(", ");
+                return Err(format!("{key} is \"{word}\", but can be {known}"));
+            }
+        }
+        match self.shifts.iter().find(|shift| !shift.is_possible()) {
+            Some(shift) => Err(format!("the numbers of the limit {} are impossible", shift.limit)),
+            None => Ok(()),
+        }
+    }
+}
+
 pub(super) fn run(args: &Args) -> Ended {
     // A verdict added twice would show twice the bias of its picture. Two pictures have the same
     // text only where neither is biased.
     let mut seen: BTreeMap<String, &Path> = BTreeMap::new();
     let mut verdicts = Vec::new();
     for path in &args.verdicts {
-        let (text, verdict) = verdict(path)?;
+        // A file that is no verdict exits with 2, because 1 says that a picture is wrong.
+        let (text, verdict) = verdict(path).map_err(|error| Error::Usage(error.to_string()))?;
         let Verdict { outcome, promise, .. } = &verdict;
         let first = *seen.entry(text).or_insert(path);
         if std::ptr::eq(first, path.as_path()) {
@@ -60,7 +86,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let any = |word: &str| verdicts.iter().any(|verdict| verdict.outcome == word);
     let mut leans = false;
     // A decision that is undecided under one promise may be certain under the other.
-    for promise in ["ieee", "gpu"] {
+    for promise in PROMISES {
         let own = verdicts.iter().filter(|verdict| verdict.promise == promise);
         let all = together(own.flat_map(|verdict| &verdict.shifts));
         for (limit, shift) in LIMITS.iter().zip(&all).filter(|(_, shift)| shift.decisions > 0) {
@@ -82,14 +108,21 @@ pub(super) fn run(args: &Args) -> Ended {
 
 /// Reads a verdict, and returns its text too.
 fn verdict(path: &Path) -> Result<(String, Verdict)> {
+    let io = |source| Error::io(path, source);
+    // Ask before opening, because opening a pipe without a writer would wait.
+    if !fs::metadata(path).map_err(io)?.is_file() {
+        let what = "this is no file; write the verdict to a file with verify --json FILE";
+        return Err(Error::format(path, what));
+    }
     let mut text = String::new();
     // A verdict has a few kilobytes; a longer file is cut here, and is then no JSON.
-    let file = File::open(path).map(|file| file.take(1 << 24));
-    file.and_then(|mut file| file.read_to_string(&mut text))
-        .map_err(|source| Error::io(path, source))?;
-    let verdict = serde_json::from_str(&text).map_err(|error| {
-        Error::format(path, format!("not a verdict of `verify --json`: {error}"))
-    })?;
+    let mut file = File::open(path).map_err(io)?.take(1 << 24);
+    file.read_to_string(&mut text).map_err(io)?;
+    let no_verdict =
+        |what: String| Error::format(path, format!("not a verdict of `verify --json`: {what}"));
+    let verdict: Verdict =
+        serde_json::from_str(&text).map_err(|error| no_verdict(error.to_string()))?;
+    verdict.check().map_err(no_verdict)?;
     Ok((text, verdict))
 }
 

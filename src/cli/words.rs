@@ -1,5 +1,7 @@
 //! Makes text of files, names and arguments safe for a terminal.
 
+use std::ffi::OsStr;
+
 /// The longest error, in characters.
 const LONGEST: usize = 1000;
 
@@ -31,9 +33,51 @@ pub(super) fn line(text: &str) -> String {
     format!("{start} [{} characters left out] {end}", count - 2 * part)
 }
 
+/// Quotes a word for a shell. Bytes that are no text, and characters that would not be printed as
+/// they are, become escapes in `$'...'`, which bash, zsh and POSIX shells since 2024 read.
+pub(super) fn quoted(word: &OsStr) -> String {
+    let text = word.to_str().filter(|text| visible(text) == *text && !text.contains('\n'));
+    let Some(text) = text else { return escaped(word) };
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_=./,:+@%".contains(c);
+    if !text.is_empty() && text.chars().all(plain) {
+        text.to_owned()
+    } else {
+        format!("'{}'", text.replace('\'', "'\\''"))
+    }
+}
+
+/// A word in `$'...'`, with an escape for each byte that is not plain ASCII.
+fn escaped(word: &OsStr) -> String {
+    let of = |&byte: &u8| match byte {
+        b'\'' | b'\\' => format!("\\{}", char::from(byte)),
+        b' '..=b'~' => char::from(byte).into(),
+        // Three octal digits, so that a digit may follow.
+        _ => format!("\\{byte:03o}"),
+    };
+    let bytes = word.as_encoded_bytes().iter().map(of);
+    format!("$'{}'", bytes.collect::<String>())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_shell_reads_the_word_again() {
+        let quoted = |word: &str| quoted(OsStr::new(word));
+        assert_eq!(quoted("a/b-1.5,2.ply"), "a/b-1.5,2.ply");
+        assert_eq!(quoted(""), "''");
+        assert_eq!(quoted("it's $HOME"), "'it'\\''s $HOME'");
+        assert_eq!(quoted("Räsänen"), "'Räsänen'");
+        assert_eq!(quoted("a\nb'\u{1b}2"), "$'a\\012b\\'\\0332'");
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn bytes_that_are_no_text_are_escaped() {
+        use std::os::unix::ffi::OsStrExt;
+        assert_eq!(quoted(OsStr::from_bytes(b"a\xff1.ply")), "$'a\\3771.ply'");
+    }
 
     #[test]
     fn nothing_steers_a_terminal() {

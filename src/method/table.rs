@@ -244,7 +244,13 @@ impl Method {
     /// scene consists of objects, has not been made flat, and the method does not draw objects.
     pub fn check_scene(&self, scene: &Scene) -> Result<()> {
         let flat = !scene.surfels.is_empty() || !scene.primitives.is_empty();
-        if scene.objects.is_some() && !flat && !self.draws_objects() {
+        // Objects of which this view draws nothing are flat too.
+        let seen = |objects: &Objects| {
+            let primitives = |all: Vec<Primitives>| all.iter().any(|one| !one.is_empty());
+            objects.drawn_total() > 0 || objects.primitives().is_ok_and(primitives)
+        };
+        let seen = scene.objects.as_ref().is_some_and(seen);
+        if seen && !flat && !self.draws_objects() {
             return Err(Error::Invalid(format!(
                 "{} has objects, but the method {} does not draw them; flatten the scene first",
                 scene.name,

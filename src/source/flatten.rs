@@ -8,11 +8,12 @@ use crate::scene::merge::join;
 
 /// The scene with all drawn surfels and primitives of its objects in their places, for methods that
 /// draw surfels. Surfels are in the order of their ids, primitives in the order of the objects. A
-/// scene without objects stays as it is.
+/// scene without objects stays as it is. In a view from which no object is seen, nothing is left, and
+/// the picture is empty.
 ///
 /// # Errors
-/// [`Error::Invalid`] if there are neither surfels nor primitives, if there are more than 2^32 - 2
-/// of either, or if the process may not hold them.
+/// [`Error::Invalid`] if there are more than 2^32 - 2 surfels or primitives, or if the process may not
+/// hold them.
 pub fn flatten(scene: &Scene, exec: &Exec) -> Result<Scene> {
     let Some(objects) = &scene.objects else { return Ok(scene.clone()) };
     let total = objects.drawn_total();
@@ -23,9 +24,6 @@ pub fn flatten(scene: &Scene, exec: &Exec) -> Result<Scene> {
     memory::ask(total * OF_A_SURFEL, || format!("{total} surfels of all objects"))?;
     let (surfels, primitives) = objects.flattened(exec)?;
     let primitives = join(primitives, objects.fill())?;
-    if surfels.is_empty() && primitives.is_empty() {
-        return Err(Error::Invalid("the scene is empty: its objects have no surfels".into()));
-    }
     let sides = objects.sides()?;
     Ok(Scene { surfels, primitives, sides, ..scene.clone() })
 }

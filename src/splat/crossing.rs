@@ -12,6 +12,10 @@
 //!   t(c, s) = (-p.z + -u.z c) + -v.z s      t0 = -p.z, t1 = -u.z, t2 = -v.z
 //! ```
 //!
+//! All lengths here (p, u, v and near) are first multiplied by a power of two that brings the
+//! largest of |p.x|, |p.y|, |p.z|, near and R to [1, 2): else squares of products of lengths leave
+//! the range of `f32` in scenes of 1e10 or 1e-12 world units.
+//!
 //! The equation f0 + f1 c + f2 s = 0 has no solution (c, s) on the unit circle unless rest >= 0,
 //! and otherwise two:
 //!
@@ -68,12 +72,13 @@ pub(super) fn corners<R: Real>(
     placed: &PlacedDisc<R>,
     disc: &Disc<R>,
 ) -> (Vector2<R>, Vector2<R>) {
-    let (p, near) = (placed.p, view.near);
-    let [u, v] = basis(view, placed, disc);
+    let (p, [u, v]) = (placed.p, basis(view, placed, disc));
+    let scale = scale(p, view.near, disc);
     // x, y and depth in view space, each as a function of (c, s), stored as [constant, c, s].
-    let x = [p.x, u.x, v.x];
-    let y = [p.y, u.y, v.y];
-    let t = [-p.z, -u.z, -v.z];
+    let near = view.near * scale;
+    let x = [p.x, u.x, v.x].map_inline(|number| number * scale);
+    let y = [p.y, u.y, v.y].map_inline(|number| number * scale);
+    let t = [-p.z, -u.z, -v.z].map_inline(|number| number * scale);
     let at = |f: [R; 3], point: Vector2<R>| (f[0] + f[1] * point.x) + f[2] * point.y;
 
     let mut low = Vector2::new(R::INFINITY, R::INFINITY);
@@ -94,11 +99,22 @@ pub(super) fn corners<R: Real>(
             include(*point, depth);
         }
     }
-    let rounding = (disc.reach() * R::from_f32(1.0 / 1_048_576.0)) / near;
+    let rounding = (disc.reach() * R::from_f32(1.0 / 1_048_576.0)) / view.near;
     let wider = R::from_f32(0.001);
     let mx = ((high.x - low.x) * wider + view.fx * rounding) + R::ONE;
     let my = ((high.y - low.y) * wider + view.fy * rounding) + R::ONE;
     (Vector2::new(low.x - mx, low.y - my), Vector2::new(high.x + mx, high.y + my))
+}
+
+/// The power of two that brings the largest length to about 1, so that no product of four lengths
+/// exceeds what an `f32` holds, or vanishes. It changes no other bit of the corners.
+fn scale<R: Real>(p: Vector3<R>, near: R, disc: &Disc<R>) -> R {
+    let lengths = [p.x, p.y, p.z, near, disc.reach()];
+    let largest =
+        lengths.iter().fold(0.0, |most: f32, length| most.at_least(length.to_f32().abs()));
+    // The exponent field alone; the ends are kept so that the reciprocal is a normal number too.
+    let exponent = (largest.to_bits() >> 23).clamp(1, 253);
+    R::from_f32(f32::from_bits((254 - exponent) << 23))
 }
 
 /// The equation for the points of the rim where x/t is stationary: the terms of second order

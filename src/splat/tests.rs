@@ -133,3 +133,31 @@ fn bounds_at_the_near_plane_are_wide_enough_for_their_roundings() {
         }
     }
 }
+
+/// A disc and its camera in another unit of length.
+fn in_unit((camera, disc): &(Camera, Disc<f32>), unit: f32) -> (Camera, Disc<f32>) {
+    let Vector3 { x, y, z } = disc.position;
+    let position = Vector3::new(x * unit, y * unit, z * unit);
+    let disc = Disc { position, radius: disc.radius * unit, ..*disc };
+    (Camera { near: camera.near * unit, ..*camera }, disc)
+}
+
+/// Bounds at the near plane do not depend on the unit of length. Powers of two change no bit; other
+/// units may lose none of the pixels either.
+#[test]
+fn bounds_at_the_near_plane_hold_in_every_unit() {
+    let power = |exponent: i32| f32::from_bits(((127 + exponent) as u32) << 23);
+    for i in WIDE.into_iter().chain(0..200) {
+        let own = rim_at_the_near_plane(i, false);
+        let held = inside(&own.0, &own.1);
+        for exponent in [-40, -20, 20, 33, 45] {
+            let (camera, disc) = in_unit(&own, power(exponent));
+            assert_eq!(inside(&camera, &disc), held, "disc {i} in units of 2^{exponent}");
+        }
+        for unit in [1e-12, 1e-10, 1e10, 1e12] {
+            let (camera, disc) = in_unit(&own, unit);
+            let [_, lost] = inside(&camera, &disc);
+            assert_eq!(lost, 0, "disc {i} in units of {unit:e} loses {lost} of its pixels");
+        }
+    }
+}

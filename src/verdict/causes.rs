@@ -5,10 +5,14 @@
 //! camera, or with the mistake undone in its planes. Count the wrong pixels in the first wrong
 //! stage and the next one. A mistake is named if at most one in five of these stays wrong. If
 //! several mistakes qualify, the one that leaves the fewest wrong pixels in all stages is named.
-//! The rarer mistakes are tried only where no common one explains everything.
+//! The rarer mistakes are tried only where no common one explains everything. Some numbers are
+//! estimated: what depths mean by a fitted line, and the low-pass filter, the cut-off and the field
+//! of view by search.
 
 use crate::number::MapInline;
+mod depths;
 mod epsilon;
+mod search;
 
 use super::client::{Band, Client, Storage, Ties};
 use super::{StageVerdict, Verdict};
@@ -36,23 +40,29 @@ enum Change {
     Moved(f64),
     /// Judge sums of fragments that lie behind the band.
     Behind,
+    /// Read the depths another way.
+    Depths(depths::Reading),
+    /// Read normals from \[0, 1\].
+    Unsigned,
+    /// Read the components of colours in this order.
+    Swapped([usize; 3]),
 }
 
 impl Change {
     /// Judges the client as if this were the rule. Only one changed copy of the client is in memory
-    /// at a time.
+    /// at a time. None if the client has no plane that shows this mistake.
     fn judge(
         &self,
         session: &Session<'_>,
         camera: &Camera,
         client: &Client,
         budget: f64,
-    ) -> Result<Verdict> {
-        let method = session.method();
-        let as_if = |client: Client| session.verify_as(method, camera, &client, budget);
+    ) -> Result<Option<Verdict>> {
+        let as_if = |client: Client| judged_as(session, session.method(), camera, &client, budget);
+        let judge = |method, camera| judged_as(session, method, camera, client, budget);
         match self {
-            Self::Method(method) => session.verify_as(method, camera, client, budget),
-            Self::Camera(camera) => session.verify_as(method, camera, client, budget),
+            Self::Method(method) => judge(method, camera),
+            Self::Camera(camera) => judge(session.method(), camera),
             Self::Ties(ties) => as_if(Client { ties: *ties, ..client.clone() }),
             Self::Stored(plane, storage) => as_if(client.clone().stored(plane, *storage)),
             Self::Accumulator(accumulator) => {
@@ -62,9 +72,16 @@ impl Change {
             Self::Band(band) => as_if(epsilon::banded(client, *band)),
             Self::Moved(by) => as_if(epsilon::moved_back(client, *by)),
             Self::Behind => match epsilon::behind(session, camera, client) {
-                Some((method, client)) => session.verify_as(&method, camera, &client, budget),
-                None => as_if(client.clone()),
+                Some((method, client)) => judged_as(session, &method, camera, &client, budget),
+                None => Ok(None),
             },
+            Self::Depths(reading) => as_if(reading.read(client)),
+            Self::Unsigned => as_if(client.signed()),
+            Self::Swapped(order) => {
+                as_if(client.colors(&["", "resolved", "attributes"], |color, _| {
+                    order.map_inline(|component| color[component])
+                }))
+            }
             Self::Decoded => {
                 // Even an encoding in f32 loses this much, because a shading language's power does.
                 let lost = 1.0 / 262_144.0;
@@ -79,6 +96,20 @@ impl Change {
             }
         }
     }
+}
+
+/// The verdict on a changed client, if any plane is left to judge.
+fn judged_as(
+    session: &Session<'_>,
+    method: &Method,
+    camera: &Camera,
+    client: &Client,
+    budget: f64,
+) -> Result<Option<Verdict>> {
+    if client.frame().planes.is_empty() {
+        return Ok(None);
+    }
+    session.verify_as(method, camera, client, budget).map(Some)
 }
 
 /// The mistake that a client most probably makes, in words; none if no known mistake fits.
@@ -104,7 +135,9 @@ pub fn likely_cause(
     // Common mistakes come first; the rare ones are tried only if some pixels stay wrong.
     for supposed in [common_mistakes, rare_mistakes] {
         for (what, change) in stages.iter().flat_map(|of| supposed(session, camera, client, of)) {
-            let verdict = change.judge(session, camera, client, verdict.budget)?;
+            let Some(verdict) = change.judge(session, camera, client, verdict.budget)? else {
+                continue;
+            };
             let [cured, left] = wrong_of(&verdict, wrong.stage);
             if 5 * cured <= all[0] && best.as_ref().is_none_or(|(least, _)| left < *least) {
                 best = Some((left, what));
@@ -114,8 +147,14 @@ pub fn likely_cause(
             break;
         }
     }
+    if best.is_none() && stages.iter().any(|stage| VISIBLE.contains(stage)) {
+        best = search::best(session, camera, client, (wrong.stage, verdict))?;
+    }
     Ok(best.map(|(_, what)| what).or_else(|| common(session.method(), verdict, wrong)))
 }
+
+/// The stages that say where splats are.
+const VISIBLE: [&str; 2] = ["visibility", "projection"];
 
 /// The number of wrong pixels in a stage and the next one, and in all stages.
 fn wrong_of(verdict: &Verdict, stage: &str) -> [u64; 2] {
@@ -146,8 +185,10 @@ fn common(method: &Method, verdict: &Verdict, wrong: &StageVerdict) -> Option<St
     let causes = &wrong.causes;
     let most = |count: u64| 20 * count >= 19 * wrong.wrong;
     let discarded = most(causes.outside + causes.absent) && 2 * causes.outside > wrong.wrong;
-    // Some depths are too near, and some lie where there is no surfel.
-    if discarded || (most(causes.below) && causes.strays > 0) {
+    // Some depths are too near, and some lie where there is no surfel. A depth that means something
+    // else is wrong in most pixels, or in empty ones alone.
+    let few = 2 * wrong.wrong < verdict.covered && causes.strays < causes.below;
+    if discarded || (most(causes.below) && causes.strays > 0 && few) {
         return Some("depth and id come from fragments that should be discarded".into());
     }
     let cutoff = method.splats().map(|splats| f64::from(splats.kernel.cutoff));
@@ -187,6 +228,7 @@ fn common_mistakes(
                 all.push((what.into(), Change::Camera(moved)));
             }
             all.push(("rows are flipped".into(), Change::Flipped));
+            all.extend(depths::mistakes(session, camera, client));
             all.extend(settings(session, &VISIBILITY));
             let ties = if client.ties == Ties::Last { Ties::Lowest } else { Ties::Last };
             all.push(("ties are reversed".into(), Change::Ties(ties)));
@@ -205,6 +247,13 @@ fn common_mistakes(
             all.push((what.into(), Change::Decoded));
             let what = "colours multiplied by the weight";
             all.push((what.into(), Change::Divided));
+            let what = "normals are stored in [0, 1], not in [-1, 1]";
+            all.push((what.into(), Change::Unsigned));
+            for order in [[2, 1, 0], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1]] {
+                let letters = order.map_inline(|component| ["R", "G", "B"][component]).concat();
+                let what = format!("channels are swapped: red, green and blue are in {letters}");
+                all.push((what, Change::Swapped(order)));
+            }
         }
         _ => {}
     }
@@ -270,12 +319,36 @@ fn settings(session: &Session<'_>, wrong: &[WrongSetting]) -> Vec<(String, Chang
     wrong.iter().filter_map(with).collect()
 }
 
+/// The planes of unit normals.
+const NORMALS: [&str; 2] = ["normal", "projection.normal"];
+
 impl Client {
     /// The planes with their rows in reverse order.
     fn flipped(&self) -> Self {
         let radii = self.radii.iter().map(|(name, radii)| (name.clone(), radii.flipped()));
         let radii = radii.collect();
         Self { radii, ..self.mapped(|_, samples| samples.flipped()) }
+    }
+
+    /// The planes with normals read from \[0, 1\]. A null vector stays one.
+    fn signed(&self) -> Self {
+        let signed = self.mapped(|name, samples| match samples {
+            Samples::Vector(plane) if NORMALS.contains(&name) => {
+                let of = |normal: &[f64; 3]| match normal {
+                    [0.0, 0.0, 0.0] => [0.0; 3],
+                    _ => normal.map_inline(|part| 2.0 * part - 1.0),
+                };
+                Samples::Vector(plane.map(of))
+            }
+            other => other.clone(),
+        });
+        // Halving and shifting rounded the normals.
+        let lost = 2.0 / 16_777_216.0;
+        let storage = Storage::Float { relative: lost, least: lost };
+        NORMALS.into_iter().fold(signed, |client, name| match client.storage(name) {
+            Storage::Single | Storage::Rounded => client.stored(name, storage),
+            _ => client,
+        })
     }
 
     /// The planes with changed colours in the planes of these names. `of` gets each colour and the

@@ -96,6 +96,8 @@ pub struct Client {
     pub(super) frame: Frame<f64>,
     pub(super) storage: BTreeMap<String, Storage>,
     pub(super) radii: BTreeMap<String, Plane<[f64; 3]>>,
+    /// The format of a plane of `f32`: [`Storage::Single`] or [`Storage::Rounded`].
+    pub(super) single: Storage,
     /// The rounding that the client promises for its operations.
     pub rounding: Rounding,
     /// The fragment that the client keeps among equally near ones.
@@ -192,6 +194,7 @@ impl Client {
             frame,
             storage: BTreeMap::new(),
             radii: BTreeMap::new(),
+            single: Storage::Single,
             rounding: Rounding::default(),
             ties: Ties::default(),
             band: Band::default(),
@@ -206,6 +209,21 @@ impl Client {
     pub fn stored(mut self, plane: &str, storage: Storage) -> Self {
         self.storage.insert(plane.to_owned(), storage);
         self
+    }
+
+    /// Says that the client computes with more digits than `f32`, for example in `f64`, and rounds
+    /// its planes when it stores them: each plane of [`Storage::Single`] is [`Storage::Rounded`].
+    ///
+    /// ```
+    /// use splatref::verdict::client::{Client, Storage};
+    ///
+    /// # let frame = splatref::frame::Frame::<f64>::new(64, 48);
+    /// let client = Client::new(frame).rounded();
+    /// assert_eq!(client.storage("weight"), Storage::Rounded);
+    /// ```
+    #[must_use]
+    pub fn rounded(self) -> Self {
+        Self { single: Storage::Rounded, ..self }
     }
 
     /// Sets how far each number of a plane of colours or vectors may be off, where the value alone
@@ -235,7 +253,15 @@ impl Client {
     /// The storage of a plane.
     #[must_use]
     pub fn storage(&self, plane: &str) -> Storage {
-        self.storage.get(plane).copied().unwrap_or_default()
+        self.known_storage(self.storage.get(plane))
+    }
+
+    /// The storage of a plane with this entry in the table of storages.
+    fn known_storage(&self, entry: Option<&Storage>) -> Storage {
+        match entry.copied().unwrap_or_default() {
+            Storage::Single => self.single,
+            other => other,
+        }
     }
 
     /// The planes.
@@ -328,7 +354,7 @@ impl Client {
     ) -> StoredPlane<'a, T> {
         let channel = row.numbered(number);
         let own = self.storage.get(&channel).or_else(|| self.storage.get(row.name));
-        let storage = own.copied().unwrap_or_default();
+        let storage = self.known_storage(own);
         let PlaneRow { name, holds, .. } = *row;
         StoredPlane { name, holds, number, plane, storage, radii: self.radii(&channel) }
     }

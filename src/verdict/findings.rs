@@ -155,7 +155,8 @@ pub enum Outcome {
 pub struct Verdict {
     /// The findings stage by stage, in the order of the stages.
     pub stages: Vec<StageVerdict>,
-    /// Number of pixels of the picture that may be covered.
+    /// Number of pixels of the picture that may be covered. Undecided pixels and pixels without bounds
+    /// may be, so that there are at least as many.
     pub covered: u64,
     /// Number of covered pixels with undecided sums.
     pub undecided: u64,
@@ -182,13 +183,15 @@ impl Verdict {
         shifts: Shifts,
     ) -> Self {
         let unbounded = unbounded(&stages);
+        let covered = covered.max(undecided).max(unbounded);
         Self { stages, covered, undecided, unbounded, budget, shifts }
     }
 
     /// The same verdict with a stage before the others.
     pub(crate) fn after(mut self, first: StageVerdict) -> Self {
         self.stages.insert(0, first);
-        Self { unbounded: unbounded(&self.stages), ..self }
+        let unbounded = unbounded(&self.stages);
+        Self { unbounded, covered: self.covered.max(unbounded), ..self }
     }
 
     /// The same verdict with other numbers of surfels.

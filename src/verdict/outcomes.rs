@@ -38,7 +38,10 @@ pub(crate) fn outcomes<R: Real>(
         if (0..4).all(|j| !present[j] || !shown(j).certainly()) {
             add(&mut found, None);
         }
-        if firsts.len() > 1 {
+        // Equal stored numbers tie, or the numbers before they were rounded do not. Both orders are
+        // followed, but the tie is nearly always what it seems: one number that was copied.
+        let is_tie = |j: &usize| depths[*j].to_f64() == depths[firsts[0]].to_f64();
+        if !firsts.iter().all(is_tie) {
             doubts |= Doubt::Nearer as u8;
         }
         for first in firsts {

@@ -362,3 +362,18 @@ fn info_reads_the_index_alone() {
     }
     assert_eq!(succeeds(at.path(), &["info", "out"]), all);
 }
+
+/// A view in which nothing is visible is an empty picture, in every method that draws the folder.
+#[test]
+fn a_view_of_nothing_is_a_picture() {
+    let at = tempfile::tempdir().unwrap();
+    let folder = concat!(env!("CARGO_MANIFEST_DIR"), "/golden/nodes");
+    let camera = "[camera]\nsize = [16, 12]\neye = [0, 0, 500]\ntarget = [0, 0, 5000]\n";
+    fs::write(at.path().join("away.toml"), format!("hierarchy = {folder:?}\n{camera}")).unwrap();
+    for method in ["deferred", "pyramid", "blue"] {
+        let render = ["render", "away.toml", "-o", "a.exr", "--method", method];
+        succeeds(at.path(), &render);
+        let image = exr::read(&at.path().join("a.exr")).unwrap();
+        assert!(floats(&image, "A").iter().all(|alpha| *alpha == 0.0), "{method}");
+    }
+}

@@ -207,6 +207,7 @@ fn a_frame_goes_on_from_the_state_of_the_one_before() {
     let one = ["--frame", "2", "--state", "s.bin", "-o", "c.exr"];
     let said = succeeds(at.path(), &[&with(&one)[..], &["--repeat", "3"]].concat());
     assert!(said.contains(" of 400 surfels, "), "{said}");
+    assert!(said.contains("minimum and median of 3 pictures after this one"), "{said}");
     assert_eq!(read("c.exr"), read("w.0002.exr"), "repeated from the same state");
     succeeds(at.path(), &with(&["--frame", "2", "-o", "d.exr"]));
     assert_ne!(read("d.exr"), read("w.0002.exr"), "from nothing");

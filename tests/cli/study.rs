@@ -1,6 +1,8 @@
 //! `splatref study`: errors that are the same again, folders that are gone on with, and refusals.
 
 use super::{fails, names, splatref, succeeds};
+use base64::Engine;
+use base64::engine::general_purpose::STANDARD;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -56,6 +58,34 @@ fn a_study_says_the_same_again() {
     let page = fs::read_to_string(at.path().join("a/index.html")).unwrap();
     assert_eq!(page.matches("data:image/png").count(), rmse.len() - untimed.len() + 1);
     assert!(!page.contains("{{") && !page.contains("http://") || page.contains("www.w3.org"));
+}
+
+/// Also of values with a dot, such as the cut-offs 1 and 1.5.
+#[test]
+fn each_picture_on_the_page_is_what_its_options_draw() {
+    let at = tempfile::tempdir().unwrap();
+    let scene = ["torus", "--count", "150", "--size", "24x18"];
+    let options = ["--method", "single-pass", "-o", "a"];
+    succeeds(at.path(), &[&["study"], &scene[..], &options].concat());
+    let page = fs::read_to_string(at.path().join("a/index.html")).unwrap();
+    let data =
+        page.split_once("type=\"application/json\">").unwrap().1.split_once("</script>").unwrap().0;
+    let data: Value = serde_json::from_str(data).unwrap();
+    let candidates = data["candidates"].as_array().unwrap();
+    let dots = candidates.iter().filter(|one| one["options"].as_str().unwrap().contains('.'));
+    assert!(dots.count() > 0, "a value with a dot");
+    for one in candidates {
+        let options: Vec<&str> = one["options"].as_str().unwrap().split(' ').collect();
+        // Options of the candidate replace those of the scene.
+        let scene: Vec<&str> = match options.contains(&"--count") {
+            true => [&scene[..1], &scene[3..]].concat(),
+            false => scene.to_vec(),
+        };
+        succeeds(at.path(), &[&["render"], &scene[..], &options, &["-o", "one.exr"]].concat());
+        let drawn = fs::read(at.path().join("one.png")).unwrap();
+        let shown = one["picture"].as_str().unwrap().strip_prefix("data:image/png;base64,");
+        assert!(STANDARD.decode(shown.unwrap()).unwrap() == drawn, "{options:?}");
+    }
 }
 
 #[test]

@@ -109,7 +109,81 @@ fn verdicts_of_a_suite_are_added() {
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("WRONG        ieee  cut-off: 200 undecided decisions"), "{said}");
     fs::write(at.path().join("no.json"), "{}").unwrap();
-    assert!(fails(at.path(), &["suite", "no.json"], 1).contains("not a verdict"));
+    assert!(fails(at.path(), &["suite", "no.json"], 2).contains("not a verdict"));
+}
+
+#[test]
+fn a_suite_knows_every_word_of_its_verdicts() {
+    let at = pictures();
+    assert_eq!(verified(&at, "plain.exr", &["--json", "right.json"]).0, 0);
+    let right = fs::read_to_string(at.path().join("right.json")).unwrap();
+    let right: serde_json::Value = serde_json::from_str(&right).unwrap();
+    for (place, value, said) in [
+        ("/outcome", "wrnog".into(), "outcome is \"wrnog\", but can be right, wrong, undecidable"),
+        ("/outcome", serde_json::Value::Null, "not a verdict"),
+        ("/promise", "GPU".into(), "promise is \"GPU\", but can be ieee, gpu"),
+        ("/shifts/1/limit", "side".into(), "shifts.limit is \"side\", but can be cut-off, epsilon"),
+        ("/shifts/0/variance", (-1).into(), "the numbers of the limit cut-off are impossible"),
+    ] {
+        let mut changed = right.clone();
+        *changed.pointer_mut(place).unwrap() = value;
+        fs::write(at.path().join("changed.json"), changed.to_string()).unwrap();
+        let complaint = fails(at.path(), &["suite", "right.json", "changed.json"], 2);
+        assert!(complaint.contains("changed.json: ") && complaint.contains(said), "{complaint}");
+    }
+    assert!(fails(at.path(), &["suite", "nowhere.json"], 2).contains("nowhere.json"));
+    assert!(fails(at.path(), &["suite", "."], 2).contains("this is no file"));
+}
+
+/// Nobody writes into the pipe.
+#[cfg(unix)]
+#[test]
+fn a_suite_does_not_wait_for_a_pipe() {
+    let at = TempDir::new().unwrap();
+    let made = Command::new("mkfifo").arg(at.path().join("pipe")).status().unwrap();
+    assert!(made.success());
+    assert!(fails(at.path(), &["suite", "pipe"], 2).contains("pipe: this is no file"));
+}
+
+/// Each plane of a picture alone: wrong where the picture is wrong, and never an error or a share
+/// above 100 %.
+#[test]
+fn a_single_wrong_plane_gets_a_verdict() {
+    let at = TempDir::new().unwrap();
+    for method in splatref::method::Method::all() {
+        let options = ["--count", "200", "--size", "32x24", "--method", method.name()];
+        for shape in ["sphere", "torus"] {
+            let output = format!("{shape}.exr");
+            succeeds(at.path(), &[&["render", shape], &options[..], &["-o", &output]].concat());
+        }
+        for (shape, plane) in ["sphere", "torus"].into_iter().flat_map(|shape| {
+            ["RGB", "A", "Z", "id", "normal", "weight"].map(|plane| (shape, plane))
+        }) {
+            let rows = method.stages().iter().flat_map(|stage| stage.leaves);
+            let name = if plane == "RGB" { "" } else { plane };
+            if !rows.into_iter().any(|row| row.is_called(name)) {
+                continue;
+            }
+            let toml = format!("[planes.{plane}]\nfile = \"{shape}.exr\"\n");
+            fs::write(at.path().join("one.toml"), toml).unwrap();
+            let verify = [&["verify", "sphere", "one.toml"], &options[..]].concat();
+            let output = splatref(at.path(), &verify);
+            let said = String::from_utf8(output.stdout).unwrap();
+            let name = format!("{}, {plane} of a {shape}: {said}", method.name());
+            assert!(output.stderr.is_empty(), "{name}");
+            let shares = said.split_whitespace().zip(said.split_whitespace().skip(1));
+            let mut shares = shares.filter(|(_, unit)| *unit == "%").map(|(share, _)| share);
+            assert!(shares.all(|share| share.parse::<f64>().unwrap() <= 100.0), "{name}");
+            // Without their levels these methods judge little of a picture.
+            let judges = !["peeling", "pyramid", "template"].contains(&method.name());
+            match output.status.code() {
+                Some(0) if shape == "sphere" || !judges => {}
+                Some(1) if shape == "torus" => {}
+                Some(3) if !judges => {}
+                code => panic!("{code:?}: {name}"),
+            }
+        }
+    }
 }
 
 #[test]
@@ -211,4 +285,84 @@ fn what_cannot_be_judged_is_no_verdict() {
     let other = [&SCENE[..1], &["records.toml"], &SCENE[1..], &["--method", "peeling"]].concat();
     assert!(refused(&other).contains("only the method ewa judges records"));
     assert!(refused(&["sphere", "plain.exr", "--budget", "2"]).contains("a fraction from 0 to 1"));
+}
+
+/// The planes of a picture that a client with one mistake hands in.
+fn with_mistake(
+    image: &Image,
+    depth: &dyn Fn(f32) -> f32,
+    normal: f32,
+    order: [usize; 3],
+) -> Frame<f32> {
+    let (width, height) = (image.width, image.height);
+    let three = |names: [&str; 3]| {
+        let parts = names.map(|name| floats(image, name));
+        (0..parts[0].len()).map(|i| [0, 1, 2].map(|part: usize| parts[part][i])).collect::<Vec<_>>()
+    };
+    let depths = floats(image, "Z").into_iter().map(depth).collect();
+    let shifted = |n: [f32; 3]| n.map(|part| part * normal + (1.0 - normal));
+    let normals = three(["normal.X", "normal.Y", "normal.Z"]);
+    let normals = normals.into_iter().map(|n| if n == [0.0; 3] { n } else { shifted(n) });
+    let colors = three(["R", "G", "B"]).into_iter().map(|color| order.map(|part| color[part]));
+    let frame = Frame::new(width, height);
+    let with = |frame: Frame<f32>, name, samples| frame.with(name, samples).unwrap();
+    let frame = with(frame, "Z", Samples::Scalar(Plane::from_values(width, height, depths)));
+    let normals = Plane::from_values(width, height, normals.collect());
+    let frame = with(frame, "normal", Samples::Vector(normals));
+    with(frame, "", Samples::Color(Plane::from_values(width, height, colors.collect())))
+}
+
+#[test]
+fn what_planes_mean_is_named_where_it_is_not_what_they_should() {
+    let at = pictures();
+    let image = exr::read(&at.path().join("plain.exr")).unwrap();
+    let named = |frame: &Frame<f32>, likely: &str| {
+        exr::write(&at.path().join("other.exr"), frame, "").unwrap();
+        let (code, said) = verified(&at, "other.exr", &[]);
+        let found = said.lines().find(|line| line.starts_with("looks like"));
+        assert!(code == i32::from(!likely.is_empty()), "{likely}: {said}");
+        assert!(found.unwrap_or("").contains(likely), "{likely}: {said}");
+    };
+    let (own, rgb) = (|t: f32| t, [0, 1, 2]);
+    named(&with_mistake(&image, &own, 1.0, rgb), "");
+    let window = |near: f32, far: f32| {
+        move |t: f32| {
+            let (near, far, t) = (f64::from(near), f64::from(far), f64::from(t));
+            if t.is_finite() { (far / (far - near) * (1.0 - near / t)) as f32 } else { 1.0 }
+        }
+    };
+    let or = |empty: f32| move |t: f32| if t.is_finite() { t } else { empty };
+    for (depth, likely) in [
+        (&or(0.0) as &dyn Fn(f32) -> f32, "the background of the depth is 0, not +inf"),
+        (&or(1000.0), "the background of the depth is 1000, not +inf"),
+        (&window(0.01, 100.0), "a z-buffer value that is not declared (near 0.01, far 100)"),
+        (&window(0.5, 20.0), "a z-buffer value that is not declared (near 0.5, far 20)"),
+        (&|t| 1.0 - window(0.1, 50.0)(t), "reversed z-buffer value that is not declared (near 0.1"),
+        (&|t| -t, "depth is negative"),
+        (&|t| 1.0 / t, "depth is 1/t, not t"),
+        (&|t| 100.0 * t, "another scale or offset"),
+    ] {
+        named(&with_mistake(&image, depth, 1.0, rgb), likely);
+    }
+    named(&with_mistake(&image, &own, 0.5, rgb), "normals are stored in [0, 1]");
+    let swapped = "channels are swapped: red, green and blue are in BGR";
+    named(&with_mistake(&image, &own, 1.0, [2, 1, 0]), swapped);
+    let swapped = "channels are swapped: red, green and blue are in GBR";
+    named(&with_mistake(&image, &own, 1.0, [2, 0, 1]), swapped);
+}
+
+#[test]
+fn a_wrong_number_is_estimated() {
+    let at = pictures();
+    for (options, likely) in [
+        (["--low-pass", "0.3"], "the low-pass filter has another variance: 0.3 px^2, not 0.25"),
+        (["--low-pass", "0.07"], "the low-pass filter has another variance: 0.07 px^2, not 0.25"),
+        (["--cutoff", "2.2"], "the cut-off is 2.2, not 2"),
+        (["--focal", "70"], "another field of view: the focal length is 70 px"),
+    ] {
+        let render = [&["render"], &SCENE[..], &options, &["-o", "other.exr"]].concat();
+        succeeds(at.path(), &render);
+        let (code, said) = verified(&at, "other.exr", &[]);
+        assert!(code == 1 && said.contains(likely), "{options:?}: {said}");
+    }
 }

@@ -7,6 +7,7 @@
 //! - [`ladder`]: scenes whose decisions lie close to their limits.
 //! - [`nodes`]: a hierarchy whose choices lie close to their limits, and clients that make these
 //!   choices.
+//! - [`own_pictures`]: no verdict accuses the crate, whatever the settings are.
 //! - [`suite`]: a slightly wrong limit that leans decisions to one side, over several scenes.
 //! - [`groups`]: the same tests for the method `single-pass`.
 //! - [`image_space`]: the same tests for the methods `template` and `pyramid`.
@@ -20,5 +21,6 @@ mod groups;
 mod image_space;
 mod ladder;
 mod nodes;
+mod own_pictures;
 mod suite;
 mod verdicts;

@@ -3,12 +3,13 @@
 pub(super) mod report;
 
 use super::options::{ExecOptions, SceneOptions};
+use super::words::quoted;
 use super::{Ended, Ending, draw, output, progress, say};
 use splatref::frame::{Exec, Frame, Samples};
 use splatref::io::client::Description;
 use splatref::io::exr;
 use splatref::io::replace::Pending;
-use splatref::io::scene_file::{FileKind, OutputSettings, SceneFile};
+use splatref::io::scene_file::{FileKind, Number, OutputSettings, SceneFile};
 use splatref::method::Session;
 use splatref::scene::Camera;
 use splatref::setting::Word;
@@ -23,7 +24,8 @@ use std::path::PathBuf;
 #[command(after_help = "\
 Hand in an EXR whose planes have the names that `render --stages` writes; `splatref info` lists them. The
 more planes you hand in, the sharper the verdict. Each stage is judged from the client's own planes of
-the stage before: a value is right if an implementation that rounds as promised can produce it.
+the stage before: a value is right if an implementation that rounds as promised can produce it. If you
+computed in f64 and stored f32, add --number f64: the verdict then allows for that rounding too.
 
 Examples:
   splatref render sphere --stages -o out/mine.exr && splatref verify sphere out/mine.exr
@@ -72,8 +74,10 @@ fn judge(args: &Args) -> Ended {
     let ready = draw::ready(&file, &exec)?;
     let (session, _) = draw::session(&ready, &args.options, &exec)?;
     let camera = &ready.camera;
-    let client =
-        progress::during("reading", || read((&described, args.promise), &session, camera, &exec))?;
+    let number = file.output.number;
+    let client = progress::during("reading", || {
+        read((&described, args.promise), (number, camera), &session, &exec)
+    })?;
     let (verdict, likely) = progress::during("judging", || -> Result<_> {
         let verdict = session.verify(camera, &client, args.budget)?;
         let likely = likely_cause(&session, camera, &client, &verdict)?;
@@ -134,16 +138,20 @@ fn check(args: &Args, file: &SceneFile, described: &Description) -> Result<()> {
     Ok(())
 }
 
-/// Reads the planes of a client; `promise` replaces the promise in its description.
+/// Reads the planes of a client; `promise` replaces the promise in its description. A client that
+/// computes in f64 rounds what it stores once more.
 pub(super) fn read(
     (described, promise): (&Description, Option<Rounding>),
+    (number, camera): (Number, &Camera),
     session: &Session<'_>,
-    camera: &Camera,
     exec: &Exec,
 ) -> Result<Client> {
     let mut client = described.client(session.method().stages(), camera.size(), exec)?;
     client.rounding = promise.unwrap_or(client.rounding);
-    Ok(client)
+    Ok(match number {
+        Number::F32 => client,
+        Number::F64 => client.rounded(),
+    })
 }
 
 /// The errors of each stage in bounds, and the mask of undecided pixels.
@@ -171,9 +179,9 @@ fn share(text: &str) -> std::result::Result<f64, String> {
 impl Args {
     /// The command that explains a pixel, with all options of this command that `explain` takes.
     fn replay(&self, (x, y): (u32, u32)) -> String {
-        let mut words = vec!["splatref explain".to_owned(), quoted(&self.scene.to_string_lossy())];
+        let mut words = vec!["splatref explain".to_owned(), quoted(self.scene.as_os_str())];
         words.extend([x.to_string(), y.to_string()]);
-        words.extend(["--client".to_owned(), quoted(&self.client.to_string_lossy())]);
+        words.extend(["--client".to_owned(), quoted(self.client.as_os_str())]);
         let own = ["-o", "--output", "--json", "--budget"];
         let mut paths = vec![self.scene.as_os_str(), self.client.as_os_str()];
         let mut given = std::env::args_os().skip(1).skip_while(|word| word != "verify").skip(1);
@@ -189,15 +197,9 @@ impl Args {
             } else if let Some(place) = paths.iter().position(|path| *path == word) {
                 paths.remove(place);
             } else {
-                words.push(quoted(&text));
+                words.push(quoted(&word));
             }
         }
         words.join(" ")
     }
-}
-
-/// Quotes a word for a shell.
-fn quoted(word: &str) -> String {
-    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,=:+@%".contains(c);
-    if word.chars().all(plain) { word.into() } else { format!("'{}'", word.replace('\'', "'\\''")) }
 }

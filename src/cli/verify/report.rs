@@ -237,6 +237,14 @@ impl JsonShift {
         Self { limit: limit.name().into(), decisions, score, information, variance, z, estimate }
     }
 
+    /// Whether a picture can have these sums.
+    pub(in crate::cli) fn is_possible(&self) -> bool {
+        let Self { score, information, variance, .. } = *self;
+        score.is_finite()
+            && (0.0..f64::INFINITY).contains(&information)
+            && (0.0..f64::INFINITY).contains(&variance)
+    }
+
     /// The sums, to be added over pictures.
     pub(in crate::cli) fn shift(&self) -> Shift {
         let Self { decisions, score, information, variance, .. } = *self;

@@ -29,13 +29,13 @@
 //! The stage `difference` run alone turns depths into nearness again. So under a perspective camera
 //! its depths may be one rounding off the depths of the whole picture.
 //!
-//! All passes may leave out objects that were little seen in the last frame, see
-//! [`Settings::share`]. The comparison is `selected > 0 and selected <= share n`, in f64, with n
-//! the number of the object's surfels that the high level leaves now. `Decided:` an object of which
-//! the last frame selected nothing is not left out. \[GBP04, 7\] leaves out objects whose share is
-//! no higher than the threshold; an object left out once would then never be seen again. So an
-//! object of a small share is there every other frame. An object that is left out keeps its ids,
-//! its part in epsilon and its polygons; its flags are not set after the frame.
+//! Pass 1 may leave out objects that were little seen in the last frame, see [`Settings::share`].
+//! The comparison is `selected > 0 and selected <= share n`, in f64, with n the number of the
+//! object's surfels that the high level leaves now. Pass 3 then draws every surfel of B(i) of such
+//! an object. The object keeps its ids, its part in epsilon and its polygons, and its flags are set
+//! after the frame. `Departs:` \[GBP04, 7\] leaves out such objects of all passes. An object that no
+//! pass draws has no selected surfel, so it would never be seen again, or every other frame. With
+//! passes 2 to 4 it stays, and only the cost of pass 1 is saved.
 //!
 //! Triangles beside the surfels are drawn before pass 1, see [`polygons`].
 //!

@@ -23,7 +23,7 @@ pub(crate) struct Whole<'a> {
     ids: Cow<'a, Ids>,
     /// The boxes of a scene without objects, if the session made them.
     boxes: Option<&'a Boxes>,
-    /// Whether each object is left out of the frame; empty: none is.
+    /// Whether pass 1 leaves out each object; empty: it leaves out none.
     left_out: Vec<bool>,
 }
 
@@ -46,7 +46,7 @@ impl<'a> Whole<'a> {
         Self { boxes: job.index.boxes.as_ref(), ..Self::new(job.scene) }
     }
 
-    /// Leaves out the objects of which the frame before selected few surfels, see
+    /// Leaves out of pass 1 the objects of which the frame before selected few surfels, see
     /// [`Settings::share`].
     pub(crate) fn after(mut self, before: &Seen, settings: &Settings) -> Self {
         let share = f64::from(settings.share);
@@ -61,7 +61,7 @@ impl<'a> Whole<'a> {
         self
     }
 
-    /// Whether an object is left out of the frame.
+    /// Whether pass 1 leaves out an object.
     pub(crate) fn leaves_out(&self, object: u32) -> bool {
         self.left_out.get(object as usize).is_some_and(|&left_out| left_out)
     }
@@ -117,11 +117,6 @@ impl<'a> Whole<'a> {
         let mut done = 0;
         for &object in self.ids.order() {
             let of_object = u64::from(self.ids.count(object));
-            // Its ids still count, so that the ends of the shares stay where they are.
-            if self.leaves_out(object) {
-                done += of_object;
-                continue;
-            }
             let mut from = 0;
             while from < of_object {
                 while shares.len() < count && done >= ends[shares.len() - 1] {
@@ -158,7 +153,7 @@ impl<'a> Whole<'a> {
     pub(super) fn draws(&self, object: u32, surfel: u32) -> bool {
         let objects = self.scene.objects.as_ref();
         let drawn = objects.and_then(|objects| objects.drawn(object));
-        !self.leaves_out(object) && drawn.is_none_or(|drawn| drawn.has(surfel as usize))
+        drawn.is_none_or(|drawn| drawn.has(surfel as usize))
     }
 
     /// The unit of epsilon.
@@ -181,7 +176,7 @@ impl<'a> Whole<'a> {
     }
 
     /// The surfels of ascending ids as pass 4 draws them, see [`mod@super::filter`].
-    pub(super) fn drawn(&self, ids: Vec<u64>, job: &Job<'_>) -> Part {
+    pub(crate) fn drawn(&self, ids: Vec<u64>, job: &Job<'_>) -> Part {
         let surfels = filtered(self.surfels(&ids, job.exec), job.camera, job.exec);
         Part { scene: Scene::unlit(&self.scene.name, surfels), ids }
     }
@@ -192,7 +187,8 @@ impl<'a> Whole<'a> {
         Part { scene, ids }
     }
 
-    /// The drawn surfels of ranges in ascending ids, with the attributes that depth needs alone.
+    /// The surfels of ranges that pass 1 draws, in ascending ids, with the attributes that depth needs
+    /// alone.
     pub(super) fn shapes(&self, mut ranges: Vec<(u32, std::ops::Range<u32>)>, exec: &Exec) -> Part {
         ranges.retain(|(object, _)| !self.leaves_out(*object));
         let mut ids = Vec::new();

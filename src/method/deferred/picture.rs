@@ -205,12 +205,14 @@ fn difference<R: Exact>(
     both(job, visible, &nearest(job, &settings.splats, &fresh))
 }
 
-/// The ids of `ids`, ascending, whose flags are not set.
+/// The ids of `ids`, ascending, that pass 1 did not draw: their flags are not set, or it left out
+/// their object.
 pub(super) fn unseen(whole: &Whole<'_>, before: &Seen, ids: &[u64]) -> Vec<u64> {
     let mut new = Vec::new();
     for (object, run) in whole.ids().runs(ids) {
         let first = whole.ids().id(object, 0);
-        new.extend(run.iter().filter(|&&id| !before.has(object, (id - first) as u32)));
+        let drawn = |id: u64| !whole.leaves_out(object) && before.has(object, (id - first) as u32);
+        new.extend(run.iter().filter(|&&id| !drawn(id)));
     }
     new
 }

@@ -14,10 +14,10 @@ pub struct Settings {
     /// Whether pass 3 runs: it draws the surfels that the last frame did not see into the depth
     /// before EWA splatting.
     pub second: bool,
-    /// An object is left out of the frame if the last frame selected some of its surfels, but at
-    /// most this share of the surfels that the high level leaves now \[GBP04, 7\]. In [0, 1]; 0
-    /// leaves none out. A number such as 0.1 is rounded to `f32` first, and the comparison widens
-    /// the `f32` to f64.
+    /// Pass 1 leaves out an object if the last frame selected some of its surfels, but at most this
+    /// share of the surfels that the high level leaves now \[GBP04, 7\]. In [0, 1]; 0 leaves none
+    /// out. A number such as 0.1 is rounded to `f32` first, and the comparison widens the `f32` to
+    /// f64.
     pub share: f32,
 }
 
@@ -56,8 +56,8 @@ impl Fields for Settings {
         each(Field::new("flags", help, Slot::Count(flags)).unit("surfels").range("1 to 4096"));
         let help = "repeat visibility splatting with the surfels that the last frame did not see";
         each(Field::new("second", help, Slot::Switch(second)));
-        let help = "leave out an object if the last frame selected some of its surfels, but at \
-                    most this fraction";
+        let help = "leave an object out of the first visibility pass if the last frame selected \
+                    some of its surfels, but at most this fraction";
         each(Field::new("share", help, Slot::Number(share)).range("0 to 1"));
     }
 }

@@ -74,11 +74,20 @@ impl Record {
         Self { options, method, measured: None, times: Vec::new() }
     }
 
-    /// The name of its files: the options, with `-` for characters that file names cannot have.
+    /// The name of its picture, such as `ewa_cutoff=1.5.png`. Different options give different names:
+    /// a character that file names may not have becomes its code.
     #[must_use]
-    pub fn file_name(&self) -> String {
-        let plain = |c: char| if c.is_ascii_alphanumeric() || c == '.' { c } else { '-' };
-        self.options.trim_start_matches("--method ").chars().map(plain).collect()
+    pub fn picture_name(&self) -> String {
+        let options = self.options.trim_start_matches("--method ");
+        let mut name = String::new();
+        for c in options.replace(" --", "_").replace(' ', "=").chars() {
+            if c.is_ascii_alphanumeric() || "-_=.,".contains(c) {
+                name.push(c);
+            } else {
+                name.push_str(&format!("%{:x}", u32::from(c)));
+            }
+        }
+        name + ".png"
     }
 
     /// The times in ascending order.

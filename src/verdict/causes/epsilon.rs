@@ -111,7 +111,7 @@ pub(super) fn moved(session: &Session<'_>, client: &Client) -> Vec<(String, Chan
 
 /// The planes that may hold the depth for judging the visibility pass. The first one that is there
 /// is used.
-const DEPTHS: [&str; 2] = [Foremost::<f32>::PLANES[0].row.name, surface::DEPTH.name];
+pub(super) const DEPTHS: [&str; 2] = [Foremost::<f32>::PLANES[0].row.name, surface::DEPTH.name];
 
 /// The client as if its band ended there.
 pub(super) fn banded(client: &Client, band: Band) -> Client {
@@ -149,7 +149,7 @@ pub(super) fn moved_back(client: &Client, by: f64) -> Client {
         other => other.clone(),
     });
     for name in DEPTHS {
-        if back.storage(name) == Storage::Single {
+        if matches!(back.storage(name), Storage::Single | Storage::Rounded) {
             // Moving the depth rounded it, and undoing the move rounds again.
             let lost = 4.0 / 16_777_216.0;
             back = back.stored(name, Storage::Float { relative: lost, least: lost * by.abs() });

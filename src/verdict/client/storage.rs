@@ -9,6 +9,11 @@ pub enum Storage {
     /// `f32`: the value as computed.
     #[default]
     Single,
+    /// `f32`, rounded once to nearest from a number with more digits: 2^-24 of the value. The next
+    /// stage continued from the number before it was rounded. See [`Client::rounded`].
+    ///
+    /// [`Client::rounded`]: super::Client::rounded
+    Rounded,
     /// `f16`, rounded to either neighbour: 2^-10 of the value, at least 2^-24.
     Half,
     /// A float of fewer digits. A value may be off by `relative` of itself, or by `least` if that
@@ -64,6 +69,12 @@ pub enum Storage {
     },
 }
 
+/// What rounding to `f32` may lose of a stored value. A little more than 2^-24, because the fraction
+/// is of the value before it was rounded.
+const ROUNDED: f64 = 1.000_001 / 16_777_216.0;
+/// Half the least `f32` above 0: 2^-150.
+const HALF_A_DENORMAL: f64 = 0.5 * 1.401_298_464_324_817e-45;
+
 /// How far off a stored v may be: `|v|` times `relative`, at least `least`.
 fn v_radius(v: f64, relative: f64, least: f64) -> f64 {
     (v.abs() * relative).at_least(least)
@@ -83,6 +94,9 @@ impl Storage {
         match self {
             Self::Single => 0.0,
             _ if !value.is_finite() => 0.0,
+            // 0 stays exact, because it says that a pixel is empty.
+            Self::Rounded if value == 0.0 => 0.0,
+            Self::Rounded => v_radius(value, ROUNDED, HALF_A_DENORMAL),
             Self::Half => v_radius(value, 1.0 / 1024.0, 1.0 / 16_777_216.0),
             Self::Float { relative, least } => v_radius(value, relative, least),
             Self::Steps(step) => step,
@@ -113,6 +127,13 @@ mod tests {
     #[test]
     fn what_a_format_may_lose() {
         assert_eq!(Storage::Single.radius(0.7), 0.0);
+        assert_eq!(Storage::Rounded.radius(0.0), 0.0, "an empty pixel");
+        for value in [1.0 / 3.0, -0.1, 1e30 / 7.0, 1e-42 / 3.0, 1.000_000_059_604_644_6] {
+            let stored = f64::from(value as f32);
+            let radius = Storage::Rounded.radius(stored);
+            let lost = (value - stored).abs();
+            assert!(lost <= radius && radius < 1e-7 * value.abs() + 1e-45, "{value:e}");
+        }
         // Neighbours of f16 in [1, 2) are 2^-10 apart, denormals 2^-24.
         assert_eq!(Storage::Half.radius(1.0), 1.0 / 1024.0);
         assert_eq!(Storage::Half.radius(1e-9), 1.0 / 16_777_216.0);

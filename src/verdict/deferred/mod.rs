@@ -75,8 +75,11 @@
 //!   draws are computed in f64 and are an input, like the flags.
 //! - If ids have more than 32 bits, a plane of ids is judged together with the plane of the highest
 //!   8; alone it is not judged.
-//! - The objects that are [left out](Settings::share) are an input, like the flags. A surfel of
-//!   such an object certainly is not drawn. Its polygons are there.
+//! - The colours that [mipmaps](mod@crate::method::deferred::filter) give are an input of pass 4,
+//!   like the colours of a scene without mipmaps: a client must draw the same `f32` numbers.
+//! - The objects that pass 1 [leaves out](Settings::share) are an input, like the flags. Pass 1
+//!   certainly draws no surfel of such an object, and pass 3 draws those of B(i). Its polygons are
+//!   there.
 //! - A client may not promise `ieee` if it continues from other numbers than it stores, e.g. from a
 //!   picture in f64 that is rounded once in the end. The reason is that its stored planes are not
 //!   the input of its next stage.
@@ -153,7 +156,7 @@ fn judge<P: Profile>(
     let ground = Ground::new(job, &whole)?;
     let cull = settings.splats.cull;
     let ground = ground.as_ref().map(|ground| Polygons::<P>::new(job, ground, cull));
-    let flat = whole.part(whole.drawn_ids(), job.exec);
+    let flat = whole.drawn(whole.drawn_ids(), job);
     let scene = Scenery { job, settings, whole: &whole, flat: &flat, ground: ground.as_ref() };
     let flagged = before.surfels(whole.ids());
     memory::ask(flagged.len() as u64 * OF_A_FLAGGED, || {
@@ -171,7 +174,8 @@ fn judge<P: Profile>(
 
     let unseen = |&(rank, _): &(u32, bool)| {
         let found = whole.ids().find(flat.id(rank));
-        found.is_some_and(|(object, surfel)| !before.has(object, surfel))
+        found
+            .is_some_and(|(object, surfel)| whole.leaves_out(object) || !before.has(object, surfel))
     };
     let mut drawn = flagged;
     if settings.second {
@@ -218,7 +222,7 @@ impl<'a, P: Profile> Scenery<'a, P> {
         self.flat.surfels()
     }
 
-    /// Whether a surfel belongs to an object that the frame does not leave out.
+    /// Whether a surfel belongs to an object that pass 1 does not leave out.
     fn draws(&self, id: u64) -> bool {
         let found = self.whole.ids().find(id);
         found.is_some_and(|(object, _)| !self.whole.leaves_out(object))
@@ -283,9 +287,9 @@ impl<'a, P: Profile> Scenery<'a, P> {
         let (job, cull) = (self.flat.job(self.job), self.settings.splats.cull);
         let [depth, id, _] = rows(&Kept::<f32>::PLANES);
         let planes = SamplePlanes::of_nearest(client, job.scene, [depth, id]);
-        let draws = |rank: usize| self.draws(self.flat.id(rank as u32));
+        let everything = |_| true;
         let points =
-            AllPossible::<P>::drawn_where(&job, (cull, Snap::default()), Some(limits), draws);
+            AllPossible::<P>::drawn_where(&job, (cull, Snap::default()), Some(limits), everything);
         let names = planes.names();
         let marks = match names.is_empty() {
             true => watch.picture(&job),

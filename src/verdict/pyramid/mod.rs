@@ -49,9 +49,6 @@ use levels::Levels;
 use pixel::PixelJudge;
 use planes::PicturePlanes;
 
-/// All doubts, because in the levels each of them may move the averages.
-const ANY: u8 = u8::MAX;
-
 /// Judges the planes of a client.
 pub(super) fn verify<P: Profile>(
     job: &Job<'_>,
@@ -65,7 +62,10 @@ pub(super) fn verify<P: Profile>(
     let there = job.there(Keep::Stages);
     stages[1].missing = missing(client, &rows(&Cell::<f32>::PULL), 1..last + 1, &there);
     stages[2].missing = missing(client, &rows(&Cell::<f32>::PUSH), 0..last, &there);
-    let undecided = [1, 2].map_inline(|i: usize| stages[i].doubtful(ANY)).iter().sum();
+    let [pulled, pushed] = [1, 2].map_inline(|i: usize| stages[i].doubts.values());
+    // Any doubt in a level may move the averages. A pixel with doubts in both stages is one pixel.
+    let undecided =
+        pulled.iter().zip(pushed).filter(|(pull, push)| *pull | *push != 0).count() as u64;
     Verdict::new(stages, [covered, undecided], budget, Shifts::default())
 }
 

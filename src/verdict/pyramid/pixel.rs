@@ -56,7 +56,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
         self.check_picture(at, cell, report);
         let depth = self.client_planes.depth.map(|plane| plane.plane.at(at.0, at.1).is_finite());
-        cell.map_or(depth.unwrap_or(false), Cell::is_valid)
+        // A client that says nothing about a pixel may have covered it.
+        cell.map_or(depth.unwrap_or(true), Cell::is_valid)
     }
 
     /// Checks the values of a cell that the picture copies.

@@ -75,7 +75,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         self.check(at, sums, &mut |part, error, fault| marks[part].at(pixel).found(error, fault));
         match sums {
             Some(sums) => sums.id != NO_ID,
-            None => replayed || self.client_planes.empty(at) == Some(false),
+            None => replayed || self.client_planes.empty(at) != Some(true),
         }
     }
 

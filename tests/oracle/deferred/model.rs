@@ -49,12 +49,12 @@ pub(crate) struct Sets {
 
 impl Sets {
     pub(crate) fn new(
-        View { numbers, every, .. }: &View,
+        View { numbers, every, left, .. }: &View,
         flags: &Flags,
         selected: &BTreeSet<u64>,
         second: bool,
     ) -> Self {
-        let flagged: Vec<_> = every.iter().map(|&of| flags.has(of)).collect();
+        let flagged: Vec<_> = every.iter().map(|&of| flags.has(of) && !left[of.0]).collect();
         let selected: Vec<_> =
             every.iter().map(|&(o, s)| selected.contains(&numbers.id(o, s))).collect();
         let fresh = selected.iter().zip(&flagged).map(|(s, f)| second && *s && !*f).collect();

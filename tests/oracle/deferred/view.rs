@@ -152,7 +152,7 @@ pub(crate) struct View {
     pub(crate) median: f32,
     /// What is beside the surfels, placed, of each object.
     pub(crate) primitives: Vec<Primitives>,
-    /// Objects that are left out.
+    /// Objects that pass 1 leaves out.
     pub(crate) left: Vec<bool>,
     pub(crate) colored: bool,
 }
@@ -170,7 +170,7 @@ impl View {
         let counts: Vec<u32> = world.counts().iter().zip(&all).map(count).collect();
         let numbers = Numbers::new(&counts).expect("ids");
         let shown = |&(o, s): &(usize, u32)| all[o].as_ref().is_none_or(|t| t.nodes.contains(&s));
-        let mut every: Vec<_> = numbers.every().into_iter().filter(shown).collect();
+        let every: Vec<_> = numbers.every().into_iter().filter(shown).collect();
         let mut each = vec![0_u32; counts.len()];
         every.iter().for_each(|(o, _)| each[*o] += 1);
         let left: Vec<bool> = (0..counts.len())
@@ -180,9 +180,8 @@ impl View {
             })
             .collect();
         let median = median(world, frame, &all);
-        every.retain(|(o, _)| !left[*o]);
         let primitives = objects.primitives().expect("few");
-        let whole = all.iter().all(Option::is_none) && !left.contains(&true);
+        let whole = all.iter().all(Option::is_none);
         let placed = if whole {
             objects.flattened(&Exec::sequential()).expect("few surfels").0
         } else {
