@@ -4,7 +4,7 @@ use super::{Ended, Ending, report, say};
 use splatref::compare::metrics;
 use splatref::compare::{Criteria, Tolerance, Verdict, compare};
 use splatref::frame::{Exec, Image};
-use splatref::io::{exr, extension, npy, png};
+use splatref::io::{exr, extension, npy, npz, png};
 use splatref::number::srgb;
 use splatref::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -22,6 +22,7 @@ You can mix file types; the planes that both can hold are compared:
   PNG   the colours as stored, in sRGB
   NPY   one plane, h x w or h x w x 3, floats or integers; its name is the file's, or --as;
         RGB.npy holds R,G,B
+  NPZ   one plane for each array, under the array's name
 
 A plane `margin` that only the first picture has is left out. For colours the program also prints
 RMSE, PSNR, SSIM and the mean of FLIP at 67 pixels per degree; FLIP makes sRGB linear first.
@@ -36,7 +37,7 @@ Examples:
 
 Exit codes: 0 equal or within the tolerance, 1 different or failed, 2 wrong usage.")]
 pub(super) struct Args {
-    /// The reference picture: an .exr, .png or .npy
+    /// The reference picture: an .exr, .png, .npy or .npz
     first: PathBuf,
     /// The picture to check
     second: PathBuf,
@@ -53,6 +54,10 @@ pub(super) struct Args {
     /// (or differ at all, for indices); repeatable
     #[arg(long, value_name = "NAME:BOUNDS", value_parser = tolerance)]
     tolerance: Vec<(String, Tolerance)>,
+    /// Take a plane from channels of another name, such as RGB=ViewLayer.Combined, in every picture
+    /// that has them; repeatable
+    #[arg(long, value_name = "PLANE=CHANNEL", value_parser = channels)]
+    channels: Vec<(String, String)>,
     /// Give the plane in an NPY this name
     #[arg(long = "as", value_name = "NAME")]
     name: Option<String>,
@@ -61,7 +66,8 @@ pub(super) struct Args {
 pub(super) fn run(args: &Args) -> Ended {
     let exec = Exec::new(0, 32)?;
     let read = |path| PictureFile::read(path, args, &exec);
-    let pair = [read(&args.first)?, read(&args.second)?];
+    let mut pair = [read(&args.first)?, read(&args.second)?];
+    args.rename(&mut pair)?;
     let stored = pair.iter().any(|file| matches!(file, PictureFile::Png(_)));
     let (first, second) = alike(pair)?;
     let found = compare(&first, &second, &args.criteria())?;
@@ -105,7 +111,53 @@ fn distances(first: &Image, second: &Image, stored: bool, exec: &Exec) -> Result
     )))
 }
 
+/// A plane, and the name of its channels.
+pub(super) fn channels(text: &str) -> std::result::Result<(String, String), String> {
+    match text.split_once('=') {
+        Some((plane, channel)) if !plane.is_empty() && !channel.is_empty() => {
+            Ok((plane.to_owned(), channel.to_owned()))
+        }
+        _ => Err("give a plane and its channel: RGB=ViewLayer.Combined".into()),
+    }
+}
+
+/// The new name of a channel, if `old` is its name, or all of its name but the last part.
+fn renamed(name: &str, plane: &str, old: &str) -> Option<String> {
+    let end = name.strip_prefix(old)?;
+    match (end.strip_prefix('.'), plane.strip_suffix("RGB")) {
+        (None, _) => end.is_empty().then(|| plane.to_owned()),
+        (Some(end), Some(layer)) if layer.is_empty() || layer.ends_with('.') => {
+            Some(format!("{layer}{end}"))
+        }
+        (Some(end), _) => Some(format!("{plane}.{end}")),
+    }
+}
+
 impl Args {
+    /// Gives channels the names of planes; they replace channels that have these names already.
+    fn rename(&self, pair: &mut [PictureFile; 2]) -> Result<()> {
+        for (plane, old) in &self.channels {
+            let mut found = false;
+            for file in &mut *pair {
+                let PictureFile::Exr(Image { channels, .. }) = file else { continue };
+                let new = |name: &str| renamed(name, plane, old);
+                let taken: Vec<String> =
+                    channels.iter().filter_map(|(name, _)| new(name)).collect();
+                found |= !taken.is_empty();
+                channels.retain(|(name, _)| !taken.contains(name) || new(name).is_some());
+                for (name, _) in &mut *channels {
+                    *name = new(name).unwrap_or_else(|| name.clone());
+                }
+                channels.sort_by(|a, b| a.0.cmp(&b.0));
+            }
+            if !found {
+                let what = format!("--channels {plane}={old}: neither picture has a channel {old}");
+                return Err(Error::Usage(what));
+            }
+        }
+        Ok(())
+    }
+
     fn criteria(&self) -> Criteria {
         Criteria {
             planes: self.planes.clone(),
@@ -133,6 +185,8 @@ impl PictureFile {
                 let name = args.name.as_deref().unwrap_or(&stem);
                 Ok(Self::Npy(npy::read(path, name)?, path.to_owned()))
             }
+            // Planes under names of their own, as in an EXR.
+            Some("npz") => npz::read(path).map(Self::Exr),
             _ => exr::read_with(path, exec).map(Self::Exr),
         }
     }
@@ -206,4 +260,24 @@ fn tolerance(text: &str) -> std::result::Result<(String, Tolerance), String> {
 /// Parses a number >= 0.
 fn bound(text: &str) -> std::result::Result<f32, String> {
     text.parse().ok().filter(|most| *most >= 0.0).ok_or_else(|| "give a number >= 0".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn all_channels_of_a_plane_are_renamed() {
+        for (name, plane, new) in [
+            ("ViewLayer.Combined.R", "RGB", Some("R")),
+            ("ViewLayer.Combined.A", "RGB", Some("A")),
+            ("ViewLayer.Combined.R", "attributes.RGB", Some("attributes.R")),
+            ("ViewLayer.Combined.X", "normal", Some("normal.X")),
+            ("ViewLayer.Combined", "Z", Some("Z")),
+            ("ViewLayer.Combined2.R", "RGB", None),
+            ("Combined.R", "RGB", None),
+        ] {
+            assert_eq!(renamed(name, plane, "ViewLayer.Combined").as_deref(), new, "{name}");
+        }
+    }
 }

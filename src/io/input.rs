@@ -3,22 +3,35 @@
 use crate::error::Error;
 use crate::memory;
 use std::fs::{self, File};
-use std::io::{self, Read};
+use std::io::{self, Read, Seek};
 use std::path::Path;
 
 /// Opens the file at `path`; returns it and its length in bytes.
 ///
 /// # Errors
-/// If it cannot be opened, or is a directory, a pipe or a device.
+/// If it cannot be opened, or is a directory, a pipe, a device, or a pointer of Git LFS.
 pub(super) fn open(path: &Path) -> io::Result<(File, u64)> {
     // Ask before opening, because opening a pipe without a writer would wait.
     if let Some(what) = no_file(path) {
         return Err(io::Error::new(io::ErrorKind::InvalidInput, what));
     }
-    let file = File::open(path)?;
+    let mut file = File::open(path)?;
     let length = file.metadata()?.len();
+    if length <= LONGEST_POINTER {
+        let mut text = Vec::new();
+        (&mut file).take(POINTER.len() as u64).read_to_end(&mut text)?;
+        if text == POINTER {
+            let what = "this is a Git LFS pointer, not the file itself; run `git lfs pull`";
+            return Err(io::Error::new(io::ErrorKind::InvalidData, what));
+        }
+        file.rewind()?;
+    }
     Ok((file, length))
 }
+
+/// How a pointer of Git LFS begins; a pointer is shorter than 1024 bytes.
+const POINTER: &[u8] = b"version https://git-lfs.github.com/spec/";
+const LONGEST_POINTER: u64 = 1024;
 
 /// Reads the file at `path`: as many bytes as it has when it is opened.
 ///

@@ -17,7 +17,7 @@
 //! - [`exr`]: write and read every plane of a frame, exactly; reading guards against files that
 //!   lie.
 //! - `png`: write an 8-bit preview; needs the feature `cli`.
-//! - [`npy`]: read arrays of `NumPy` as planes.
+//! - [`npy`], [`npz`]: read arrays of `NumPy` as planes.
 //! - [`client`]: read another renderer's planes, and the TOML file that describes them.
 //! - [`provenance`]: write the text that a picture carries.
 //! - [`state`]: store the surfels that a frame saw, to resume a sequence.
@@ -37,6 +37,7 @@ mod guard;
 pub mod hierarchy;
 mod input;
 pub mod npy;
+pub mod npz;
 pub mod obj;
 pub mod ply;
 #[cfg(feature = "cli")]

@@ -181,3 +181,47 @@ fn a_png_is_compared_as_it_is_stored() {
     fails(at.path(), &["compare", "a.exr", "cut.png"], 1);
     fails(at.path(), &["compare", "a.exr", "missing.png"], 1);
 }
+
+/// Blender calls a plane `ViewLayer.Normal`.
+#[test]
+fn channels_of_other_names_are_compared() {
+    let at = two_pictures();
+    let blender = Frame::new(4, 2)
+        .with("ViewLayer.Depth", Samples::Scalar(Plane::from_values(4, 2, DEPTH.to_vec())))
+        .and_then(|f| {
+            f.with("ViewLayer.Normal", Samples::Vector(Plane::filled(4, 2, [0.0, 0.0, 1.0])))
+        })
+        .unwrap();
+    exr::write(&at.path().join("c.exr"), &blender, "").unwrap();
+    let both = ["--channels", "Z=ViewLayer.Depth", "--channels", "normal=ViewLayer.Normal"];
+    let planes = ["a.exr", "c.exr", "--planes", "Z,normal"];
+    let (code, said) = compared(&at, &[&planes[..], &both].concat());
+    assert!(code == 0 && said.contains("equal: all 4 planes"), "{said}");
+    let compare = ["compare", "a.exr", "c.exr", "--channels"];
+    let line = fails(at.path(), &[&compare[..], &["Z=depth"]].concat(), 2);
+    assert!(line.contains("neither picture has a channel depth"), "{line}");
+    let line = fails(at.path(), &[&compare[..], &["Z"]].concat(), 2);
+    assert!(line.contains("give a plane and its channel"), "{line}");
+}
+
+/// Files that are not what their names say, and pictures of kinds that are not read.
+#[test]
+fn pointers_and_other_kinds_are_called_by_their_names() {
+    let at = two_pictures();
+    let pointer = "version https://git-lfs.github.com/spec/v1\noid sha256:4d7a2146\nsize 12345\n";
+    for name in ["p.exr", "p.png", "p.npy", "p.npz", "p.ply", "p.obj", "p.toml"] {
+        fs::write(at.path().join(name), pointer).unwrap();
+        let is_picture = ["p.exr", "p.png", "p.npy", "p.npz"].contains(&name);
+        let command: &[&str] =
+            if is_picture { &["compare", "a.exr", name] } else { &["info", name] };
+        let line = fails(at.path(), command, 1);
+        assert!(line.contains(name) && line.contains("is a Git LFS pointer"), "{line}");
+        assert!(line.contains("run `git lfs pull`"), "{line}");
+    }
+    for name in ["photo.jpg", "a.tif"] {
+        fs::write(at.path().join(name), b"\xff\xd8\xff\xe0").unwrap();
+        let line = fails(at.path(), &["compare", "a.exr", name], 1);
+        let kind = name.rsplit('.').next().unwrap();
+        assert!(line.contains(&format!("pictures of the kind .{kind} are not read")), "{line}");
+    }
+}

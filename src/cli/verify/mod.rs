@@ -31,6 +31,7 @@ Examples:
   splatref render sphere --stages -o out/mine.exr && splatref verify sphere out/mine.exr
   splatref verify scene.toml gpu.exr --promise ieee -o out/errors.exr --json out/verdict.json
   splatref verify scene.toml gpu.toml
+  splatref verify scene.toml blender.exr --channels RGB=ViewLayer.Combined
 
 The documentation of splatref::io::client describes the TOML file.
 
@@ -41,6 +42,9 @@ pub(super) struct Args {
     scene: PathBuf,
     /// The client's planes: an .exr, or a .toml that says what is in which file
     client: PathBuf,
+    /// Take a plane from channels of another name, such as RGB=ViewLayer.Combined; repeatable
+    #[arg(long, value_name = "PLANE=CHANNEL", value_parser = super::compare::channels)]
+    channels: Vec<(String, String)>,
     /// Set how precise the client's operations are: gpu, as shading languages guarantee; ieee, each
     /// rounds once, to nearest [default: from the .toml, else gpu]
     #[arg(long, value_name = "gpu|ieee", value_parser = rounding)]
@@ -69,7 +73,7 @@ fn judge(args: &Args) -> Ended {
     let file = args.options.scene_file(&args.scene)?;
     file.output.check_kept("a client's storage is described beside its planes")?;
     let exec = args.exec.exec()?;
-    let described = Description::open(&args.client)?;
+    let described = Description::open(&args.client)?.with_channels(&args.channels);
     check(args, &file, &described)?;
     let ready = draw::ready(&file, &exec)?;
     let (session, _) = draw::session(&ready, &args.options, &exec)?;

@@ -68,7 +68,7 @@ fn check_keys(wanted: &Wanted, kind: Kind) -> Reason<()> {
     let holds = row.holds.plain();
     let (is_color, is_index) = (holds == Holds::Color, holds == Holds::Index);
     let is_vector = holds == Holds::Vector;
-    let has_channels = matches!(kind, Kind::Exr | Kind::Png);
+    let has_channels = matches!(kind, Kind::Exr | Kind::Png | Kind::Npz);
     let is_number = !is_index && holds != Holds::Count;
     for (key, given, means) in [
         ("channel", keys.channel.is_some(), has_channels),
@@ -88,6 +88,7 @@ fn check_keys(wanted: &Wanted, kind: Kind) -> Reason<()> {
             let of = match (key, kind) {
                 ("channel" | "offset" | "row_stride" | "pixel_stride", Kind::Exr) => "an EXR",
                 ("channel" | "offset" | "row_stride" | "pixel_stride", Kind::Npy) => "an NPY",
+                ("channel" | "offset" | "row_stride" | "pixel_stride", Kind::Npz) => "an NPZ",
                 ("channel" | "offset" | "row_stride" | "pixel_stride", Kind::Png) => "a PNG",
                 ("channel" | "offset" | "row_stride" | "pixel_stride", Kind::Raw) => "a raw file",
                 _ if is_depth => "depths",

@@ -2,14 +2,13 @@
 
 use super::format::Format;
 use super::numbers::{Numbers, ask};
-use super::parse::PlaneKeys;
 use super::raw;
 use super::wanted::Wanted;
 use crate::error::{Error, Result};
 use crate::frame::image::Values;
 use crate::frame::{Exec, Image};
 use crate::io::exr::{self, ChannelType};
-use crate::io::{Reason, extension, npy};
+use crate::io::{Reason, extension, npy, npz};
 use crate::method::Holds;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -19,6 +18,7 @@ use std::path::{Path, PathBuf};
 pub(super) enum Kind {
     Exr,
     Npy,
+    Npz,
     Png,
     Raw,
 }
@@ -28,6 +28,7 @@ impl Kind {
         match extension(path)?.as_str() {
             "exr" => Some(Self::Exr),
             "npy" => Some(Self::Npy),
+            "npz" => Some(Self::Npz),
             "png" => Some(Self::Png),
             "raw" | "bin" => Some(Self::Raw),
             _ => None,
@@ -98,9 +99,16 @@ impl<'e> Files<'e> {
                 });
                 raw::read(path, key, keys, format, components, size)
             }
-            Kind::Npy => {
+            Kind::Npy | Kind::Npz => {
                 // The name does not matter: only the number of components does.
-                let image = npy::read(path, "v")?;
+                let (image, is_half) = match (kind, keys.channel.as_deref()) {
+                    (Kind::Npy, _) => npy::read_stored(path, "v")?,
+                    (_, None) => npz::read_stored(path, &wanted.name, "v")?,
+                    (_, Some([name])) => npz::read_stored(path, name, "v")?,
+                    (_, Some(_)) => {
+                        return Err(refused("`channel` of an NPZ is the name of one array".into()));
+                    }
+                };
                 let names: Vec<String> =
                     image.channels.iter().map(|(name, _)| name.clone()).collect();
                 if names.len() != components {
@@ -110,12 +118,13 @@ impl<'e> Files<'e> {
                         row.holds.words()
                     )));
                 }
-                let picture = Picture { image, formats: BTreeMap::new() };
+                let half = names.iter().filter(|_| is_half).map(|name| (name.clone(), Format::F16));
+                let picture = Picture { image, formats: half.collect() };
                 picture.numbers(&names).map_err(refused)
             }
             Kind::Exr | Kind::Png => {
                 let picture = self.picture(path, kind)?;
-                let names = picture.names(wanted, keys, kind).map_err(refused)?;
+                let names = picture.names(wanted, kind).map_err(refused)?;
                 let mut numbers = picture.numbers(&names).map_err(refused)?;
                 // A PNG has stored whole numbers as codes of colours.
                 if matches!(row.holds.plain(), Holds::Index | Holds::Count) {
@@ -129,11 +138,11 @@ impl<'e> Files<'e> {
 
 impl Picture {
     /// The names of a plane's channels in this file.
-    fn names(&self, wanted: &Wanted, keys: &PlaneKeys, kind: Kind) -> Reason<Vec<String>> {
+    fn names(&self, wanted: &Wanted, kind: Kind) -> Reason<Vec<String>> {
         let components = wanted.channels().len();
-        if let Some(names) = &keys.channel {
+        if let Some(names) = wanted.chosen() {
             if names.len() == components {
-                return Ok(names.clone());
+                return Ok(names);
             }
             return Err(format!(
                 "`channel` names {} of them, but the plane holds {}; give {components}",

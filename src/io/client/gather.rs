@@ -127,7 +127,7 @@ fn left(image: &Image, wanted: &[Wanted], file: &Path) -> Vec<String> {
     let taken = wanted
         .iter()
         .filter(of_it)
-        .flat_map(|wanted| wanted.keys.channel.clone().unwrap_or_else(|| wanted.channels()));
+        .flat_map(|wanted| wanted.chosen().unwrap_or_else(|| wanted.channels()));
     let taken: Vec<String> = taken.collect();
     let names = image.channels.iter().map(|(name, _)| name);
     names.filter(|name| !taken.contains(name)).cloned().collect()
@@ -176,7 +176,7 @@ fn file_of(wanted: &Wanted, sidecar: &Sidecar) -> Reason<(PathBuf, Kind)> {
         format!("planes.{key}: no `file`, neither here nor for all planes; give one")
     })?;
     let kind = Kind::from_extension(file).ok_or_else(|| {
-        format!("planes.{key}.file is {file:?}; give an .exr, .npy, .png, .raw or .bin")
+        format!("planes.{key}.file is {file:?}; give an .exr, .npy, .npz, .png, .raw or .bin")
     })?;
     Ok((file.clone(), kind))
 }

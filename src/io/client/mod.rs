@@ -31,8 +31,8 @@
 //!
 //! | key | values, the default first | meaning |
 //! |---|---|---|
-//! | `file` | the `file` of the whole TOML file | `.exr`, `.npy`, `.png`, `.raw` or `.bin` |
-//! | `channel` | the crate's names | a channel of an EXR or a PNG, or three: `["r", "g", "b"]`; two for octahedral vectors. A PNG has `R`, `G`, `B` and `A`; a grey PNG needs no `channel` for a plane of one number a pixel |
+//! | `file` | the `file` of the whole TOML file | `.exr`, `.npy`, `.npz`, `.png`, `.raw` or `.bin` |
+//! | `channel` | the crate's names | a channel of an EXR or a PNG, or three: `["r", "g", "b"]`; two for octahedral vectors. One name stands for all of a colour or a vector: `"ViewLayer.Combined"` for `ViewLayer.Combined.R` and so on. A PNG has `R`, `G`, `B` and `A`; a grey PNG needs no `channel` for a plane of one number a pixel. The array of an NPZ; the plane's name if absent |
 //! | `format` | see below | raw files: how the numbers are stored; other files: the format that the numbers passed through |
 //! | `offset`, `row_stride`, `pixel_stride` | 0, tight, tight | raw files: bytes before the first pixel, from row to row, from pixel to pixel |
 //! | `empty` | see below | depths and indices: the number of an empty pixel, as it is stored (rounded to a number that the file can hold); `nan` is any NaN |
@@ -45,7 +45,7 @@
 //!
 //! A raw file is little-endian and holds one number a pixel, or three next to each other, row by
 //! row. Without `offset` and strides the file must be exactly as long as its pixels; with one of
-//! them, at least as long. See [`crate::io::npy`] for the arrays that are read, [`crate::io::exr`]
+//! them, at least as long. See [`crate::io::npy`] and [`crate::io::npz`] for the arrays that are read, [`crate::io::exr`]
 //! for the EXR files, and `io::png` (with the feature `cli`) for PNG.
 //!
 //! # Formats, and how far each lets a number be off
@@ -63,7 +63,7 @@
 //! If you give no `format`, the file decides:
 //!
 //! - EXR: `FLOAT`, `HALF` and `UINT` are `f32`, `f16` and `u32`.
-//! - NPY: floats are `f32`, integers `u32`, -1 as all bits set.
+//! - NPY: floats are `f32`, or `f16` if they are stored so; integers `u32`, -1 as all bits set.
 //! - PNG: `unorm8` or `unorm16`; for indices and counts, its codes.
 //! - Raw: `f32`, for indices `u32`, for counts `u8`.
 //!
@@ -150,7 +150,7 @@ use crate::method::Stage;
 use crate::verdict::client::Client;
 #[cfg(doc)]
 use crate::verdict::client::Storage;
-use parse::Sidecar;
+use parse::{PlaneKeys, Sidecar};
 use std::path::{Path, PathBuf};
 
 /// A description of a client's planes. Only the description itself has been read, no plane yet.
@@ -182,6 +182,21 @@ impl Description {
             }
         };
         Ok(Self { path: path.to_owned(), sidecar })
+    }
+
+    /// Takes planes from channels of other names: pairs of a plane, `RGB` for the picture, and its
+    /// channel, as in the key `channel`. They replace what the TOML file says of this plane.
+    #[must_use]
+    pub fn with_channels(mut self, channels: &[(String, String)]) -> Self {
+        for (plane, channel) in channels {
+            let planes = &mut self.sidecar.planes;
+            let at = planes.iter().position(|(name, _)| name == plane).unwrap_or(planes.len());
+            if at == planes.len() {
+                planes.push((plane.clone(), PlaneKeys::default()));
+            }
+            planes[at].1.channel = Some(vec![channel.clone()]);
+        }
+        self
     }
 
     /// The files that hold planes or records.

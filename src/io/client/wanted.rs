@@ -47,4 +47,17 @@ impl Wanted {
         channels.truncate(if self.is_octahedral() { 2 } else { 3 });
         channels
     }
+
+    /// The channels of the key `channel`. One name stands for all channels of a colour or a vector:
+    /// `ViewLayer.Combined` for `ViewLayer.Combined.R` and so on.
+    pub(super) fn chosen(&self) -> Option<Vec<String>> {
+        let names = self.keys.channel.as_ref()?;
+        let own = self.channels();
+        let [one] = names.as_slice() else { return Some(names.clone()) };
+        if own.len() == 1 {
+            return Some(names.clone());
+        }
+        let ends = own.iter().filter_map(|name| name.rsplit('.').next());
+        Some(ends.map(|end| format!("{one}.{end}")).collect())
+    }
 }

@@ -5,7 +5,7 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::frame::image::{Image, Values};
 use crate::io::guard::guarded;
-use crate::io::{Reason, input};
+use crate::io::{Reason, extension, input};
 use crate::memory;
 use exr::block::UncompressedBlock;
 use exr::block::chunk::{
@@ -78,10 +78,16 @@ fn open(path: &Path) -> Result<(File, u64)> {
     };
     let (file, length, magic) = start().map_err(|source| Error::io(path, source))?;
     if magic != exr::meta::magic_number::BYTES {
-        return Err(Error::format(
-            path,
-            "byte 0: not an EXR file; give one that starts 76 2f 31 01",
-        ));
+        let what = match extension(path).as_deref() {
+            Some("exr") | None => {
+                "byte 0: not an EXR file; give one that starts 76 2f 31 01".into()
+            }
+            Some(other) => format!(
+                "pictures of the kind .{} are not read; convert it to .exr, .png, .npy or .npz",
+                other.escape_debug()
+            ),
+        };
+        return Err(Error::format(path, what));
     }
     Ok((file, length))
 }

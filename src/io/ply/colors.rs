@@ -2,7 +2,7 @@
 
 use super::header::{Element, PropertyKind, Scalar, quote};
 use super::layout::Decode;
-use crate::number::srgb;
+use crate::number::{Real, srgb};
 use glam::Vec3;
 use std::sync::LazyLock;
 
@@ -67,7 +67,7 @@ pub(super) fn doubt(element: &Element, range: Option<f64>, colors: &[Vec3]) -> O
     let property = channels(element)[0]?;
     let PropertyKind::One(scalar) = element.properties[property].kind else { return None };
     let most = colors.iter().filter(|c| c.is_finite()).map(|c| c.max_element());
-    let most = most.fold(0.0, f32::max);
+    let most = most.fold(0.0, Real::at_least);
     let mend = |range| {
         format!("if they are codes of 0 to {range}, write `color_range = {range}` in a scene file")
     };

@@ -5,7 +5,7 @@ use super::layout::{Layout, POSITION, PropertyUse};
 use super::values::{BodyValues, Event};
 use crate::io::Reason;
 use crate::memory;
-use crate::number::MapInline;
+use crate::number::{MapInline, Real};
 use glam::DVec3;
 
 /// A centre at least so many times as far from 0 as the box reaches around it is shifted.
@@ -86,8 +86,8 @@ impl Extent {
             return;
         }
         for (axis, value) in position.into_iter().enumerate() {
-            self.low[axis] = self.low[axis].min(value);
-            self.high[axis] = self.high[axis].max(value);
+            self.low[axis] = self.low[axis].at_most(value);
+            self.high[axis] = self.high[axis].at_least(value);
             self.exact[axis] &= f64::from(value as f32) == value;
         }
     }
@@ -95,7 +95,7 @@ impl Extent {
     /// The offset to subtract; see [`super`].
     fn offset(&self) -> DVec3 {
         let half = |axis: usize| self.high[axis] / 2.0 - self.low[axis] / 2.0;
-        let reach = half(0).max(half(1)).max(half(2));
+        let reach = half(0).at_least(half(1)).at_least(half(2));
         // The greatest power of two that is not above the reach: its exponent bits alone.
         let unit = f64::from_bits(reach.to_bits() & 0x7ff0_0000_0000_0000);
         if !(unit > 0.0 && unit.is_finite()) {
@@ -103,10 +103,10 @@ impl Extent {
         }
         let mut offset = [0.0; 3];
         let mut gains = false;
-        for axis in 0..3 {
+        for (axis, offset) in offset.iter_mut().enumerate() {
             let middle = self.low[axis] / 2.0 + self.high[axis] / 2.0;
             if middle.abs() >= FAR * reach {
-                offset[axis] = (middle / unit).floor() * unit;
+                *offset = (middle / unit).floor() * unit;
                 gains |= !self.exact[axis];
             }
         }
@@ -133,7 +133,7 @@ fn merged(
             // Adding 0 turns -0 into 0.
             let bits = |value: f64| ((value as f32) + 0.0).to_bits();
             let p = DVec3::new(x, y, z) - offset;
-            most = most.max(p.abs().max_element() as f32);
+            most = most.at_least(p.abs().max_element() as f32);
             stored.push(hash(p.to_array().map_inline(|value| u64::from(bits(value)))));
             own.push(hash([x, y, z].map_inline(|value| (value + 0.0).to_bits())));
         }

@@ -62,7 +62,7 @@ impl Strip {
     fn push(&mut self, vertex: u32) -> Option<[u32; 3]> {
         let [a, b] = self.last;
         // Every other triangle runs the other way round; turn it, so that all have one front.
-        let corners = if self.count % 2 == 0 { [a, b, vertex] } else { [b, a, vertex] };
+        let corners = if self.count.is_multiple_of(2) { [a, b, vertex] } else { [b, a, vertex] };
         let complete = self.count >= 2 && a != b && a != vertex && b != vertex;
         (self.count, self.last) = (self.count + 1, [b, vertex]);
         complete.then_some(corners)

@@ -13,6 +13,7 @@
 
 use super::Model;
 use super::model::ModelParts;
+use crate::number::Real;
 use crate::scene::Similarity;
 use glam::DVec3;
 
@@ -50,7 +51,7 @@ fn reach(parts: &ModelParts) -> f64 {
     let lines = lines.into_iter().flat_map(|lines| &lines.vertices().position);
     let triangles = &primitives.triangles.vertices().position;
     let all = surfels.chain(triangles).chain(lines).filter(|place| place.is_finite());
-    all.fold(0.0, |most, place| place.abs().max_element().max(most)).into()
+    all.fold(0.0, |most, place| most.at_least(place.abs().max_element())).into()
 }
 
 /// The model with a transform from what was read with its `own` offset to the scene's.

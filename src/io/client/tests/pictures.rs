@@ -144,3 +144,33 @@ fn pictures_of_png() {
     let green = at.read("[planes]\nweight = { file = \"c.png\", channel = \"G\" }").unwrap();
     near(&scalars(&green, "weight"), &[10.0 / 255.0, 0.0]);
 }
+
+/// Channels as Blender names them.
+#[test]
+fn one_name_stands_for_all_channels_of_a_colour() {
+    let picture = exr(vec![
+        ("ViewLayer.Combined.R", singles([0.25, 0.0, 0.5, 1.0])),
+        ("ViewLayer.Combined.G", singles([0.5, 0.0, 0.5, 1.0])),
+        ("ViewLayer.Combined.B", singles([0.75, 0.0, 0.5, 1.0])),
+        ("ViewLayer.Depth.Z", singles([1.5, f32::INFINITY, 2.5, 3.5])),
+    ]);
+    let at = Folder::new().with("frame.exr", &picture);
+    let text = "file = \"frame.exr\"\n[planes]\nRGB = { channel = \"ViewLayer.Combined\" }\n\
+                Z = { channel = \"ViewLayer.Depth.Z\" }\n";
+    let client = at.read(text).unwrap();
+    assert_eq!(triples(&client, "")[0], [0.25, 0.5, 0.75]);
+    assert_eq!(scalars(&client, "Z")[0], 1.5);
+    assert!(client.unknown.is_empty(), "{:?}", client.unknown);
+}
+
+#[test]
+fn half_floats_of_numpy_are_half_floats() {
+    let data: Vec<u8> = [1.5_f32, 2.0, 2.5, 3.5]
+        .iter()
+        .flat_map(|&value| f16::from_f32(value).to_le_bytes())
+        .collect();
+    let at = Folder::new().with("Z.npy", &npy("<f2", "(2, 2)", &data));
+    let client = at.read("[planes]\nZ = \"Z.npy\"\n").unwrap();
+    assert_eq!(scalars(&client, "Z"), [1.5, 2.0, 2.5, 3.5]);
+    assert_eq!(client.storage("Z"), Storage::Half);
+}

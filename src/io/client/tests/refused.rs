@@ -47,7 +47,7 @@ fn what_is_no_file_of_planes() {
             "file: only an EXR holds several planes; name other files in [planes]",
         ),
         ("planes.Z.format = \"f32\"", "planes.Z: no `file`, neither here nor for all planes"),
-        ("planes.Z = \"a.tif\"", "a.tif\"; give an .exr, .npy, .png, .raw or .bin"),
+        ("planes.Z = \"a.tif\"", "a.tif\"; give an .exr, .npy, .npz, .png, .raw or .bin"),
         ("planes.Z = \"none.raw\"", "none.raw: "),
     ] {
         let line = at.refusal(toml);

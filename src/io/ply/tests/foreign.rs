@@ -23,7 +23,7 @@ fn gaussians_are_refused_by_name() {
     let rgb = [&["red", "green", "blue"][..], &rest].concat();
     let flat = ["opacity", "scale_0", "scale_1", "rot_0", "rot_1", "rot_2", "rot_3"];
     for names in [&harmonics[..], &bare, &with_normals, &rgb, &flat] {
-        let error = with(names, &vec![POINT; 9].join(" ")).unwrap_err();
+        let error = with(names, &[POINT; 9].join(" ")).unwrap_err();
         assert!(error.contains("this PLY holds 3D Gaussians: opacities are logits"), "{error}");
         assert!(error.contains("does not draw Gaussian splats yet"), "{error}");
     }
@@ -52,7 +52,7 @@ fn gaussians_are_refused_before_the_vertices_are_read() {
 /// Five points and strips of them.
 fn strips(element: &str, list: &str, body: &str) -> Reason<Cloud> {
     let header = ["element vertex 5", XYZ[0], XYZ[1], XYZ[2], element, list];
-    parse(&ascii(&header, &format!("{}\n{body}", vec![POINT; 5].join("\n"))))
+    parse(&ascii(&header, &format!("{}\n{body}", [POINT; 5].join("\n"))))
 }
 
 #[test]
