@@ -127,6 +127,9 @@ mod tests {
         let (found, doubts) = outcomes(certain, [1.0, 1.0, 0.0, 0.0].map(ball), yes);
         let both = [true, true, false, false];
         assert_eq!(found, [Some((both, 0)), Some((both, 1))]);
+        assert_eq!(doubts, 0, "one number twice is a tie");
+        let (found, doubts) = outcomes(certain, [1.0, 1.125, 0.0, 0.0].map(ball), yes);
+        assert_eq!(found, [Some((both, 0)), Some((both, 1))]);
         assert_eq!(doubts, Doubt::Nearer as u8);
         let undecided = ball(0.0).lt(ball(0.0));
         let one = [undecided, false.into(), false.into(), false.into()];

@@ -131,25 +131,20 @@ fn fit(pairs: &[(f64, f64)], is_inverse: bool) -> Option<Reading> {
     let to = |t: f64| if is_inverse { 1.0 / t } else { t };
     let mut kept: Vec<(f64, f64)> = pairs.to_vec();
     let mut found = None;
-    // The second and third line leave out the pixels that are far from the line before.
-    for _ in 0..3 {
+    // The first line is one of medians, because wrong pixels far away would turn a mean. The second
+    // and third line leave out the pixels that are far from the line before.
+    for turn in 0..3 {
         if kept.len() < FEWEST {
             return None;
         }
-        let count = kept.len() as f64;
-        let mean = |of: &dyn Fn(&(f64, f64)) -> f64| kept.iter().map(of).sum::<f64>() / count;
-        let (x, y) = (mean(&|pair| pair.0), mean(&|pair| to(pair.1)));
-        let both = mean(&|pair| (pair.0 - x) * (to(pair.1) - y));
-        let slope = both / mean(&|pair| (pair.0 - x) * (pair.0 - x));
-        let offset = y - slope * x;
+        let points: Vec<[f64; 2]> = kept.iter().map(|pair| [pair.0, to(pair.1)]).collect();
+        let [slope, offset] = if turn == 0 { of_medians(&points) } else { of_means(&points) };
         if !(slope != 0.0 && slope.is_finite() && offset.is_finite()) {
             return None;
         }
         let line = Reading { is_inverse, offset, slope, ..Reading::PLAIN };
         let error = |&(v, t): &(f64, f64)| ((line.depth(v) - t) / t).abs();
-        let mut errors: Vec<f64> = kept.iter().map(error).collect();
-        errors.sort_by(f64::total_cmp);
-        let median = errors[errors.len() / 2];
+        let median = median(kept.iter().map(error).collect());
         found = Some(Reading { relative: 16.0 * median + 1e-6, ..line });
         kept.retain(|pair| error(pair) <= 4.0 * median + 1e-6);
     }
@@ -158,6 +153,30 @@ fn fit(pairs: &[(f64, f64)], is_inverse: bool) -> Option<Reading> {
     let is_plain =
         !is_inverse && (found.slope - 1.0).abs() <= LOOSEST && found.offset.abs() <= LOOSEST * most;
     (!is_plain).then_some(found)
+}
+
+/// Slope and offset by medians: of the lines through points that are half of all apart.
+fn of_medians(points: &[[f64; 2]]) -> [f64; 2] {
+    let (first, second) = points.split_at(points.len() / 2);
+    let slopes = first.iter().zip(second).map(|([x, y], [u, v])| (v - y) / (u - x));
+    let slope = median(slopes.filter(|slope| slope.is_finite()).collect());
+    [slope, median(points.iter().map(|[x, y]| y - slope * x).collect())]
+}
+
+/// Slope and offset with the least squares.
+fn of_means(points: &[[f64; 2]]) -> [f64; 2] {
+    let count = points.len() as f64;
+    let mean = |of: &dyn Fn(&[f64; 2]) -> f64| points.iter().map(of).sum::<f64>() / count;
+    let (x, y) = (mean(&|point| point[0]), mean(&|point| point[1]));
+    let both = mean(&|point| (point[0] - x) * (point[1] - y));
+    let slope = both / mean(&|point| (point[0] - x) * (point[0] - x));
+    [slope, y - slope * x]
+}
+
+/// The median; NaN of nothing.
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]

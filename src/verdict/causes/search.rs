@@ -11,8 +11,8 @@ use crate::setting::{Fields, Value};
 use crate::verdict::Verdict;
 use crate::verdict::client::Client;
 
-/// The factor of the first steps.
-const STEP: f64 = 1.1;
+/// The factors of the first steps, the large one first: a number may be off by less than half of it.
+const FIRST_STEPS: [f64; 2] = [1.1, 1.01];
 /// The most steps away from the right value.
 const STEPS: usize = 24;
 /// How often the interval of the best value is made smaller, by the golden ratio.
@@ -92,11 +92,15 @@ fn search(
     all: [u64; 2],
     mut wrong: impl FnMut(f64) -> Result<[u64; 2]>,
 ) -> Result<Option<(f64, [u64; 2])>> {
-    let [up, down] = [wrong(right * STEP)?, wrong(right / STEP)?];
-    if up.min(down) >= all {
-        return Ok(None);
+    let mut found = None;
+    for step in FIRST_STEPS {
+        let [up, down] = [wrong(right * step)?, wrong(right / step)?];
+        if up.min(down) < all {
+            found = Some((if up <= down { step } else { 1.0 / step }, [up, down]));
+            break;
+        }
     }
-    let factor = if up <= down { STEP } else { 1.0 / STEP };
+    let Some((factor, [up, down])) = found else { return Ok(None) };
     let (mut before, mut at, mut least) = (right, right * factor, up.min(down));
     for _ in 0..STEPS {
         let next = wrong(at * factor)?;

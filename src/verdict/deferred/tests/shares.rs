@@ -40,10 +40,14 @@ fn frames_without_some_objects_are_judged() {
                 }
             }
             let [object] = out[..] else { continue };
-            times += 1;
             let before = shown.before.as_ref().unwrap();
             let all = Settings { share: 0.0, ..*settings };
             let frame = other(shown, all.into(), shown.before.clone());
+            // The object may be hidden by now, and then it is the same to leave it out.
+            if frame == shown.frame {
+                continue;
+            }
+            times += 1;
             // Hidden surfels show only in pass 2.
             let stages = ["visibility", "indices"];
             assert_first_wrong_of(shown, method, &frame, &stages, "nothing is left out");
