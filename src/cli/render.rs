@@ -7,8 +7,8 @@ use super::{Ended, Ending, draw, progress, report, sequence};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::provenance;
-use splatref::io::scene_file::Ready;
-use splatref::method::{Method, Picture};
+use splatref::io::scene_file::{OutputSettings, Ready};
+use splatref::method::{Method, Picture, Session};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -80,23 +80,8 @@ pub(super) fn run(args: &Args) -> Ended {
     let groups = session.groups().cloned();
 
     let mut times = Vec::new();
-    let drawing = progress::during("rendering", || -> Result<_> {
-        if args.repeat > 1 && matches!(method, Method::Deferred(_)) {
-            let before = session.seen().cloned();
-            let mut seen = file.output.draw(&mut session, camera)?.seen.clone();
-            for _ in 0..args.repeat {
-                session.resume(seen);
-                let next = timed(&mut times, || file.output.draw(&mut session, camera))?;
-                seen = next.seen.clone();
-            }
-            // The picture itself is still the frame that was asked for.
-            session.resume(before);
-            return file.output.draw(&mut session, camera);
-        }
-        for _ in 1..args.repeat {
-            timed(&mut times, || file.output.draw(&mut session, camera))?;
-        }
-        timed(&mut times, || file.output.draw(&mut session, camera))
+    let drawing = progress::during("rendering", || {
+        repeated(&mut session, &ready, (file.output, args.repeat), &mut times)
     })?;
 
     let writing = Instant::now();
@@ -122,6 +107,31 @@ pub(super) fn run(args: &Args) -> Ended {
     report::line("files", picture.display());
     report::line("", preview.display());
     Ok(Ending::Good)
+}
+
+/// Draws the picture, and times this many pictures: of `deferred` the frames that follow, because
+/// the first frame does other work.
+fn repeated<'s>(
+    session: &'s mut Session<'_>,
+    Ready { camera, method, .. }: &Ready,
+    (output, count): (OutputSettings, u32),
+    times: &mut Times,
+) -> Result<Cow<'s, Picture<f32>>> {
+    if count > 1 && matches!(method, Method::Deferred(_)) {
+        let before = session.seen().cloned();
+        let mut seen = output.draw(session, camera)?.seen.clone();
+        for _ in 0..count {
+            session.resume(seen);
+            seen = timed(times, || output.draw(session, camera))?.seen.clone();
+        }
+        // The picture itself is still the frame that was asked for.
+        session.resume(before);
+        return output.draw(session, camera);
+    }
+    for _ in 1..count {
+        timed(times, || output.draw(session, camera))?;
+    }
+    timed(times, || output.draw(session, camera))
 }
 
 /// The times of each repetition: each stage, and last the whole picture.
