@@ -265,7 +265,7 @@ fn colours_of_the_first_points_are_means() {
     let [own, new] = ["own.ply", "out.ply"].map(|name| ply::read(&at.path().join(name)).unwrap());
     let [own_color, new_color] = [&own, &new].map(|cloud| cloud.color.clone().unwrap());
     // The first pick's cell is all: the mean of 0 to 59, 1 and 2.
-    assert_eq!(new_color[0], Vec3::new(29.5, 1.0, 2.0));
+    assert_eq!(new_color[0], Vec3::new(29.5, 1.0, 2.0) / 64.0);
     assert!((1..8).any(|i| new_color[i] != own_color[i]));
     assert_eq!(new_color[8..], own_color[8..]);
     assert_eq!(Cloud { color: own.color.clone(), ..new }, own);
