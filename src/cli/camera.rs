@@ -197,9 +197,9 @@ fn by_rows(numbers: &[f64]) -> Option<DMat4> {
 
 /// Parses `FX,FY,CX,CY`, or the nine numbers of K.
 fn intrinsics(text: &str) -> std::result::Result<[f64; 4], String> {
-    match numbers(text)?.as_slice() {
-        &[fx, fy, cx, cy] => Ok([fx, fy, cx, cy]),
-        &[fx, skew, cx, zero, fy, cy, a, b, one] => {
+    match *numbers(text)?.as_slice() {
+        [fx, fy, cx, cy] => Ok([fx, fy, cx, cy]),
+        [fx, skew, cx, zero, fy, cy, a, b, one] => {
             if skew != 0.0 {
                 return Err(format!("K has skew {skew}; splatref draws without skew, so give 0"));
             }

@@ -28,7 +28,7 @@
 //!
 //! # Cameras of other programs
 //!
-//! - [`convention`]: poses as matrices, in the conventions of OpenCV, OpenGL and Blender.
+//! - [`convention`]: poses as matrices, in the conventions of `OpenCV`, OpenGL and Blender.
 //! - [`intrinsics`]: focal lengths and principal points in pixels.
 //! - [`clip`]: projection matrices of OpenGL, Vulkan and Direct3D.
 //! - [`motion`], [`turntable`]: cameras that move over the frames of a sequence.

@@ -12,7 +12,7 @@ fn picture(at: &Path, name: &str, options: &[&str]) -> Vec<u8> {
 }
 
 const LENS: [&str; 6] = ["--size", "64x48", "--intrinsics", "60,70,20.5,30", "--near", "0.5"];
-/// From +x, looking along -x, in the axes of OpenCV and of OpenGL.
+/// From +x, looking along -x, in the axes of `OpenCV` and of OpenGL.
 const OPENCV: &str = "0,0,-1,0.5, 0,-1,0,-0.25, -1,0,0,3";
 const OPENGL: &str = "[[0, 0, -1, 0.5], [0, 1, 0, 0.25], [1, 0, 0, -3], [0, 0, 0, 1]]";
 const BLENDER: &str = "0 0 1 3\n0 1 0 -0.25\n-1 0 0 0.5\n0 0 0 1\n";

@@ -40,6 +40,7 @@ enum Opening {
     Pixels(Intrinsics),
     /// The angles that width and height span, in radians, for a picture of any size. Pixels are
     /// square without the second.
+    #[cfg_attr(not(feature = "cli"), expect(dead_code, reason = "only JSON has angles"))]
     Angles(f64, Option<f64>),
 }
 

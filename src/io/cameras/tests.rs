@@ -66,9 +66,9 @@ fn nerfstudio_keys() {
 fn blender_angles() {
     let at = transforms("\"camera_angle_x\": 1.0,", "");
     let path = at.path().join("transforms.json");
-    let focal = (32.0 / 0.5_f64.sin() * 0.5_f64.cos()) as f32;
+    let focal = 32.0 / 0.546_302_5_f32;
     let near = |found: f32, expected: f32| {
-        assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}")
+        assert!((found / expected - 1.0).abs() < 1e-6, "{found} {expected}");
     };
     let [camera] = cameras(path.clone(), Some([64, 48]))[..] else { panic!("one view") };
     near(camera.fx, focal);

@@ -95,9 +95,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
         *map = beside(map);
     }
     let mut camera = file.camera;
-    if let Some(views) = &mut camera.views {
-        views.path = beside(&views.path);
-    }
+    camera.views.iter_mut().for_each(|views| views.path = beside(&views.path));
     Ok(SceneFile {
         name: stem(path),
         hierarchy: file.hierarchy.as_deref().map(beside),

@@ -45,7 +45,7 @@ impl Style {
         if self.forward { 1.0 } else { -1.0 }
     }
 
-    /// The signs of y and z of OpenCV in this view space.
+    /// The signs of y and z of `OpenCV` in this view space.
     fn pose(&self, truth: &Truth) -> DMat4 {
         truth.world_to_camera([1.0, self.sign(), self.sign()])
     }

@@ -7,7 +7,7 @@ use crate::scene::transform::rotation;
 use glam::{DMat3, DVec2, DVec3};
 use proptest::prelude::*;
 
-/// A camera as OpenCV has it: its axes as rows, its place, and its opening.
+/// A camera as `OpenCV` has it: its axes as rows, its place, and its opening.
 #[derive(Debug)]
 pub(in crate::scene::camera) struct Truth {
     pub(in crate::scene::camera) axes: DMat3,
@@ -38,7 +38,7 @@ pub(in crate::scene::camera) fn seen(camera: &Camera, point: DVec3) -> DVec2 {
 }
 
 impl Truth {
-    /// Where OpenCV sees a point.
+    /// Where `OpenCV` sees a point.
     fn seen(&self, point: DVec3) -> DVec2 {
         let q = self.axes.transpose() * (point - self.eye);
         DVec2::new(self.f[0] * q.x / q.z + self.c[0], self.f[1] * q.y / q.z + self.c[1])
