@@ -127,11 +127,11 @@ fn render(dir: &Path, exec: &Exec, name: &str) -> Result<Case> {
     let file = SceneFile::read(&scene)?;
     let mut ready = draw::ready(&file, exec)?;
     let mut seen = None;
-    for frame in 0..file.frames - 1 {
+    for frame in 0..file.frame_count() - 1 {
         ready = ready.at(frame, exec)?;
         seen = picture_of(&ready, seen, &file, exec)?.0.seen;
     }
-    ready = ready.at(file.frames - 1, exec)?;
+    ready = ready.at(file.frame_count() - 1, exec)?;
     let (drawn, text) = picture_of(&ready, seen, &file, exec)?;
     Ok(Case { scene, picture, text, frame: drawn.frame })
 }

@@ -100,8 +100,8 @@ fn scene(path: &Path) -> Result<()> {
     warn(&loaded.warnings);
     report::scene(&loaded);
     line("  sha256", loaded.scene.sha256());
-    if file.frames > 1 {
-        line("frames", file.frames);
+    if file.frame_count() > 1 {
+        line("frames", file.frame_count());
     }
     for light in &file.lights {
         line(

@@ -5,6 +5,7 @@
 //! codes of its own.
 
 mod atlas;
+mod camera;
 mod claims;
 mod compare;
 mod destination;

@@ -1,12 +1,11 @@
 //! Options that several commands share.
 
+use super::camera::{CameraOptions, replace};
 use super::rows::{OfGroups, OfMethods, OfNumber, RowOptions};
-use glam::DVec3;
 use splatref::frame::Exec;
 use splatref::io::scene_file::{EnvironmentChoice, SceneFile, Source};
 use splatref::io::scene_file::{check_mipmaps, check_opacity, check_prefix};
 use splatref::method::Method;
-use splatref::scene::{Camera, Lens};
 use splatref::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -36,48 +35,8 @@ pub(super) struct SceneOptions {
     /// Continue from the state after the previous frame, which render --keep-state wrote
     #[arg(long, value_name = "FILE", help_heading = "Camera")]
     state: Option<PathBuf>,
-    /// Set the size of the picture in pixels [default: 1024x768]
-    #[arg(long, value_name = "WxH", value_parser = size, help_heading = "Camera")]
-    size: Option<[u32; 2]>,
-    /// Put the camera here
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
-        help_heading = "Camera")]
-    eye: Option<DVec3>,
-    /// Point the camera at this place, the middle of the picture
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
-        help_heading = "Camera")]
-    target: Option<DVec3>,
-    /// Set the direction that is up in the picture
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true,
-        help_heading = "Camera")]
-    up: Option<DVec3>,
-    /// Set the vertical field of view in degrees
-    #[arg(
-        long,
-        value_name = "DEG",
-        group = "lens",
-        allow_hyphen_values = true,
-        help_heading = "Camera"
-    )]
-    fov: Option<f64>,
-    /// Set the focal length in pixels
-    #[arg(
-        long,
-        value_name = "PX",
-        group = "lens",
-        allow_hyphen_values = true,
-        help_heading = "Camera"
-    )]
-    focal: Option<f64>,
-    /// Use an orthographic camera; the picture is this high in world units
-    #[arg(
-        long,
-        value_name = "HEIGHT",
-        group = "lens",
-        allow_hyphen_values = true,
-        help_heading = "Camera"
-    )]
-    ortho: Option<f64>,
+    #[command(flatten)]
+    camera: CameraOptions,
 
     /// Surround the scene with a latitude-longitude map, or with the procedural sky
     #[arg(long, value_name = "FILE.exr|sky", value_parser = environment,
@@ -128,21 +87,11 @@ impl SceneOptions {
     pub(super) fn scene_file(&self, name: &Path) -> Result<SceneFile> {
         let mut file = named(name, self.count, self.seed)?;
         self.check_hierarchy(&file)?;
+        self.camera.apply(&mut file)?;
         if let Some(frame) = self.frame {
             file.check_frame(frame)?;
             file.frame = frame;
         }
-        let camera = &mut file.camera;
-        if self.eye.or(self.target).or(self.up).is_some() {
-            camera.motion = None;
-        }
-        replace(&mut camera.size, self.size);
-        replace(&mut camera.eye, self.eye);
-        replace(&mut camera.target, self.target);
-        replace(&mut camera.up, self.up);
-        replace(&mut camera.lens, self.fov.map(Lens::FieldOfView));
-        replace(&mut camera.lens, self.focal.map(Lens::Focal));
-        replace(&mut camera.lens, self.ortho.map(Lens::Orthographic));
         replace(&mut file.environment, self.environment.clone());
         if let Some(opacity) = self.opacity {
             usage(check_opacity(opacity))?;
@@ -225,6 +174,11 @@ impl SceneOptions {
             file.all_models_mut().for_each(|model| model.progressive = true);
         }
         Ok(())
+    }
+
+    /// Whether the options choose one frame.
+    pub(super) fn names_frame(&self) -> bool {
+        self.frame.is_some()
     }
 
     /// The method that the options name, if they do.
@@ -316,21 +270,6 @@ fn usage<T>(checked: Result<T>) -> Result<T> {
     })
 }
 
-/// Replaces a value if there is a new one.
-fn replace<T>(chosen: &mut Option<T>, by: Option<T>) {
-    if by.is_some() {
-        *chosen = by;
-    }
-}
-
-/// Parses `640x480`.
-fn size(text: &str) -> std::result::Result<[u32; 2], String> {
-    let sides = text.split_once('x').and_then(|(w, h)| Some([w.parse().ok()?, h.parse().ok()?]));
-    let size: [u32; 2] = sides.ok_or("give the width and the height in pixels, such as 640x480")?;
-    Camera::check_size(size[0], size[1]).map_err(|error| error.to_string())?;
-    Ok(size)
-}
-
 /// Parses `sky` or a file name.
 fn environment(text: &str) -> std::result::Result<EnvironmentChoice, String> {
     Ok(EnvironmentChoice::from_text(text))
@@ -347,13 +286,4 @@ fn methods() -> String {
     let of = |method: &Method| format!("\n  {:<15} {}", method.name(), method.summary());
     let lines: String = all.iter().map(of).collect();
     format!("Choose the method [default: {}]{lines}", Method::default().name())
-}
-
-/// Parses `1,-2.5,3`.
-fn vector(text: &str) -> std::result::Result<DVec3, String> {
-    let numbers: Option<Vec<f64>> = text.split(',').map(|v| v.trim().parse().ok()).collect();
-    match numbers.as_deref() {
-        Some(&[x, y, z]) => Ok(DVec3::new(x, y, z)),
-        _ => Err("give three numbers, such as 1,-2.5,3".into()),
-    }
 }

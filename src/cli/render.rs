@@ -3,11 +3,12 @@
 use super::destination::{Destination, write};
 use super::options::{ExecOptions, SceneOptions};
 use super::rows::{OfFiles, RowOptions};
-use super::{Ended, Ending, draw, progress, report, sequence};
+use super::sequence::{self, Frames};
+use super::{Ended, Ending, draw, progress, report};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::provenance;
-use splatref::io::scene_file::{OutputSettings, Ready};
+use splatref::io::scene_file::{OutputSettings, Ready, SceneFile};
 use splatref::method::{Method, Picture, Session};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -22,7 +23,9 @@ Examples:
   splatref render tree --method pyramid
   splatref render bunny.ply --eye -1,2,3 --target 0,0.1,0 --fov 30 -o bunny.exr
   splatref render scene.toml --number f64 --epsilon 1.5r
-  splatref render scene.toml --frames 0..60 -o out/walk.exr")]
+  splatref render scene.toml --frames 0..60 -o out/walk.exr
+  splatref render scan.ply --cameras transforms.json --view r_12
+  splatref render bunny.ply --turntable 60 -o out/turn.exr")]
 pub(super) struct Args {
     /// A .ply, an .obj, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster,
     /// or tree (with --method pyramid)
@@ -38,11 +41,12 @@ pub(super) struct Args {
     #[arg(long, value_name = "N", default_value_t = 1,
         value_parser = clap::value_parser!(u32).range(1..))]
     repeat: u32,
-    /// Render frames A to B - 1 of the sequence, each into an EXR and a PNG of its own:
-    /// out/walk.exr becomes out/walk.0000.exr and so on
-    #[arg(long, value_name = "A..B", value_parser = sequence::frames,
+    /// Render frames A to B - 1 of the sequence, or all of them, each into an EXR and a PNG of its
+    /// own: out/walk.exr becomes out/walk.0000.exr and so on [default: one frame; all of --turntable
+    /// and of several --cameras]
+    #[arg(long, value_name = "A..B|all", value_parser = sequence::frames,
         conflicts_with_all = ["repeat", "frame"])]
-    frames: Option<Range<u32>>,
+    frames: Option<Frames>,
     /// Write the state after the last frame, for --state (method deferred)
     #[arg(long, value_name = "FILE")]
     keep_state: Option<PathBuf>,
@@ -50,6 +54,21 @@ pub(super) struct Args {
     exec: ExecOptions,
     #[command(flatten)]
     pub(super) options: SceneOptions,
+}
+
+impl Args {
+    /// The frames to render as a sequence; `None` for one picture.
+    fn sequence(&self, file: &SceneFile) -> Option<Range<u32>> {
+        match &self.frames {
+            Some(Frames::Some(frames)) => Some(frames.clone()),
+            Some(Frames::All) => Some(0..file.frame_count()),
+            // A camera that goes round, and the cameras of a file, are there to be drawn.
+            None => {
+                let one = self.options.names_frame() || self.repeat > 1;
+                (file.camera.is_sequence() && !one).then(|| 0..file.frame_count())
+            }
+        }
+    }
 }
 
 pub(super) fn run(args: &Args) -> Ended {
@@ -63,10 +82,10 @@ pub(super) fn run(args: &Args) -> Ended {
         keep_state: args.keep_state.as_deref(),
         options: &args.options,
     };
-    if let Some(frames) = &args.frames {
+    if let Some(frames) = args.sequence(&file) {
         file.check_frame(frames.end - 1)?;
         file.frame = frames.start;
-        return sequence::render(&destination, &file, frames.clone(), &exec);
+        return sequence::render(&destination, &file, frames, &exec);
     }
     let picture = destination.place(&file, None)?;
     let preview = picture.with_extension("png");
@@ -96,6 +115,7 @@ pub(super) fn run(args: &Args) -> Ended {
 
     report::scene(loaded);
     report::camera(camera);
+    report::far(&file, scene, camera);
     report::picture(camera, file.output);
     report::method(method, scene, camera);
     report::groups(session.groups(), made.as_ref());

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use splatref::frame::Exec;
 use splatref::index::grouping::GroupCoverage;
 use splatref::index::seen::Seen;
-use splatref::io::scene_file::{Loaded, ModelReport, OutputSettings};
+use splatref::io::scene_file::{Loaded, ModelReport, OutputSettings, SceneFile};
 use splatref::method::Method;
 use splatref::method::session::Made;
 use splatref::scene::objects::detail::prefix::Estimate;
@@ -212,13 +212,29 @@ pub(super) fn dropped(dropped: &Dropped, primitives: u64) -> String {
 pub(super) fn camera(camera: &Camera) {
     let world = camera.view_from_world.row(2);
     let towards = point([world.x, world.y, world.z].map(|v| f64::from(-v)));
-    let scale = short(f64::from(camera.fy));
+    let [fx, fy, cx, cy] = [camera.fx, camera.fy, camera.cx, camera.cy].map(f64::from);
+    let scale = if fx == fy { short(fy) } else { format!("{} x {}", short(fx), short(fy)) };
     let kind = match camera.projection {
         Projection::Perspective => format!("perspective, focal length {scale} px"),
         Projection::Orthographic => format!("orthographic, {scale} px a world unit"),
     };
     let eye = point(camera.eye().to_array());
     line("camera", format!("{kind}, at {eye} looking along {towards}"));
+    let middle = camera.size().map(|side| f64::from(side) / 2.0);
+    if [cx, cy] != middle {
+        line("", format!("principal point ({}, {})", short(cx), short(cy)));
+    }
+}
+
+/// Says if the scene reaches beyond the far plane of another renderer.
+pub(super) fn far(file: &SceneFile, scene: &Scene, camera: &Camera) {
+    let Some(far) = file.camera.far else { return };
+    let (middle, radius) = scene.bounding_sphere();
+    let reach = radius - camera.view_from_world.as_dmat4().transform_point3(middle).z;
+    if reach > far {
+        let (far, reach) = (short(far), short(reach));
+        line("", format!("far plane {far}, but the scene reaches to {reach}: all of it is drawn"));
+    }
 }
 
 /// Prints the method, its settings, and the values that they give in a scene.

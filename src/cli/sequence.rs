@@ -13,16 +13,26 @@ use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
-/// Parses `0..60`.
-pub(super) fn frames(text: &str) -> std::result::Result<Range<u32>, String> {
+/// The frames of a sequence to render.
+#[derive(Clone)]
+pub(super) enum Frames {
+    All,
+    Some(Range<u32>),
+}
+
+/// Parses `0..60` or `all`.
+pub(super) fn frames(text: &str) -> std::result::Result<Frames, String> {
+    if text == "all" {
+        return Ok(Frames::All);
+    }
     let ends = text.split_once("..").and_then(|(a, b)| Some((a.parse().ok()?, b.parse().ok()?)));
     match ends {
-        Some((start, end)) if start < end => Ok(start..end),
+        Some((start, end)) if start < end => Ok(Frames::Some(start..end)),
         Some((start, end)) => Err(format!(
             "{start}..{end} holds no frame, because the end is not included; give the first frame \
              and one after the last"
         )),
-        None => Err("give the first frame and one after the last, such as 0..60".into()),
+        None => Err("give the first frame and one after the last, such as 0..60, or all".into()),
     }
 }
 
@@ -43,6 +53,7 @@ pub(super) fn render(
     times.add("loading", start.elapsed());
     report::scene(&ready.loaded);
     report::camera(&ready.camera);
+    report::far(file, &ready.loaded.scene, &ready.camera);
     report::picture(&ready.camera, file.output);
     report::method(&ready.method, &ready.loaded.scene, &ready.camera);
     to.make_folder()?;

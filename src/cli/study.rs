@@ -82,12 +82,13 @@ fn scene(args: &Args) -> Ended {
         tried.load(&scene, &exec, &steps)?;
     let truths = known.pictures(&camera, &exec, &show)?;
     let truth = truth_in_words(&known, &truths.still);
+    let ready = &bench.visit(&candidates[0], &show)?.ready;
     let of = Subject {
         splatref: env!("CARGO_PKG_VERSION").into(),
         scene: scene.name.clone(),
-        scene_sha256: bench.visit(&candidates[0], &show)?.ready.identity()?,
+        scene_sha256: ready.identity()?,
         size: [camera.width, camera.height],
-        camera: provenance::camera(&camera),
+        camera: provenance::camera(&camera, ready.loaded.scene.offset),
         truth,
         truth_sha256: digest::sha256([("truth", &Image::from(&truths.still.frame))]),
     };

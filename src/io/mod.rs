@@ -5,6 +5,7 @@
 //!
 //! - [`scene_file`]: read scenes from TOML: models, lights, camera, settings. Start here to get a
 //!   picture from a name.
+//! - [`cameras`]: read cameras from files of other programs.
 //! - [`ply`]: read and write point clouds and meshes.
 //! - [`obj`]: read meshes and points as text.
 //! - [`polygon`]: how the polygons of PLY and OBJ are cut into triangles.
@@ -29,6 +30,7 @@
 //! - `checksum`: notice damage in files of this crate.
 //! - [`replace`]: write files that are complete or absent.
 
+pub mod cameras;
 mod checksum;
 pub mod client;
 pub mod environment;

@@ -47,7 +47,7 @@ pub fn text(
         offset = offset(scene.offset),
         hash = scene.sha256(),
         method = method.name(),
-        camera = self::camera(camera),
+        camera = self::camera(camera, scene.offset),
     )
 }
 
@@ -68,9 +68,10 @@ fn formats(formats: Formats) -> String {
     format!("storage = \"{}\"\ndepth_storage = \"{}\"\n", buffers.word(), depth.word())
 }
 
-/// All numbers of a camera as TOML, its size included.
+/// All numbers of a camera as TOML, its size included, and the offset of its scene unless it is 0.
+/// This is a table `[camera]` of a scene file, and gives the same camera bit for bit.
 #[must_use]
-pub fn camera(camera: &Camera) -> String {
+pub fn camera(camera: &Camera, offset: DVec3) -> String {
     let Camera { width, height, fx, fy, cx, cy, near, .. } = *camera;
     let projection = match camera.projection {
         Projection::Perspective => "perspective",
@@ -78,10 +79,10 @@ pub fn camera(camera: &Camera) -> String {
     };
     let rows: Vec<String> =
         (0..4).map(|i| format!("  {:?},\n", camera.view_from_world.row(i).to_array())).collect();
-    let rows = rows.concat();
+    let (rows, offset) = (rows.concat(), self::offset(offset));
     format!(
         "size = [{width}, {height}]\nprojection = \"{projection}\"\n\
-         f = [{fx:?}, {fy:?}]\nc = [{cx:?}, {cy:?}]\nnear = {near:?}\n\
+         f = [{fx:?}, {fy:?}]\nc = [{cx:?}, {cy:?}]\nnear = {near:?}\n{offset}\
          view_from_world = [\n{rows}]\n"
     )
 }

@@ -25,12 +25,26 @@
 //!
 //! and the quotient or product of a vector and a number is computed component by component. The
 //! fields of [`Camera`] are rounded to `f32` at the end, once.
+//!
+//! # Cameras of other programs
+//!
+//! - [`convention`]: poses as matrices, in the conventions of `OpenCV`, OpenGL and Blender.
+//! - [`intrinsics`]: focal lengths and principal points in pixels.
+//! - [`clip`]: projection matrices of OpenGL, Vulkan and Direct3D.
+//! - [`motion`], [`turntable`]: cameras that move over the frames of a sequence.
 
+pub mod clip;
+pub mod convention;
+pub mod intrinsics;
 pub mod motion;
+pub mod turntable;
 
 use crate::error::{Error, Result};
+pub use convention::{Convention, PoseMatrix};
 use glam::{DMat3, DMat4, DVec3, Mat4};
+pub use intrinsics::Intrinsics;
 pub use motion::CameraMotion;
+pub use turntable::Turntable;
 
 /// How depth affects the size of what is seen.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

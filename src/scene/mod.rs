@@ -40,7 +40,8 @@ pub mod texture;
 pub mod transform;
 
 pub use boxes::Boxes;
-pub use camera::{Camera, CameraMotion, Lens, Pose, Projection};
+pub use camera::{Camera, CameraMotion, Convention, Intrinsics, Lens, Pose, PoseMatrix};
+pub use camera::{Projection, Turntable};
 pub use cloud::{Cloud, Property};
 pub use coordinates::Coordinates;
 pub use degenerate::Dropped;

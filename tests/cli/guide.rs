@@ -3,6 +3,7 @@
 //! Each test follows one page from top to bottom, in a fresh folder with a copy of `golden/`:
 //!
 //! - A `toml` block whose first line is `# NAME.toml` is written to that file.
+//! - A block whose language has a name behind it, as in `json NAME.json`, is written to that file.
 //! - Every command of an `sh` block must exit with 0, or with N if the next line is `# exit N`.
 //! - In a `console` block, `$ ` begins a command. The command must print the lines that follow, in this order. `...` at the
 //!   end of a line leaves out the rest of the line; a line `...` stands for any number of lines.
@@ -29,6 +30,7 @@ pages! {
     contributing: "CONTRIBUTING.md";
     backends: "docs/backends.md";
     bjfm19: "docs/bjfm19.md";
+    cameras: "docs/cameras.md";
     ewa: "docs/ewa.md";
     gbp04: "docs/gbp04.md";
     goldens: "docs/goldens.md";
@@ -61,15 +63,21 @@ fn every_page_with_commands_is_followed() {
 #[test]
 fn a_page_is_read_as_its_reader_would() {
     let page = "```sh\n# first\nsplatref a \\\n  b   # why\n# exit 3: c\ncargo test && splatref d\n```\n\
-                ```toml\n# e/f.toml\ng = 1\n```\n```toml\nh = 2\n```\n```console\n$ splatref i\nj ...\n...\n```\n";
-    let [Step::Run(first), Step::Run(second), Step::Write(name, text), Step::Run(third)] =
-        &steps(page)[..]
+                ```toml\n# e/f.toml\ng = 1\n```\n```toml\nh = 2\n```\n```json k.json\n3\n```\n```console\n$ splatref i\nj ...\n...\n```\n";
+    let [
+        Step::Run(first),
+        Step::Run(second),
+        Step::Write(name, text),
+        Step::Write(json, three),
+        Step::Run(third),
+    ] = &steps(page)[..]
     else {
         panic!("other steps");
     };
     assert_eq!((&first.arguments[..], first.code), (&["a".into(), "b".into()][..], 3));
     assert_eq!((&second.arguments[..], second.code), (&["d".into()][..], 0));
     assert_eq!((name.as_str(), text.as_str()), ("e/f.toml", "# e/f.toml\ng = 1\n"));
+    assert_eq!((json.as_str(), three.as_str()), ("k.json", "3\n"));
     assert_eq!(third.shown, ["j ...", "..."]);
     assert_eq!(third.missing("i\nj k\nl\n"), None);
     assert_eq!(third.missing("k\nl\n"), Some("j ..."));
@@ -170,6 +178,10 @@ fn steps(text: &str) -> Vec<Step> {
         let Some(language) = line.strip_prefix("```") else { continue };
         let block: Vec<&str> = lines.by_ref().take_while(|line| *line != "```").collect();
         let block = block.join("\n") + "\n";
+        if let Some((_, name)) = language.split_once(' ') {
+            steps.push(Step::Write(name.into(), block));
+            continue;
+        }
         match language {
             "toml" => steps.extend(file(&block)),
             "sh" => steps.extend(commands(&block).into_iter().map(Step::Run)),

@@ -38,6 +38,37 @@
 //! its geometry is. Frames are counted from 0; keys may lie beyond the last frame. Without a chosen
 //! camera, every frame uses the camera that shows the scene of frame 0.
 //!
+//! # Cameras of other programs
+//!
+//! The table `[camera]` takes intrinsics in place of `fov`, and a matrix in place of `eye`, `target`
+//! and `up`; or a file that has both. [`crate::scene::camera::convention`] and
+//! [`crate::scene::camera::clip`] have the formulas.
+//!
+//! ```toml
+//! [camera]
+//! size = [640, 480]
+//! fx = 600                        # pixels; the intrinsics belong to this size
+//! fy = 610                        # fx if absent
+//! cx = 310.5                      # the middle if absent
+//! cy = 245
+//! near = 0.01                     # any camera may have it
+//! convention = "opencv"           # or "opengl", "blender"
+//! world_to_camera = [[1, 0, 0, 0], [0, 1, 0, 0], [0, 0, 1, 4]] # by rows; or camera_to_world
+//! # projection_matrix = [[...], [...], [...], [...]] in place of the intrinsics, beside a pose; the
+//! # convention is then "opengl", "vulkan" or "d3d"
+//! # far = 100                     # of another renderer; changes no picture
+//! # turntable = 60                # frames of one turn around the scene
+//! ```
+//!
+//! ```toml
+//! [camera]
+//! file = "transforms.json"        # or a COLMAP folder, or an .exr: see [`crate::io::cameras`]
+//! view = "r_12"                   # or a number; without it, each view is a frame
+//! ```
+//!
+//! The table that [`crate::io::provenance::camera`] writes, with `projection`, `f`, `c` and
+//! `view_from_world`, gives the same camera bit for bit.
+//!
 //! # Numbers and keys
 //!
 //! Numbers are read as f64, and rounded to f32 where the scene holds f32; any decimal that `f32`
@@ -48,6 +79,7 @@
 //! in the text of a picture.
 
 mod approximate;
+mod camera;
 mod choice;
 mod draw;
 mod load;
@@ -61,6 +93,7 @@ mod ready;
 mod tests;
 mod text;
 
+pub use camera::{CameraChoice, Matrices, Views};
 pub use choice::{Choice, GroupChoice, MethodChoice, Number, OutputSettings};
 pub use draw::Draw;
 pub use load::{Loaded, ModelReport};
@@ -74,7 +107,7 @@ use crate::io::input;
 use crate::method::Method;
 use crate::scene::mipmap::MOST_LEVELS;
 use crate::scene::objects::detail::refine::Refinement;
-use crate::scene::{Camera, CameraMotion, Lens, Light, Phong, Pose, Scene, Similarity};
+use crate::scene::{Light, Phong, Similarity};
 use crate::source::Shape;
 use glam::{DVec3, Vec3};
 use std::path::{Path, PathBuf};
@@ -185,23 +218,6 @@ pub enum Source {
     },
 }
 
-/// The chosen parts of a camera.
-#[derive(Clone, Debug, Default, PartialEq)]
-pub struct CameraChoice {
-    /// Width and height in pixels.
-    pub size: Option<[u32; 2]>,
-    /// See [`Pose`].
-    pub eye: Option<DVec3>,
-    /// See [`Pose`].
-    pub target: Option<DVec3>,
-    /// See [`Pose`].
-    pub up: Option<DVec3>,
-    /// Keys over frames, in place of these three.
-    pub motion: Option<CameraMotion>,
-    /// The opening of the lens.
-    pub lens: Option<Lens>,
-}
-
 /// The chosen environment; nothing is read yet.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum EnvironmentChoice {
@@ -223,15 +239,20 @@ impl EnvironmentChoice {
 }
 
 impl SceneFile {
-    /// Reads a scene file; paths of models are relative to its folder.
+    /// Reads a scene file, and the camera file that it names; paths are relative to its folder.
     ///
     /// # Errors
-    /// [`Error::Io`] if it cannot be read, [`Error::Format`] as [`SceneFile::parse`].
+    /// [`Error::Io`] if it cannot be read, [`Error::Format`] as [`SceneFile::parse`], and as
+    /// [`Views::read`].
     pub fn read(path: &Path) -> Result<Self> {
         let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
         let text = String::from_utf8(bytes)
             .map_err(|_| Error::format(path, "not text; a scene file is TOML, which is UTF-8"))?;
-        Self::parse(&text, path)
+        let mut file = Self::parse(&text, path)?;
+        if let Some(views) = &mut file.camera.views {
+            views.load()?;
+        }
+        Ok(file)
     }
 
     /// Parses the text of the scene file at `path`; no other file is read.
@@ -241,6 +262,11 @@ impl SceneFile {
     /// wrong type, no model, or a number that no picture can be made with.
     pub fn parse(text: &str, path: &Path) -> Result<Self> {
         text::parse(text, path)
+    }
+
+    /// Parses a table with the keys of `[camera]`, which the file at `path` contains.
+    pub(super) fn parse_camera(camera: toml::Value, path: &Path) -> Result<CameraChoice> {
+        text::parse_camera(camera, path)
     }
 
     /// The text of a scene file at `path` that draws the same picture. Only settings that differ
@@ -310,8 +336,9 @@ impl SceneFile {
             EnvironmentChoice::File(path) => Some(path.as_path()),
             EnvironmentChoice::Sky => None,
         });
+        let cameras = self.camera.views.iter().map(|views| views.path.as_path());
         let index = self.hierarchy.as_deref();
-        models.chain(tables).chain(environment).chain(index)
+        models.chain(tables).chain(environment).chain(cameras).chain(index)
     }
 
     /// Whether this is a scene of objects.
@@ -333,87 +360,25 @@ impl SceneFile {
         self.models.iter_mut().chain(of_geometries)
     }
 
+    /// The number of frames: of the turntable, else one a view of a camera file from which no view
+    /// is chosen, else [`SceneFile::frames`].
+    #[must_use]
+    pub fn frame_count(&self) -> u32 {
+        self.camera.frames().unwrap_or(self.frames)
+    }
+
     /// Checks that the scene has a frame with this number.
     ///
     /// # Errors
     /// [`Error::Usage`] if it has not.
     pub fn check_frame(&self, frame: u32) -> Result<()> {
-        if frame < self.frames {
+        if frame < self.frame_count() {
             return Ok(());
         }
-        Err(Error::Usage(match self.frames {
+        Err(Error::Usage(match self.frame_count() {
             1 => format!("frame {frame} of {}, which has no [sequence]: give 0", self.name),
             frames => format!("frame {frame} of {}: give 0 to {}", self.name, frames - 1),
         }))
-    }
-
-    /// The camera in the frame to draw: the chosen parts, completed so that the camera shows
-    /// `scene`, which is this scene after loading.
-    ///
-    /// A scene of one untransformed shape has the shape's own pose and lens. Any other scene is
-    /// framed from [`DEFAULT_SIDE`], (0.5, 0.375, 1), see [`Camera::framing`], with a vertical field
-    /// of view of [`DEFAULT_FIELD_OF_VIEW`], 34 degrees, unless a lens is chosen. If only the eye was chosen, it looks
-    /// at the middle of [`Scene::bounding_sphere`]. If only the target was chosen, the camera looks
-    /// from [`DEFAULT_SIDE`] at a sphere of that radius around the target.
-    ///
-    /// # Errors
-    /// [`Error::Invalid`] as [`Camera::new`].
-    pub fn camera(&self, scene: &Scene) -> Result<Camera> {
-        let CameraChoice { size, eye, target, up, ref motion, .. } = self.camera;
-        let [width, height] = size.unwrap_or(DEFAULT_SIZE);
-        let (shape, lens) = (self.shape(), self.lens());
-        // Poses are in the coordinates of the files.
-        let [eye, target] = [eye, target].map(|place| place.map(|place| place - scene.offset));
-        if let Some(motion) = motion {
-            let pose = motion.at(self.frame).relative_to(scene.offset);
-            return Camera::new(width, height, pose, lens);
-        }
-        if let (Some(eye), Some(target)) = (eye, target) {
-            return Camera::new(
-                width,
-                height,
-                Pose { eye, target, up: up.unwrap_or(DVec3::Y) },
-                lens,
-            );
-        }
-        let pose = match shape {
-            Some(shape) => shape.default_pose(),
-            None => {
-                let (middle, radius) = scene.bounding_sphere();
-                let target = target.unwrap_or(middle);
-                let framed = Camera::framing(width, height, (target, radius), DEFAULT_SIDE, lens)?;
-                if eye.is_none() && up.is_none() {
-                    return Ok(framed);
-                }
-                Pose { eye: framed.eye(), target, up: DVec3::Y }
-            }
-        };
-        let pose = Pose {
-            eye: eye.unwrap_or(pose.eye),
-            target: target.unwrap_or(pose.target),
-            up: up.unwrap_or(pose.up),
-        };
-        Camera::new(width, height, pose, lens)
-    }
-}
-
-impl SceneFile {
-    /// The shape, if the scene is nothing but one untransformed shape.
-    fn shape(&self) -> Option<&Shape> {
-        match self.models.as_slice() {
-            [Model { source: Source::Shape { shape, .. }, transform, .. }]
-                if *transform == Similarity::IDENTITY && self.objects.is_empty() =>
-            {
-                Some(shape)
-            }
-            _ => None,
-        }
-    }
-
-    /// The lens that [`SceneFile::camera`] uses.
-    fn lens(&self) -> Lens {
-        let own = || self.shape().map(Shape::default_lens);
-        self.camera.lens.or_else(own).unwrap_or(Lens::FieldOfView(DEFAULT_FIELD_OF_VIEW))
     }
 
     /// The chosen grouping for a method. `None` leaves the choice to the scene's file or to the

@@ -1,5 +1,6 @@
 //! Prepare a scene file for drawing: load it, and resolve camera, method and groups.
 
+use super::camera::CameraPath;
 use super::model::Purpose;
 use super::{Loaded, Number, OutputSettings, SceneFile};
 use crate::error::{Error, Result};
@@ -10,7 +11,7 @@ use crate::io::state::{self, State};
 use crate::method::session::Made;
 use crate::method::{Method, Picture, Session, deferred};
 use crate::progress::Progress;
-use crate::scene::{Camera, CameraMotion, Lens, Objects, Primitives, Scene, Surfels};
+use crate::scene::{Camera, Objects, Primitives, Scene, Surfels};
 use crate::source::flatten;
 use std::borrow::Cow;
 use std::path::Path;
@@ -28,8 +29,8 @@ pub struct Ready {
     pub grouping: Option<Grouping>,
     /// The frame to draw.
     frame: u32,
-    /// The motion of the camera and its lens, if the camera moves.
-    motion: Option<(CameraMotion, Lens)>,
+    /// The camera of every frame, if the camera moves.
+    path: Option<CameraPath>,
 }
 
 impl SceneFile {
@@ -69,10 +70,12 @@ impl SceneFile {
     fn placed(&self, loaded: Loaded, exec: &Exec, progress: Progress<'_>) -> Result<Ready> {
         let (method, grouping) = self.check_drawing()?;
         let loaded = self.refined(loaded)?;
-        let camera = self.camera(&loaded.scene)?;
-        let (frame, motion) = (self.frame, self.camera.motion.clone());
-        let motion = motion.map(|motion| (motion, self.lens()));
-        let mut ready = Ready { loaded, camera, method, grouping, frame, motion };
+        let (frame, path) = (self.frame, self.camera_path(&loaded.scene)?);
+        let camera = match &path {
+            Some(path) => path.at(frame)?,
+            None => self.still_camera(&loaded.scene)?,
+        };
+        let mut ready = Ready { loaded, camera, method, grouping, frame, path };
         ready.place(exec, progress)?;
         Ok(ready)
     }
@@ -97,15 +100,13 @@ impl Ready {
     /// # Errors
     /// As [`Camera::new`].
     pub fn camera_at(&self, frame: u32) -> Result<Camera> {
-        let Some((motion, lens)) = &self.motion else { return Ok(self.camera) };
-        let pose = motion.at(frame).relative_to(self.loaded.scene.offset);
-        Camera::new(self.camera.width, self.camera.height, pose, *lens)
+        self.path.as_ref().map_or(Ok(self.camera), |path| path.at(frame))
     }
 
     /// Whether the scene is the same in every frame, so that one session draws all of them.
     #[must_use]
     pub fn is_still(&self) -> bool {
-        let depends_on_camera = |objects: &Objects| objects.have_detail() && self.motion.is_some();
+        let depends_on_camera = |objects: &Objects| objects.have_detail() && self.path.is_some();
         let is_still = |objects: &Objects| objects.are_still() && !depends_on_camera(objects);
         self.loaded.scene.objects.as_ref().is_none_or(is_still)
     }

@@ -1,3 +1,4 @@
+mod cameras;
 mod draw;
 mod objects;
 mod textures;
@@ -10,8 +11,8 @@ use crate::io::exr::{self, Compression};
 use crate::method::Method;
 use crate::method::single_pass::{BinCount, DepthTest};
 use crate::method::{transparent, transparent_hq};
-use crate::scene::Cloud;
 use crate::scene::environment::{Environment, Map};
+use crate::scene::{Camera, CameraMotion, Cloud, Lens, Pose, Scene};
 use crate::setting::Fields;
 use crate::shade::optics::{BendingLayers, Refraction};
 use crate::source::derive::Origin;
@@ -72,8 +73,8 @@ fn the_example_says_what_it_says() {
         eye: Some(DVec3::new(0.0, 1.0, 5.0)),
         target: Some(DVec3::ZERO),
         up: Some(DVec3::Y),
-        motion: None,
         lens: Some(Lens::FieldOfView(40.0)),
+        ..CameraChoice::default()
     };
     assert_eq!(file.camera, camera);
     let lights = [

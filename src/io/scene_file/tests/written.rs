@@ -3,7 +3,7 @@
 use super::*;
 
 /// Reads the written text of a file, which must describe the same scene.
-fn check(file: &SceneFile) -> String {
+pub(super) fn check(file: &SceneFile) -> String {
     let path = Path::new("a/scene.toml");
     let text = file.text(path).unwrap();
     let again = SceneFile::parse(&text, path).unwrap_or_else(|error| panic!("{error}\n{text}"));

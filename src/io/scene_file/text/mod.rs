@@ -43,6 +43,13 @@ use object::Unresolved;
 use serde::de::{self, Deserialize, Deserializer};
 use std::path::{Path, PathBuf};
 
+/// The camera of a table with the keys of `[camera]`.
+pub(super) fn parse_camera(camera: toml::Value, path: &Path) -> Result<CameraChoice> {
+    camera.try_into().map_err(|error: toml::de::Error| {
+        Error::format(path, error.message().trim().replace('\n', " "))
+    })
+}
+
 pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
     input::ask_for_toml(path, text)?;
     let file: File = toml::from_str(text).map_err(|error| input::no_toml(path, text, &error))?;
@@ -87,6 +94,8 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
     if let Some(EnvironmentChoice::File(map)) = &mut environment {
         *map = beside(map);
     }
+    let mut camera = file.camera;
+    camera.views.iter_mut().for_each(|views| views.path = beside(&views.path));
     Ok(SceneFile {
         name: stem(path),
         hierarchy: file.hierarchy.as_deref().map(beside),
@@ -96,7 +105,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
         frames: file.sequence.0,
         frame: 0,
         refinement: file.refinement,
-        camera: file.camera,
+        camera,
         lights: file.light.unwrap_or_else(|| vec![Light::DEFAULT]),
         material: file.material,
         environment,

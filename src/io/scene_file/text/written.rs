@@ -57,7 +57,8 @@ impl Tables {
             sequence: (file.frames > 1).then_some(RawSequence { frames: file.frames }),
             refinement: (*refinement != Refinement::default())
                 .then(|| RawRefinement::from_refinement(refinement)),
-            camera: (*camera != CameraChoice::default()).then(|| RawCamera::from_choice(camera)),
+            camera: (*camera != CameraChoice::default())
+                .then(|| RawCamera::from_choice(camera, place)),
             light: (lights[..] != [Light::DEFAULT])
                 .then(|| lights.iter().map(RawLight::from_light).collect()),
             material: (*material != Phong::default()).then(|| RawMaterial::from_material(material)),
