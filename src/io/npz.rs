@@ -90,6 +90,9 @@ fn entries(bytes: &[u8]) -> Reason<Vec<Entry>> {
     let from = bytes.len().saturating_sub(22 + 65535);
     let end = bytes[from..].windows(4).rposition(|four| four == b"PK\x05\x06");
     let end = from + end.ok_or(DAMAGED)?;
+    if bytes.len() < end + 22 + number(bytes, end + 20, 2)? as usize {
+        return Err(DAMAGED.into());
+    }
     let (mut count, mut at) = (number(bytes, end + 10, 2)?, number(bytes, end + 16, 4)?);
     // A large archive has another record, which a locator before the last record points at.
     if let Some(locator) = end.checked_sub(20).filter(|&at| bytes[at..].starts_with(b"PK\x06\x07"))

@@ -143,7 +143,7 @@ fn other_orders_shapes_and_types_are_read() {
         npy("<f2", "(2, 3)", &le(&numbers, half)),
         npy(">f4", "(2, 3)", &le(&numbers, f32::to_be_bytes)),
         npy("<f4", "(1, 2, 3, 1)", &bytes),
-        npy("<f4", "(1, 1, 2, 3)", &bytes),
+        npy("<f4", "(1, 1, 3, 2)", &bytes),
         with_header(fortran, &by_columns),
     ] {
         assert_eq!(read_bytes(&file, "a").unwrap().channel("a"), Some(&plane));
