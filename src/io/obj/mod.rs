@@ -57,7 +57,7 @@
 //! - A vertex becomes several points if its corners have several normals, or materials of several
 //!   colours. Points are in the order of the vertices, then of the normals' numbers, then of the
 //!   materials. If a corner has no normal, all normals are left out, to be derived.
-//! - Texture coordinates belong to [corners](Coordinates::Corners); a corner without them has NaN.
+//! - Texture coordinates belong to [corners](crate::scene::Coordinates::Corners); a corner without them has NaN.
 //! - If vertices have no colours and no texture replaces the materials' colours, points take the
 //!   colours of their materials. A material without Kd is then white.
 //! - Kd is linear, because programs that write it have linear colours. A texture replaces Kd and is

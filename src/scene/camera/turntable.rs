@@ -4,7 +4,7 @@
 //! The camera goes counter-clockwise, seen from the tip of the axis, and keeps its distance from the
 //! axis and its height. Frame 0 is the first camera, bit for bit. Every frame
 //! has its size, focal lengths, principal point and near plane. With R =
-//! [`rotation`](crate::scene::transform::rotation)(axis, 360 k / n), c the centre, and Lij and t of
+//! [`rotation`] of (axis, 360 k / n), c the centre, and Lij and t of
 //! the first view matrix converted from `f32`, in f64:
 //!
 //! ```text
