@@ -6,7 +6,6 @@ use super::Change;
 use super::epsilon::DEPTHS;
 use crate::frame::Samples;
 use crate::method::Session;
-use crate::number::Real;
 use crate::scene::Camera;
 use crate::verdict::client::{Client, Storage};
 
@@ -149,9 +148,8 @@ fn fit(pairs: &[(f64, f64)], is_inverse: bool) -> Option<Reading> {
         kept.retain(|pair| error(pair) <= 4.0 * median + 1e-6);
     }
     let found = found.filter(|line| line.relative <= 16.0 * LOOSEST)?;
-    let most = pairs.iter().fold(0.0, |most: f64, (_, t)| most.at_least(*t));
-    let is_plain =
-        !is_inverse && (found.slope - 1.0).abs() <= LOOSEST && found.offset.abs() <= LOOSEST * most;
+    // Depths with another offset alone are discs moved along the view, which is a cause of its own.
+    let is_plain = !is_inverse && (found.slope - 1.0).abs() <= LOOSEST;
     (!is_plain).then_some(found)
 }
 

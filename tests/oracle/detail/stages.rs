@@ -94,7 +94,8 @@ fn views_are_those_of_the_page() {
             let mut wishes = wishes(seed * 4 + wish);
             if wish > 1 {
                 let object = seed as u32 % objects.objects().len() as u32;
-                let size = size_for(&objects, &camera, object, 0.7 + 0.002 * (seed % 400) as f32);
+                let size =
+                    size_for(&objects, &camera, object, 0.99 + 0.00085 * (seed % 400) as f32);
                 wishes.surfel_size = size.unwrap_or(1.0);
             }
             let objects = objects.clone().with_refinement(wishes).expect(&name);
