@@ -62,13 +62,7 @@ fn decode(path: &Path, name: &str) -> Result<(Image, bool)> {
     let (file, length) = input::open(path).map_err(|source| Error::io(path, source))?;
     // The length is taken once, so that nothing more is read if the file grows meanwhile.
     let mut file = file.take(length);
-    let text = header_text(&mut file).map_err(|what| Error::format(path, what))?;
-    let array = Array::parse(&text)
-        .and_then(|array| array.fits(file.limit()).map(|()| array))
-        .map_err(|what| Error::format(path, what))?;
-    let held = array.bytes() + 4 * u64::from(array.width) * u64::from(array.height) * 3;
-    memory::try_ask(held, || format!("an array of {} x {}", array.height, array.width))
-        .map_err(|what| Error::format(path, what))?;
+    let array = header(&mut file).map_err(|what| Error::format(path, what))?;
     let mut bytes = Vec::new();
     file.read_to_end(&mut bytes).map_err(|source| Error::io(path, source))?;
     if bytes.len() as u64 != array.bytes() {
@@ -81,10 +75,20 @@ fn decode(path: &Path, name: &str) -> Result<(Image, bool)> {
 /// The array in these bytes of a file, as [`read_stored`].
 pub(in crate::io) fn parse(bytes: &[u8], name: &str) -> Reason<(Image, bool)> {
     let mut file = bytes.take(bytes.len() as u64);
-    let array = Array::parse(&header_text(&mut file)?)?;
-    array.fits(file.limit())?;
+    let array = header(&mut file)?;
     let image = array.image(file.into_inner(), name)?;
     Ok((image, array.is_half()))
+}
+
+/// Reads the header, checks that exactly its array follows, and asks for the memory of the array and
+/// its planes.
+fn header(file: &mut Take<impl Read>) -> Reason<Array> {
+    let array = Array::parse(&header_text(file)?)?;
+    array.fits(file.limit())?;
+    let planes = u64::from(array.width) * u64::from(array.height) * 3 * 4;
+    let held = array.bytes().saturating_add(planes);
+    memory::try_ask(held, || format!("an array of {} x {}", array.height, array.width))?;
+    Ok(array)
 }
 
 /// Reads the dictionary at the start of a file; the array follows.

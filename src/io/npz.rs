@@ -180,7 +180,7 @@ impl Entry {
                 ));
             }
         };
-        if unpacked.len() as u64 != self.size || crc(&unpacked) != self.crc {
+        if unpacked.len() as u64 != self.size || crc32fast::hash(&unpacked) != self.crc {
             return Err(DAMAGED.into());
         }
         Ok(unpacked)
@@ -196,16 +196,6 @@ fn number(bytes: &[u8], at: usize, size: usize) -> Reason<u64> {
 /// A place in memory.
 fn place(at: u64) -> Reason<usize> {
     usize::try_from(at).ok().filter(|&at| at < usize::MAX / 2).ok_or_else(|| DAMAGED.into())
-}
-
-/// The checksum of ZIP, CRC-32 with the polynomial 0xEDB88320.
-fn crc(bytes: &[u8]) -> u32 {
-    let mut table = [0_u32; 256];
-    for (byte, entry) in (0_u32..).zip(&mut table) {
-        *entry = (0..8).fold(byte, |value, _| value >> 1 ^ (0xedb8_8320 * (value & 1)));
-    }
-    let step = |value: u32, byte: &u8| value >> 8 ^ table[(value as u8 ^ byte) as usize];
-    !bytes.iter().fold(u32::MAX, step)
 }
 
 #[cfg(test)]
@@ -238,7 +228,7 @@ mod tests {
                 let mut common = [45, 0, 0, 0].to_vec();
                 common.extend(method.to_le_bytes());
                 common.extend([0; 4]);
-                common.extend(crc(array).to_le_bytes());
+                common.extend(crc32fast::hash(array).to_le_bytes());
                 common.extend(sizes.iter().flat_map(|size| size.to_le_bytes()));
                 common.extend((name.len() as u16).to_le_bytes());
                 common
@@ -291,7 +281,7 @@ mod tests {
 
     #[test]
     fn the_checksum_is_the_one_of_zip() {
-        assert_eq!(crc(b"123456789"), 0xcbf4_3926);
+        assert_eq!(crc32fast::hash(b"123456789"), 0xcbf4_3926);
     }
 
     /// Whatever byte is changed or missing, the reader says it in one line.

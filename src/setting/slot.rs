@@ -27,6 +27,11 @@ pub trait Words: Copy + 'static {
     /// Every word with its value.
     const WORDS: &'static [(&'static str, Self)];
 
+    /// The value that a word names.
+    fn named(word: &str) -> Option<Self> {
+        Self::WORDS.iter().find(|(known, _)| *known == word).map(|(_, value)| *value)
+    }
+
     /// Whether two values have the same word. By default only the variants of an enum count, not
     /// their fields.
     fn is(&self, other: &Self) -> bool {
@@ -55,9 +60,9 @@ impl<T: Words> Word for T {
     }
 
     fn choose(&mut self, word: &str) -> bool {
-        let found = T::WORDS.iter().find(|(known, _)| *known == word);
-        if let Some((_, value)) = found.filter(|(_, value)| !self.is(value)) {
-            *self = *value;
+        let found = T::named(word);
+        if let Some(value) = found.filter(|value| !self.is(value)) {
+            *self = value;
         }
         found.is_some()
     }

@@ -100,10 +100,7 @@ impl Keys {
 
     pub(super) fn word<T: Words>(&mut self, key: &'static str) -> Reason<Option<T>> {
         let all: Vec<String> = T::WORDS.iter().map(|(word, _)| format!("\"{word}\"")).collect();
-        self.typed(key, &format!("one of {}", all.join(", ")), |value| {
-            let text = value.as_str()?;
-            T::WORDS.iter().find(|(word, _)| *word == text).map(|(_, value)| *value)
-        })
+        self.typed(key, &format!("one of {}", all.join(", ")), |value| T::named(value.as_str()?))
     }
 
     /// A table inside this one; empty if there is none.

@@ -1,19 +1,16 @@
 //! Read JPEG files, as textures.
 
-use super::read::Codes;
+use super::read::{Codes, reason};
 use crate::error::{Error, Result};
 use crate::frame::Plane;
 use crate::io::guard::guarded;
 use crate::io::input;
-use crate::memory;
-use image::ImageDecoder;
 use image::codecs::jpeg::JpegDecoder;
 use std::io::Cursor;
 use std::path::Path;
 
-/// Bytes for each pixel: the decoder's coefficients, its codes, their copy in 16 bits, and up to four
-/// planes of floats.
-const BYTES_A_PIXEL: u64 = 40;
+/// Bytes for each pixel that the decoder itself holds.
+const COEFFICIENTS: u64 = 16;
 
 /// Reads the colours of the JPEG file at `path` in linear light: each code is decoded as sRGB and
 /// rounded once.
@@ -31,24 +28,13 @@ pub(in crate::io) fn read_linear(
     if bytes.starts_with(&[0xFF, 0xD8]) && last([0xFF, 0xD9]) < last([0xFF, 0xDA]) {
         return Err(Error::format(path, "the JPEG is cut off; write it again"));
     }
-    let read = || -> Result<_> {
-        let reason = |error: image::ImageError| {
-            Error::format(path, format!("{error}; write it again").replace('\n', " "))
-        };
-        let decoder = JpegDecoder::new(Cursor::new(&bytes)).map_err(reason)?;
-        let (width, height) = decoder.dimensions();
-        check_size(width, height).map_err(|error| Error::format(path, error.to_string()))?;
-        let pixels = u64::from(width) * u64::from(height);
-        memory::try_ask(BYTES_A_PIXEL * pixels, || {
-            format!("a picture of {width} x {height} pixels")
-        })
-        .map_err(|what| Error::format(path, what))?;
-        let kind = decoder.color_type();
-        let mut found = vec![0; decoder.total_bytes() as usize];
-        decoder.read_image(&mut found).map_err(reason)?;
-        Ok(Codes::separate([width, height], kind, &found))
+    let decode = || {
+        let decoder =
+            JpegDecoder::new(Cursor::new(&bytes)).map_err(|error| reason(path, &error))?;
+        Codes::decode(decoder, path, check_size, COEFFICIENTS)
     };
-    guarded(read).map_err(|what| Error::format(path, what))??.linear(path)
+    let codes = guarded(decode).map_err(|what| Error::format(path, what))??;
+    Ok(codes.linear())
 }
 
 #[cfg(test)]

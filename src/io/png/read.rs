@@ -47,7 +47,7 @@ pub(in crate::io) fn read_linear(
     path: &Path,
     check_size: fn(u32, u32) -> Result<()>,
 ) -> Result<Plane<[f32; 3]>> {
-    codes_of_size(path, check_size)?.linear(path)
+    Ok(codes_of_size(path, check_size)?.linear())
 }
 
 fn codes_of_size(path: &Path, check_size: fn(u32, u32) -> Result<()>) -> Result<Codes> {
@@ -57,18 +57,15 @@ fn codes_of_size(path: &Path, check_size: fn(u32, u32) -> Result<()>) -> Result<
 fn decode(path: &Path, check_size: fn(u32, u32) -> Result<()>) -> Result<Codes> {
     let bytes = input::bytes(path).map_err(|source| Error::io(path, source))?;
     let length = bytes.len() as u64;
-    // Keep the error on one line, even if the decoder's message has several.
-    let reason = |error: ImageError| {
-        Error::format(path, format!("{error}; write it again").replace('\n', " "))
-    };
     let most_bytes = length.saturating_mul(MOST_EXPANSION);
     let mut limits = Limits::no_limits();
     // The decoder needs some 100 KB for itself, whatever the file.
     limits.max_alloc = Some(most_bytes.saturating_add(1 << 20));
-    let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits).map_err(reason)?;
+    let decoder = PngDecoder::with_limits(Cursor::new(bytes), limits)
+        .map_err(|error| reason(path, &error))?;
     let (width, height) = decoder.dimensions();
-    check_size(width, height).map_err(|error| Error::format(path, error.to_string()))?;
     if decoder.total_bytes() > most_bytes {
+        check_size(width, height).map_err(|error| Error::format(path, error.to_string()))?;
         return Err(Error::format(
             path,
             format!(
@@ -77,16 +74,13 @@ fn decode(path: &Path, check_size: fn(u32, u32) -> Result<()>) -> Result<Codes> 
             ),
         ));
     }
-    // The bytes, their codes in 16 bits, and up to four planes of floats.
-    let planes = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(16);
-    memory::try_ask(decoder.total_bytes().saturating_mul(3).saturating_add(planes), || {
-        format!("a picture of {width} x {height} pixels")
-    })
-    .map_err(|what| Error::format(path, what))?;
-    let kind = decoder.color_type();
-    let mut bytes = vec![0; decoder.total_bytes() as usize];
-    decoder.read_image(&mut bytes).map_err(reason)?;
-    Ok(Codes::separate([width, height], kind, &bytes))
+    Codes::decode(decoder, path, check_size, 0)
+}
+
+/// The decoder's message as the error of a file. It stays on one line, even if the message has
+/// several.
+pub(super) fn reason(path: &Path, error: &ImageError) -> Error {
+    Error::format(path, format!("{error}; write it again").replace('\n', " "))
 }
 
 /// The codes of a file, as many for each pixel as the file has components.
@@ -99,8 +93,30 @@ pub(super) struct Codes {
 }
 
 impl Codes {
+    /// Decodes a picture whose size passes `check_size`, if there is memory for it. The decoder
+    /// itself holds `own` bytes for each pixel.
+    pub(super) fn decode(
+        decoder: impl ImageDecoder,
+        path: &Path,
+        check_size: fn(u32, u32) -> Result<()>,
+        own: u64,
+    ) -> Result<Self> {
+        let (width, height) = decoder.dimensions();
+        check_size(width, height).map_err(|error| Error::format(path, error.to_string()))?;
+        // The bytes, their codes in 16 bits, and up to four planes of floats.
+        let planes = u64::from(width).saturating_mul(u64::from(height)).saturating_mul(16 + own);
+        memory::try_ask(decoder.total_bytes().saturating_mul(3).saturating_add(planes), || {
+            format!("a picture of {width} x {height} pixels")
+        })
+        .map_err(|what| Error::format(path, what))?;
+        let kind = decoder.color_type();
+        let mut bytes = vec![0; decoder.total_bytes() as usize];
+        decoder.read_image(&mut bytes).map_err(|error| reason(path, &error))?;
+        Ok(Self::separate([width, height], kind, &bytes))
+    }
+
     /// Reads the decoder's bytes; 16-bit codes are in this machine's order.
-    pub(super) fn separate(size: [u32; 2], kind: ColorType, bytes: &[u8]) -> Self {
+    fn separate(size: [u32; 2], kind: ColorType, bytes: &[u8]) -> Self {
         let components = usize::from(kind.channel_count());
         let (codes, most) = if kind.bytes_per_pixel() as usize > components {
             let pairs = bytes.as_chunks().0.iter();
@@ -111,12 +127,9 @@ impl Codes {
         Self { size, components, most, codes }
     }
 
-    /// Decodes the codes as sRGB, for the picture at `path`.
-    pub(super) fn linear(&self, path: &Path) -> Result<Plane<[f32; 3]>> {
+    /// The colours in linear light: each code is decoded as sRGB and rounded once.
+    pub(super) fn linear(&self) -> Plane<[f32; 3]> {
         let Self { size: [width, height], components, most, ref codes } = *self;
-        let count = codes.len() / components;
-        memory::try_ask(12 * count as u64, || format!("the colours of {count} pixels"))
-            .map_err(|what| Error::format(path, what))?;
         let table = srgb::table(most);
         let linear = |code: u16| table[usize::from(code)];
         // Grey, with or without alpha, is one colour three times.
@@ -125,7 +138,7 @@ impl Codes {
             [grey, ..] => [linear(grey); 3],
             [] => [0.0; 3],
         });
-        Ok(Plane::from_values(width, height, pixels.collect()))
+        Plane::from_values(width, height, pixels.collect())
     }
 
     /// The channels of the picture.

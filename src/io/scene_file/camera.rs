@@ -136,7 +136,7 @@ impl Views {
 #[derive(Clone, Debug)]
 pub(super) enum CameraPath {
     /// Poses between keys, under a lens, in a scene with this offset.
-    Keys(Box<CameraChoice>, Lens, DVec3),
+    Keys(CameraMotion, Box<CameraChoice>, Lens, DVec3),
     /// One camera a frame.
     Views(Vec<Camera>),
     /// Around the scene.
@@ -149,9 +149,8 @@ impl CameraPath {
         match self {
             Self::Views(all) => Ok(all[frame as usize % all.len()]),
             Self::Turntable(turntable) => Ok(turntable.at(frame)),
-            Self::Keys(choice, lens, offset) => {
+            Self::Keys(motion, choice, lens, offset) => {
                 let [width, height] = choice.picture_size();
-                let Some(motion) = &choice.motion else { unreachable!("keys are a motion") };
                 let pose = motion.at(frame).relative_to(*offset);
                 choice.open(Camera::new(width, height, pose, *lens)?)
             }
@@ -287,10 +286,11 @@ impl SceneFile {
                 Ok(Some(CameraPath::Views(all)))
             };
         }
-        Ok(choice
-            .motion
-            .is_some()
-            .then(|| CameraPath::Keys(Box::new(choice.clone()), self.lens(), scene.offset)))
+        let keys = |motion: &CameraMotion| {
+            let choice = Box::new(choice.clone());
+            CameraPath::Keys(motion.clone(), choice, self.lens(), scene.offset)
+        };
+        Ok(choice.motion.as_ref().map(keys))
     }
 
     /// The camera without its motion; of a camera file, the chosen view.

@@ -44,7 +44,7 @@
 //! The last row may be off by [`TOLERANCE`], and then counts as (0, 0, 0, 1).
 
 use crate::number::MapInline;
-use crate::setting::Words;
+use crate::setting::{Word, Words};
 use glam::{DMat4, DVec4};
 
 /// How far L L^T of a pose may be from the unit matrix, see the [module](self).
@@ -81,11 +81,8 @@ impl Convention {
     /// # Errors
     /// One line that lists the names.
     pub fn by_name(name: &str) -> Result<Self, String> {
-        let found = Self::WORDS.iter().find(|(word, _)| *word == name);
-        found.map(|(_, convention)| *convention).ok_or_else(|| {
-            let words: Vec<&str> = Self::WORDS.iter().map(|(word, _)| *word).collect();
-            format!("no convention `{name}`; give one of {}", words.join(", "))
-        })
+        let words = || Self::OpenCv.words().join(", ");
+        Self::named(name).ok_or_else(|| format!("no convention `{name}`; give one of {}", words()))
     }
 }
 
