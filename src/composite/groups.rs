@@ -26,8 +26,7 @@
 //!   before the nearest depth was known. So a backend may not composite images as they come.
 
 use super::{decide, sum};
-use crate::number::MapInline;
-use crate::number::{Exact, Real};
+use crate::number::{Exact, MapInline, Real};
 
 /// The content of a depth-image at a pixel: the attributes of one fragment, times its weight.
 #[derive(Clone, Copy, Debug, PartialEq)]

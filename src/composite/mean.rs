@@ -21,8 +21,7 @@
 //! For 1, 2 or 4 terms of weight 1 the average is the plain mean.
 
 use super::decide;
-use crate::number::MapInline;
-use crate::number::{Exact, Real};
+use crate::number::{Exact, MapInline, Real};
 
 /// The neighbours that take part, and their weights.
 #[derive(Clone, Copy, Debug)]

@@ -71,8 +71,7 @@ use crate::composite::bins::DepthBins;
 use crate::composite::over::Blend;
 use crate::composite::under::Under;
 use crate::frame::{Frame, NamedPlane, Samples};
-use crate::number::MapInline;
-use crate::number::{Exact, Real};
+use crate::number::{Exact, MapInline, Real};
 use crate::scene::{Camera, Projection, Scene};
 use crate::setting::Words;
 

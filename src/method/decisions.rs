@@ -6,8 +6,7 @@ use super::prepare::Prepared;
 use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::Rect;
-use crate::number::Exact;
-use crate::number::MapInline;
+use crate::number::{Exact, MapInline};
 use crate::splat::{Shared, Splat};
 use std::fmt;
 

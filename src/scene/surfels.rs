@@ -1,6 +1,5 @@
 //! Surfels: the checked structure of arrays that every method takes.
 
-use crate::number::MapInline;
 mod arrays;
 
 pub(super) use arrays::Arrays;
@@ -11,6 +10,7 @@ use super::Mipmap;
 use super::degenerate::{CHUNK, Dropped, Points};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::number::MapInline;
 use crate::scene::light::is_color;
 use glam::{DVec3, Vec3};
 use std::ops::Range;

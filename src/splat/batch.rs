@@ -3,9 +3,8 @@
 use super::disc_lanes::DiscLanes;
 use super::{Disc, FOOTPRINT, Fate, Footprint, Outline, Projector, Splat, project};
 use crate::frame::Rect;
-use crate::number::MapInline;
 use crate::number::lanes::{LANES, Lanes, vectorized};
-use crate::number::{Exact, Real, Vector3};
+use crate::number::{Exact, MapInline, Real, Vector3};
 use crate::scene::Surfels;
 use std::ops::Range;
 

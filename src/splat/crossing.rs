@@ -46,8 +46,7 @@
 
 use super::shape::PlacedDisc;
 use super::{Disc, View};
-use crate::number::MapInline;
-use crate::number::{Real, Truth, Vector2, Vector3};
+use crate::number::{MapInline, Real, Truth, Vector2, Vector3};
 
 /// Two half axes of a disc or ellipse in view space.
 fn basis<R: Real>(view: &View<R>, placed: &PlacedDisc<R>, disc: &Disc<R>) -> [Vector3<R>; 2] {

@@ -16,10 +16,9 @@
 use super::disc_lanes::DiscLanes;
 use super::{FOOTPRINT, Footprint, Projector, Reasons, Splat};
 use crate::frame::Rect;
-use crate::number::MapInline;
 use crate::number::ball::{BallLanes, Common, Profile, Three};
 use crate::number::lanes::{LANES, vectorized_avx2};
-use crate::number::{Ball, Truth};
+use crate::number::{Ball, MapInline, Truth};
 use crate::scene::Surfels;
 use multiversion::target::target_cfg_f;
 use std::ops::Range;

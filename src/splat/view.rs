@@ -1,7 +1,6 @@
 //! The camera in the numbers of the arithmetic.
 
-use crate::number::MapInline;
-use crate::number::{Real, Vector3};
+use crate::number::{MapInline, Real, Vector3};
 use crate::scene::{Camera, Projection};
 
 /// A [`Camera`] over [`Real`]: the same `f32` inputs, exactly.

@@ -9,7 +9,6 @@
 //! estimated: what depths mean by a fitted line, and the low-pass filter, the cut-off and the field
 //! of view by search.
 
-use crate::number::MapInline;
 mod depths;
 mod epsilon;
 mod search;
@@ -19,6 +18,7 @@ use super::{StageVerdict, Verdict};
 use crate::error::Result;
 use crate::frame::Samples;
 use crate::method::{Method, Session};
+use crate::number::MapInline;
 use crate::number::srgb;
 use crate::scene::Camera;
 use crate::setting::{Fields, Value};

@@ -1,7 +1,6 @@
 //! Hand in the planes of your renderer: planes by the names of a method's rows, and how exactly
 //! each is stored.
 
-use crate::number::MapInline;
 mod storage;
 
 pub use storage::Storage;
@@ -10,6 +9,7 @@ use crate::error::{Error, Result};
 use crate::frame::{Frame, NamedPlane, Plane, Samples};
 use crate::method::stage::numbered;
 use crate::method::{Holds, PlaneRow};
+use crate::number::MapInline;
 use crate::number::ball::{Ball, Profile};
 use crate::setting::Words;
 use crate::splat::record::SplatRecord;

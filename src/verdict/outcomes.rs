@@ -9,8 +9,7 @@
 //! - Where it is undecided whether the foremost joins itself, it does so by law.
 
 use crate::composite::decide;
-use crate::number::MapInline;
-use crate::number::{Real, Truth};
+use crate::number::{MapInline, Real, Truth};
 use crate::verdict::Doubt;
 
 /// Which of the four candidates take part, and which of them is foremost; none if the result is

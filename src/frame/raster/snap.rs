@@ -2,8 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::frame::Rect;
-use crate::number::Exact;
-use crate::number::MapInline;
+use crate::number::{Exact, MapInline};
 
 /// How far coordinates may reach in either direction, in pixels: 2^17.
 pub const GUARD_BAND: u32 = 1 << 17;

@@ -7,8 +7,7 @@ use crate::method::Job;
 use crate::method::fragment::facing;
 use crate::method::surface::SurfacePixel;
 use crate::method::tiled::Tiled;
-use crate::number::MapInline;
-use crate::number::{Exact, Real};
+use crate::number::{Exact, MapInline, Real};
 use crate::splat::View;
 
 /// The point where the ray of a pixel meets the plane of a disc.

@@ -7,8 +7,7 @@ use crate::frame::raster::Snap;
 use crate::frame::{Framebuffer, Plane};
 use crate::method::Job;
 use crate::method::projection::{self, PixelSample};
-use crate::number::Exact;
-use crate::number::MapInline;
+use crate::number::{Exact, MapInline};
 use crate::splat::View;
 
 /// The nearest triangle of each pixel.

@@ -33,8 +33,7 @@ use crate::frame::{Exec, Framebuffer, NO_ID, Plane};
 use crate::method::Job;
 use crate::method::projection::{self, PixelSample, SampleKind};
 use crate::method::surface::SurfacePixel;
-use crate::number::Exact;
-use crate::number::MapInline;
+use crate::number::{Exact, MapInline};
 use crate::scene::{Scene, Surfels};
 use crate::splat::View;
 

@@ -9,8 +9,7 @@ use crate::frame::NO_ID;
 use crate::method::Job;
 use crate::method::decisions::{Place, Touch};
 use crate::method::ewa::explain::{TwoPasses, two_passes};
-use crate::number::Exact;
-use crate::number::MapInline;
+use crate::number::{Exact, MapInline};
 use std::fmt;
 
 /// The replay of one pixel.

@@ -7,8 +7,7 @@ use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
 use crate::frame::{Bins, Plane, Rect};
 use crate::method::Job;
-use crate::number::MapInline;
-use crate::number::{Exact, Vector3};
+use crate::number::{Exact, MapInline, Vector3};
 use crate::splat::{Fate, Tally};
 use std::ops::Range;
 

@@ -7,8 +7,7 @@ use super::{PixelSample, SceneProjector};
 use crate::composite::decide;
 use crate::frame::raster::{Snap, Triangle};
 use crate::frame::{Exec, NO_ID, Rect};
-use crate::number::MapInline;
-use crate::number::{Exact, Vector3};
+use crate::number::{Exact, MapInline, Vector3};
 use crate::scene::{Camera, Scene};
 use std::ops::Range;
 

@@ -2,8 +2,7 @@
 
 use crate::composite::mean::Mean;
 use crate::method::projection::{PixelSample, SampleKind};
-use crate::number::MapInline;
-use crate::number::{Exact, Real, Vector2, Vector3};
+use crate::number::{Exact, MapInline, Real, Vector2, Vector3};
 use crate::splat::Ellipse;
 
 /// A pixel of a level; view space.

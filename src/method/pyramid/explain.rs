@@ -8,8 +8,7 @@ use crate::frame::raster::Snap;
 use crate::method::Job;
 use crate::method::projection::explain::{PixelProjection, compared, outside, replay};
 use crate::method::projection::{self, SampleKind};
-use crate::number::MapInline;
-use crate::number::{Exact, Vector2};
+use crate::number::{Exact, MapInline, Vector2};
 use crate::splat::Ellipse;
 use std::fmt;
 

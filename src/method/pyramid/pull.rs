@@ -31,8 +31,7 @@ use super::Cell;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
 use crate::method::projection::PixelSample;
-use crate::number::MapInline;
-use crate::number::{Exact, Real, Vector2};
+use crate::number::{Exact, MapInline, Real, Vector2};
 
 /// The side of a cell of a level in pixels, 2^level.
 pub(crate) fn side<R: Real>(level: usize) -> R {

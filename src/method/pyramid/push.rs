@@ -32,8 +32,7 @@ use super::{Cell, Occlusion, Settings, Weights};
 use crate::composite::decide;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
-use crate::number::MapInline;
-use crate::number::{Exact, Real, Vector2};
+use crate::number::{Exact, MapInline, Real, Vector2};
 use crate::splat::Ellipse;
 
 /// Pushes all levels, from the levels of the pull phase, the finest first.

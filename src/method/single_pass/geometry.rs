@@ -10,8 +10,7 @@ use crate::method::Job;
 use crate::method::buffer_formats::DepthKey;
 use crate::method::fragment::{TileSplats, facing};
 use crate::method::prepare::Prepared;
-use crate::number::MapInline;
-use crate::number::{Exact, Real};
+use crate::number::{Exact, MapInline, Real};
 use crate::scene::{Groups, Surfels};
 use crate::splat::{Shared, Splat};
 

@@ -14,8 +14,7 @@ use crate::method::stage::Holds::{Color, Count, Depth, Diagnostic, Index, Scalar
 use crate::method::stage::{Keep, PlaneRow, Stage, When};
 use crate::method::surface::{self, SurfacePixel};
 use crate::method::tiled::Tiled;
-use crate::number::Exact;
-use crate::number::MapInline;
+use crate::number::{Exact, MapInline};
 use crate::splat::View;
 
 /// The planes of a depth-image. `##` is the group.

@@ -10,8 +10,7 @@ use crate::frame::raster::Snap;
 use crate::method::Job;
 use crate::method::projection::explain::{PixelProjection, compared, outside, replay};
 use crate::method::projection::{self, Has};
-use crate::number::Exact;
-use crate::number::MapInline;
+use crate::number::{Exact, MapInline};
 use std::fmt;
 
 /// The replay of one pixel and of the cells over it.

@@ -25,8 +25,7 @@ use crate::composite::decide;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
 use crate::method::projection::PixelSample;
-use crate::number::MapInline;
-use crate::number::{Exact, Real, Vector2, Vector3};
+use crate::number::{Exact, MapInline, Real, Vector2, Vector3};
 
 /// The top level, whose cells every pixel searches whole: the first level whose sides are at most
 /// h + 1.

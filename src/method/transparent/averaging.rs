@@ -5,8 +5,7 @@ use super::blending::GroupLayers;
 use crate::composite::decide;
 use crate::composite::over::Blend;
 use crate::frame::NO_ID;
-use crate::number::MapInline;
-use crate::number::{Exact, Real};
+use crate::number::{Exact, MapInline, Real};
 
 /// The average of all groups at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -7,8 +7,7 @@ use crate::composite::decide;
 use crate::error::Result;
 use crate::method::Job;
 use crate::method::decisions::{Decision, Place, Touch, touch};
-use crate::number::Exact;
-use crate::number::MapInline;
+use crate::number::{Exact, MapInline};
 use std::fmt;
 
 /// The replay of one pixel.

@@ -13,8 +13,7 @@ use crate::method::single_pass::compositing::composites;
 use crate::method::single_pass::explain::{GroupsReplay, explain as explain_nearest};
 use crate::method::single_pass::geometry::Geometry;
 use crate::method::transparent::explain::{TransparentReplay, replay};
-use crate::number::Exact;
-use crate::number::MapInline;
+use crate::number::{Exact, MapInline};
 use crate::scene::Environment;
 use std::fmt;
 

@@ -8,8 +8,7 @@ pub(crate) use crate::method::single_pass;
 use crate::method::single_pass::compositing::Composite;
 use crate::method::surface::SurfacePixel;
 use crate::method::tiled::{Tiled, pixels};
-use crate::number::MapInline;
-use crate::number::{Exact, Vector3};
+use crate::number::{Exact, MapInline, Vector3};
 use crate::shade::phong::Shader;
 use crate::splat::View;
 

@@ -70,7 +70,6 @@
 //! that round by the toss of a coin. They also run variants of this ball that round too little,
 //! which the tests must catch.
 
-use crate::number::MapInline;
 mod angle;
 mod arithmetic;
 mod bounds;
@@ -90,6 +89,7 @@ pub use three::{PixelRange, Three};
 pub(crate) use totals::{Totals, TotalsLanes};
 
 use super::Real;
+use crate::number::MapInline;
 use arithmetic::is_exact;
 use std::fmt::Debug;
 

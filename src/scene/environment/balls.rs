@@ -1,9 +1,8 @@
 //! Light in balls: all values that a correct implementation may compute for a direction.
 
 use super::{Environment, Map, scaled, sky};
-use crate::number::MapInline;
 use crate::number::ball::Profile;
-use crate::number::{Ball, Real, Vector3};
+use crate::number::{Ball, MapInline, Real, Vector3};
 use std::f64::consts::PI;
 
 /// The most columns or rows over which a direction's possible places are followed.

@@ -17,8 +17,7 @@
 
 use crate::error::{Error, Result};
 use crate::frame::Plane;
-use crate::number::MapInline;
-use crate::number::{Exact, Real, Vector3};
+use crate::number::{Exact, MapInline, Real, Vector3};
 use crate::scene::camera::MAX_EXTENT;
 use crate::scene::light::MAX_RADIANCE;
 

@@ -4,8 +4,7 @@
 //! Decided, all of it: no paper prescribes a sky. It is smooth, uses only + - * /, and all of its
 //! constants are exact in `f32`.
 
-use crate::number::MapInline;
-use crate::number::{Real, Vector3};
+use crate::number::{MapInline, Real, Vector3};
 
 /// Linear RGB straight above.
 pub const ZENITH: [f32; 3] = [0.125, 0.25, 0.625];

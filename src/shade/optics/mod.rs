@@ -34,11 +34,11 @@
 //! that send what they absorb, `C_O` = 1 - (1 - alpha)^(l - 1). The surface sends 1, whatever the
 //! angle and the ratios.
 
-use crate::number::MapInline;
 #[cfg(test)]
 mod tests;
 
 use crate::error::{Error, Result};
+use crate::number::MapInline;
 use crate::number::{Exact, Real, Truth, Vector3};
 use crate::scene::Environment;
 use crate::setting::Words;

@@ -4,12 +4,11 @@
 //! definition becomes a choice between two results; only the powers differ, see [`Exact::powers`].
 
 use super::{Answer, Form, Shader, mirrored};
-use crate::number::MapInline;
 use crate::number::ball::{BallLanes, Common, Profile};
 use crate::number::lanes::{
     LANES, Lanes, any, components, load, mask, put_vector, transposed, vector, vectorized,
 };
-use crate::number::{Ball, Exact, Real, Vector3};
+use crate::number::{Ball, Exact, MapInline, Real, Vector3};
 
 /// One row of the picture.
 pub(super) struct ShadedRow<'a, R> {

@@ -46,12 +46,12 @@
 //!   up to 1.
 //! - As in the paper, n always turns towards the light: a light behind the tube lights it too.
 
-use crate::number::MapInline;
 mod lanes;
 #[cfg(test)]
 mod tests;
 
 use crate::frame::{Exec, Plane};
+use crate::number::MapInline;
 use crate::number::{Exact, Real, Truth, Vector3};
 use crate::scene::{Light, Phong};
 use crate::splat::View;

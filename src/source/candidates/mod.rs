@@ -80,7 +80,6 @@
 //! - Both sides of a triangle are seen, because meshes of leaves and of sheet metal are not closed.
 //! - Lines have no area and give no candidates; a scene of nothing but lines is refused.
 
-use crate::number::MapInline;
 mod painted;
 mod properties;
 
@@ -91,7 +90,7 @@ use crate::frame::raster::Snap;
 use crate::frame::{Exec, NO_ID};
 use crate::memory;
 use crate::method::projection::{Foremost, PixelSample, SHARES, VisibleTriangles};
-use crate::number::Vector3;
+use crate::number::{MapInline, Vector3};
 use crate::progress::Progress;
 use crate::scene::merge::join;
 use crate::scene::{Camera, Cloud, Lens, Primitives, Scene, Surfels};

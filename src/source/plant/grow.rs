@@ -3,8 +3,7 @@
 use super::Plant;
 use super::mesh::{Blade, Joint, Mesh};
 use crate::error::Result;
-use crate::number::MapInline;
-use crate::number::{elementary, random};
+use crate::number::{MapInline, elementary, random};
 use glam::DVec3;
 use std::f64::consts::TAU;
 

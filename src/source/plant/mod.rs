@@ -21,7 +21,6 @@
 //! # Ok::<(), splatref::Error>(())
 //! ```
 
-use crate::number::MapInline;
 mod grow;
 mod mesh;
 mod parts;
@@ -31,6 +30,7 @@ mod tests;
 mod tubes;
 
 use crate::error::{Error, Result};
+use crate::number::MapInline;
 use crate::scene::{Polylines, Primitives, Triangles, Vertices};
 use glam::{DVec3, Vec3};
 pub use ribbons::ribbons;

@@ -108,11 +108,11 @@
 //!       position = (low.x + (column + e(s)) dx, low.y + (row + f(s)) dy, z)
 //! ```
 
-use crate::number::MapInline;
 #[cfg(test)]
 mod rebuilt;
 
 use crate::error::Result;
+use crate::number::MapInline;
 use crate::number::random;
 use crate::scene::{Cloud, Surfels};
 use glam::DVec3;

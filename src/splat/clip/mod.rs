@@ -49,12 +49,12 @@
 //! A primitive gives nothing if a corner is not finite, or if a corner is so far away that a
 //! distance overflows where the primitive is cut.
 
-use crate::number::MapInline;
 #[cfg(test)]
 mod tests;
 
 use super::View;
 use crate::frame::raster::GUARD_BAND;
+use crate::number::MapInline;
 use crate::number::{Exact, Real, Truth, Vector3};
 
 /// The planes that clip triangles and segments for one view.

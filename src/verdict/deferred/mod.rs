@@ -84,7 +84,6 @@
 //!   picture in f64 that is rounded once in the end. The reason is that its stored planes are not
 //!   the input of its next stage.
 
-use crate::number::MapInline;
 mod client_planes;
 mod polygons;
 mod selection;
@@ -103,6 +102,7 @@ use crate::method::deferred::part::{Part, Whole};
 use crate::method::deferred::picture::whole;
 use crate::method::record::rows;
 use crate::method::tiled::Tiled;
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
 use crate::scene::Surfels;

@@ -8,9 +8,8 @@ use crate::composite::sum;
 use crate::frame::NO_ID;
 use crate::method::Job;
 use crate::method::ewa::attributes::Sums;
-use crate::number::MapInline;
 use crate::number::ball::Profile;
-use crate::number::{Ball, Real, Truth};
+use crate::number::{Ball, MapInline, Real, Truth};
 use crate::scene::Surfels;
 use crate::verdict::checks::{
     Report, Shading, Surface, anything, input, inputs, least_wrong, number, only_fitting, triple,

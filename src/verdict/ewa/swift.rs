@@ -12,9 +12,8 @@ use crate::method::ewa::Settings;
 use crate::method::ewa::possible::{self, PossibleSplat};
 use crate::method::fragment::each_pixel;
 use crate::method::prepare::Prepared;
-use crate::number::MapInline;
 use crate::number::ball::{Profile, Three};
-use crate::number::{Ball, Real, Truth};
+use crate::number::{Ball, MapInline, Real, Truth};
 use crate::splat::{Footprint, Shared, Splat};
 
 /// More than the rounding of the few operations that the bounds do not include.

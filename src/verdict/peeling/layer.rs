@@ -6,9 +6,8 @@ use crate::frame::NO_ID;
 use crate::method::Job;
 use crate::method::ewa::attributes::Sums;
 use crate::method::peeling::Settings;
-use crate::number::MapInline;
 use crate::number::ball::{Profile, Three};
-use crate::number::{Ball, Real, Truth};
+use crate::number::{Ball, MapInline, Real, Truth};
 use crate::scene::Surfels;
 use crate::verdict::checks::{
     Report, Shading, Surface, input, least_wrong, number, triple, whole, widened,

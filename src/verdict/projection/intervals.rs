@@ -3,9 +3,8 @@
 
 use crate::frame::Rect;
 use crate::frame::raster::Snap;
-use crate::number::MapInline;
 use crate::number::ball::Profile;
-use crate::number::{Ball, Real};
+use crate::number::{Ball, MapInline, Real};
 use crate::verdict::checks::anything;
 
 /// A bound on the rounding of a sum over three corners, as a fraction of the largest. No

@@ -34,7 +34,6 @@
 //! primitive with more ways to snap. Pixels with its id are judged only by rule 3 and by their
 //! kind. Without ids, every pixel that is neither empty nor a surfel counts as such a pixel.
 
-use crate::number::MapInline;
 mod candidate;
 mod claim;
 mod intervals;
@@ -52,7 +51,7 @@ use crate::method::Job;
 use crate::method::projection::{PixelSample, SceneProjector};
 use crate::method::tiled::Tiled;
 use crate::number::ball::{Profile, Three};
-use crate::number::{Ball, Real, Truth};
+use crate::number::{Ball, MapInline, Real, Truth};
 use crate::verdict::Doubt;
 use crate::verdict::marks::{Marks, StageMarks, Watch, counted};
 use candidate::{Candidate, Possible};

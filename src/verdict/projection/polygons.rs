@@ -21,9 +21,8 @@ use crate::method::projection::primitives::{
     Piece, PiecePixel, corners, triangle_piece, triangle_within,
 };
 use crate::method::projection::{PixelSample, SceneProjector};
-use crate::number::MapInline;
 use crate::number::ball::Profile;
-use crate::number::{Ball, Real, Vector3};
+use crate::number::{Ball, MapInline, Real, Vector3};
 use crate::scene::Scene;
 use crate::splat::clip::Clipped;
 use crate::verdict::checks::anything;

@@ -4,9 +4,8 @@ use super::planes::kind_of;
 use crate::frame::raster::{GUARD_BAND, Snap};
 use crate::method::projection::primitives::{Piece, corners, line_piece, triangle_piece};
 use crate::method::projection::{SampleKind, SceneProjector};
-use crate::number::MapInline;
 use crate::number::ball::Profile;
-use crate::number::{Ball, Real, Truth, Vector3};
+use crate::number::{Ball, MapInline, Real, Truth, Vector3};
 use crate::scene::indexed::Indexed;
 use crate::splat::clip::{Clipped, whole};
 

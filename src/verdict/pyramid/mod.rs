@@ -23,7 +23,6 @@
 //! A cell with more than 16 outcomes is not judged, and counts as undecided, like a cell with
 //! several outcomes. A cell is marked at its place in its own plane, whatever its level.
 
-use crate::number::MapInline;
 mod levels;
 mod pixel;
 mod planes;
@@ -37,6 +36,7 @@ use crate::method::Job;
 use crate::method::pyramid::{Cell, Settings};
 use crate::method::record::rows;
 use crate::method::stage::Keep;
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::verdict::checks::missing;
 use crate::verdict::client::Client;

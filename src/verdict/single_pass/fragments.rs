@@ -9,9 +9,8 @@ use crate::method::ewa::possible::{PossibleSplat, PossibleSplats, project};
 use crate::method::fragment::each_pixel;
 use crate::method::single_pass::Settings;
 use crate::method::single_pass::geometry::ratio;
-use crate::number::MapInline;
 use crate::number::ball::{Profile, Three};
-use crate::number::{Ball, Truth};
+use crate::number::{Ball, MapInline, Truth};
 use crate::scene::Groups;
 use crate::splat::{Shared, SplatSettings, View, fragment};
 

@@ -45,7 +45,6 @@
 //! A pixel is undecided if its sums have more than one continuation. The error of a number, and of
 //! a certificate that fails, is defined as in `ewa`.
 
-use crate::number::MapInline;
 mod client_planes;
 pub(crate) mod compositing;
 pub(crate) mod fragments;
@@ -61,6 +60,7 @@ use crate::method::record::rows;
 use crate::method::single_pass::Settings;
 use crate::method::single_pass::geometry::ImagePixel;
 use crate::number::Ball;
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::scene::Surfels;
 use crate::verdict::client::Client;

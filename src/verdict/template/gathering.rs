@@ -3,9 +3,8 @@
 use super::levels::Level;
 use crate::method::template::reconstruction::{CenterQuery, Gathered, each_query, weight};
 use crate::method::template::{Center, Falloff, Settings};
-use crate::number::MapInline;
 use crate::number::ball::Profile;
-use crate::number::{Ball, Real, Truth};
+use crate::number::{Ball, MapInline, Real, Truth};
 use crate::verdict::Doubt;
 use crate::verdict::outcomes::MOST;
 

@@ -22,7 +22,6 @@
 //! Values that are copied from stage to stage (ids, depth and radius of the front, a centre that
 //! moves alone) must be equal.
 
-use crate::number::MapInline;
 mod gathering;
 mod levels;
 mod pixel;
@@ -37,6 +36,7 @@ use crate::method::Job;
 use crate::method::record::rows;
 use crate::method::stage::Keep;
 use crate::method::template::{Center, Settings, propagation};
+use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::verdict::checks::missing;
 use crate::verdict::client::Client;

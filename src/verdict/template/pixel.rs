@@ -11,9 +11,8 @@ use crate::method::stage::{Conditions, Keep};
 use crate::method::template::Settings;
 use crate::method::template::normalization;
 use crate::method::template::reconstruction::Gathered;
-use crate::number::MapInline;
 use crate::number::ball::Profile;
-use crate::number::{Ball, Real};
+use crate::number::{Ball, MapInline, Real};
 use crate::splat::View;
 use crate::verdict::checks::{
     Report, Shading, Surface, anything, input, inputs, least_wrong, number, triple, widened,

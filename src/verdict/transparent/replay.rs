@@ -6,9 +6,8 @@ use crate::composite::over::Blend;
 use crate::frame::NO_ID;
 use crate::frame::stencil::{Outcome, Stencil};
 use crate::method::transparent::blending::GroupLayers;
-use crate::number::MapInline;
 use crate::number::ball::{Profile, Three};
-use crate::number::{Ball, Real, Truth};
+use crate::number::{Ball, MapInline, Real, Truth};
 use crate::verdict::Doubt;
 
 /// The most continuations that are followed.

@@ -34,7 +34,6 @@
 //! - A group of the other layers has several continuations, or is not judged.
 //! - Its colour is not judged.
 
-use crate::number::MapInline;
 mod picture;
 #[cfg(test)]
 mod tests;
@@ -47,6 +46,7 @@ use crate::method::record::rows;
 use crate::method::single_pass::geometry::ImagePixel;
 use crate::method::transparent_hq::Settings;
 use crate::method::transparent_hq::nearest::{BEHIND, FrontLayer, single_pass};
+use crate::number::MapInline;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real};
 use crate::verdict::checks::anything;

@@ -32,7 +32,6 @@
 //!
 //! [ANA+20]: https://doi.org/10.1145/3406183
 
-use crate::number::MapInline;
 mod color;
 mod filter;
 #[cfg(test)]
@@ -41,6 +40,7 @@ mod tests;
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Plane};
 use crate::memory;
+use crate::number::MapInline;
 use crate::number::elementary;
 use filter::{Eye, Feature, along_column, along_row};
 use std::ops::Range;

@@ -7,9 +7,8 @@
 
 use crate::frame::Exec;
 use crate::method::projection::surfels::PointProjector;
-use crate::number::MapInline;
 use crate::number::lanes::{LANES, Lanes, vectorized};
-use crate::number::{Real, Vector3};
+use crate::number::{MapInline, Real, Vector3};
 use crate::scene::Surfels;
 use crate::scene::camera::MAX_EXTENT;
 use crate::splat::{Fate, Tally};

@@ -24,7 +24,6 @@
 //! matrix. m is 16 plus the error that nodes may have, or plus the size of discs. `Decided:` 16
 //! pixels, more than the filter of a splat adds to the splat.
 
-use crate::number::MapInline;
 pub mod prefix;
 pub mod refine;
 pub mod sequential;
@@ -33,7 +32,7 @@ pub mod tree;
 use super::{Geometry, Objects};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
-use crate::number::Real;
+use crate::number::{MapInline, Real};
 use crate::scene::objects::Ids;
 use crate::scene::{Camera, Projection, Sides, Similarity};
 use glam::{DMat4, DVec3};
