@@ -37,7 +37,7 @@ pub(crate) fn outcomes<R: Real>(
         if (0..4).all(|j| !present[j] || !shown(j).certainly()) {
             add(&mut found, None);
         }
-        if !firsts.iter().all(|&j| is_tie(depths[j], depths[firsts[0]])) {
+        if !firsts.iter().skip(1).all(|&j| is_tie(depths[j], depths[firsts[0]])) {
             doubts |= Doubt::Nearer as u8;
         }
         for first in firsts {
