@@ -178,8 +178,10 @@ fn size(width: f64, height: f64) -> Reason<[u32; 2]> {
     let side =
         |v: f64| (v >= 1.0 && v <= f64::from(u32::MAX) && v.fract() == 0.0).then_some(v as u32);
     let sides = side(width).zip(side(height));
-    let (width, height) =
-        sides.ok_or("the picture's width and height must be whole numbers from 1 on")?;
+    // `{:?}` writes 1e300 where `{}` would write its 301 digits.
+    let (width, height) = sides.ok_or_else(|| {
+        format!("the picture is {width:?} x {height:?} pixels; both must be whole numbers from 1 on")
+    })?;
     crate::scene::Camera::check_size(width, height).map_err(|error| error.to_string())?;
     Ok([width, height])
 }
