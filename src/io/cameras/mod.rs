@@ -180,7 +180,9 @@ fn size(width: f64, height: f64) -> Reason<[u32; 2]> {
     let sides = side(width).zip(side(height));
     // `{:?}` writes 1e300 where `{}` would write its 301 digits.
     let (width, height) = sides.ok_or_else(|| {
-        format!("the picture is {width:?} x {height:?} pixels; both must be whole numbers from 1 on")
+        format!(
+            "the picture is {width:?} x {height:?} pixels; both must be whole numbers from 1 on"
+        )
     })?;
     crate::scene::Camera::check_size(width, height).map_err(|error| error.to_string())?;
     Ok([width, height])

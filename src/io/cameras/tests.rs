@@ -195,7 +195,11 @@ fn colmap_that_is_none_is_refused() {
             images(&format!("{pose} 1 c.png")),
             "cameras.txt: line 1: give CAMERA_ID",
         ),
-        ("1 PINHOLE 0 48 60 70 32 24\n".into(), images(&format!("{pose} 1 c.png")), "0.0 x 48.0 pixels"),
+        (
+            "1 PINHOLE 0 48 60 70 32 24\n".into(),
+            images(&format!("{pose} 1 c.png")),
+            "0.0 x 48.0 pixels",
+        ),
         (
             format!("{CAMERAS}1 PINHOLE 64 48 60 70 1 1\n"),
             images(&format!("{pose} 1 c.png")),
