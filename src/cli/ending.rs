@@ -11,6 +11,8 @@ pub(super) enum Ending {
     Different,
     /// No verdict is possible.
     Undecidable,
+    /// A picture is right, but unlike that of any right renderer that was tried.
+    Unlike,
 }
 
 /// The result of a command.

@@ -25,7 +25,7 @@ pub(super) struct Args {
     #[arg(long, value_name = "FILE")]
     client: Option<PathBuf>,
     /// Set the precision that the other renderer promises, as for verify
-    #[arg(long, value_name = "gpu|ieee", value_parser = verify::rounding, requires = "client")]
+    #[arg(long, value_name = "gpu|precise|ieee", value_parser = verify::rounding, requires = "client")]
     promise: Option<Rounding>,
     #[command(flatten)]
     exec: ExecOptions,

@@ -68,7 +68,8 @@ Examples:
   splatref verify bunny.ply gpu.exr            check what another renderer drew
   splatref explain bunny.ply 512 400           print how this pixel got its value
 
-Exit codes: 0 success, 1 different or failed, 2 wrong usage, 3 undecidable (verify, suite).";
+Exit codes: 0 success, 1 different or failed, 2 wrong usage; of verify and suite also 3 undecidable,
+4 right, but unlike any right renderer.";
 
 #[derive(Subcommand)]
 enum Command {
@@ -135,6 +136,7 @@ pub(crate) fn run() -> ExitCode {
         Ok(Ending::Good) => ExitCode::SUCCESS,
         Ok(Ending::Different) => ExitCode::FAILURE,
         Ok(Ending::Undecidable) => ExitCode::from(3),
+        Ok(Ending::Unlike) => ExitCode::from(4),
         Err(error) => {
             complain(&error);
             ExitCode::from(error.exit_code())

@@ -3,8 +3,9 @@
 use super::verify::report::{JsonShift, leaning};
 use super::{Ended, Ending, say};
 use serde::Deserialize;
-use splatref::verdict::Doubt;
+use splatref::setting::Word;
 use splatref::verdict::shift::{LIMITS, Shift, Shifts};
+use splatref::verdict::{Doubt, Outcome};
 use splatref::{Error, Result};
 use std::collections::BTreeMap;
 use std::fs::{self, File};
@@ -23,7 +24,7 @@ Examples:
   splatref suite a.json b.json
 
 Exit codes: 0 all right, 1 any wrong, or their decisions biased to one side, 2 wrong usage or
-no verdict, 3 any undecidable.")]
+no verdict, 3 any undecidable, 4 any unlike those of right renderers.")]
 pub(super) struct Args {
     /// Verdicts that `verify --json` wrote
     #[arg(required = true, value_name = "VERDICT.json")]
@@ -38,17 +39,17 @@ struct Verdict {
     shifts: Vec<JsonShift>,
 }
 
-/// The words of the outcomes and of the promises.
-const OUTCOMES: [&str; 3] = ["right", "wrong", "undecidable"];
-const PROMISES: [&str; 2] = ["ieee", "gpu"];
+/// The words of the promises.
+const PROMISES: [&str; 3] = ["ieee", "precise", "gpu"];
 
 impl Verdict {
     /// Checks the words, because one that is not known would count as nothing.
     fn check(&self) -> std::result::Result<(), String> {
         let limits = LIMITS.map(Doubt::name);
         let shifts = self.shifts.iter().map(|shift| ("shifts.limit", &shift.limit, &limits[..]));
+        let outcomes = Outcome::Right.words();
         let own =
-            [("outcome", &self.outcome, &OUTCOMES[..]), ("promise", &self.promise, &PROMISES[..])];
+            [("outcome", &self.outcome, &outcomes[..]), ("promise", &self.promise, &PROMISES[..])];
         for (key, word, known) in own.into_iter().chain(shifts) {
             if !known.contains(&word.as_str()) {
                 let known = known.join(", ");
@@ -101,6 +102,8 @@ pub(super) fn run(args: &Args) -> Ended {
         Ending::Different
     } else if any("undecidable") {
         Ending::Undecidable
+    } else if any("unlike") {
+        Ending::Unlike
     } else {
         Ending::Good
     })

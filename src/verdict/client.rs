@@ -21,13 +21,30 @@ pub enum Rounding {
     /// The rounding that shading languages publish, see [`Gpu`](crate::number::ball::Gpu).
     #[default]
     Gpu,
+    /// One rounding to nearest for each sum and product, and the device's own quotients, roots and
+    /// exponentials, see [`Precise`](crate::number::ball::Precise). Sums run in ascending surfel
+    /// index.
+    Precise,
     /// One rounding to nearest for each operation, see [`Ieee`](crate::number::ball::Ieee). Sums
     /// run in ascending surfel index.
     Ieee,
 }
 
 impl Words for Rounding {
-    const WORDS: &'static [(&'static str, Self)] = &[("gpu", Self::Gpu), ("ieee", Self::Ieee)];
+    const WORDS: &'static [(&'static str, Self)] =
+        &[("gpu", Self::Gpu), ("precise", Self::Precise), ("ieee", Self::Ieee)];
+}
+
+impl Rounding {
+    /// What is promised, in words.
+    #[must_use]
+    pub fn promise(self) -> &'static str {
+        match self {
+            Self::Gpu => "operations are as inexact as shading languages allow",
+            Self::Precise => "sums and products round once, to nearest, in the written order",
+            Self::Ieee => "each operation rounds once, to nearest",
+        }
+    }
 }
 
 /// The fragment that a client keeps, by its own word, among equally near fragments.
@@ -187,6 +204,12 @@ impl From<&Frame<f32>> for Client {
 }
 
 impl Client {
+    /// Whether every plane and every sum is an `f32` as it was computed.
+    pub(crate) fn stores_singles(&self) -> bool {
+        let all = self.storage.values().chain([&self.single, &self.accumulator]);
+        self.radii.is_empty() && all.into_iter().all(|storage| *storage == Storage::Single)
+    }
+
     /// Takes the planes of a frame, all stored as `f32`.
     #[must_use]
     pub fn new(frame: Frame<f64>) -> Self {

@@ -3,7 +3,9 @@
 use super::doubt::Doubt;
 use super::fault::Fault;
 use super::shift::Shifts;
+use super::unlike::Unlike;
 use crate::frame::Plane;
+use crate::setting::Words;
 use std::collections::BTreeMap;
 
 /// A wrong pixel.
@@ -143,11 +145,23 @@ impl StageVerdict {
 pub enum Outcome {
     /// A correct implementation may leave these planes.
     Right,
+    /// As `Right`, but the errors are larger, all together, than those of any correct
+    /// implementation that was tried: see [`Unlike`].
+    Unlike,
     /// No correct implementation leaves these planes.
     Wrong,
     /// Nothing is proved, because too many sums may be either way or have no bounds, or because no
     /// plane is judged.
     Undecidable,
+}
+
+impl Words for Outcome {
+    const WORDS: &'static [(&'static str, Self)] = &[
+        ("right", Self::Right),
+        ("unlike", Self::Unlike),
+        ("wrong", Self::Wrong),
+        ("undecidable", Self::Undecidable),
+    ];
 }
 
 /// The findings about a client.
@@ -167,6 +181,9 @@ pub struct Verdict {
     /// To which side the undecided decisions lean, for each limit, where the method takes account
     /// of them.
     pub shifts: Shifts,
+    /// The stages whose errors are larger, all together, than those of any correct implementation
+    /// that was tried.
+    pub unlike: Vec<Unlike>,
 }
 
 impl Verdict {
@@ -184,7 +201,7 @@ impl Verdict {
     ) -> Self {
         let unbounded = unbounded(&stages);
         let covered = covered.max(undecided).max(unbounded);
-        Self { stages, covered, undecided, unbounded, budget, shifts }
+        Self { stages, covered, undecided, unbounded, budget, shifts, unlike: Vec::new() }
     }
 
     /// The same verdict with a stage before the others.
@@ -211,10 +228,12 @@ impl Verdict {
     pub fn outcome(&self) -> Outcome {
         if self.first_wrong().is_some() {
             Outcome::Wrong
-        } else if self.judges() && self.within(self.undecided) && self.within(self.unbounded) {
-            Outcome::Right
-        } else {
+        } else if !(self.judges() && self.within(self.undecided) && self.within(self.unbounded)) {
             Outcome::Undecidable
+        } else if !self.unlike.is_empty() {
+            Outcome::Unlike
+        } else {
+            Outcome::Right
         }
     }
 

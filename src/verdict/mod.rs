@@ -15,6 +15,7 @@
 //!   [`io::client`](crate::io::client).
 //! - [`Verdict`]: the findings, with a [`Fault`] for each wrong pixel.
 //! - [`causes`]: known mistakes, and which of them a client makes.
+//! - [`Unlike`]: whether the errors are those of a correct renderer, all together.
 //! - [`shift`]: whether the undecided decisions lean to one side, over a suite of scenes.
 //!
 //! If you do not need a verdict: [`crate::compare`] compares planes with planes, and
@@ -44,8 +45,10 @@ pub mod template;
 mod tests;
 pub mod transparent;
 pub mod transparent_hq;
+mod unlike;
 
 pub use doubt::Doubt;
 pub use fault::{Check, Fault};
 pub(crate) use findings::Cause;
 pub use findings::{Causes, Finding, Outcome, StageVerdict, Verdict};
+pub use unlike::Unlike;

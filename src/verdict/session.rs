@@ -1,12 +1,12 @@
 //! Verify the pictures of a session.
 
 use super::client::{Client, Rounding};
-use super::table;
 use super::{Check, Verdict};
+use super::{table, unlike};
 use crate::error::{Error, Result};
 use crate::method::session::{Making, Names, named};
 use crate::method::{Method, Session};
-use crate::number::ball::{Gpu, Ieee};
+use crate::number::ball::{Gpu, Ieee, Precise};
 use crate::scene::Camera;
 use std::borrow::Cow;
 
@@ -36,10 +36,12 @@ impl Session<'_> {
         self.ask(camera, Making::Verdict)?;
         let names = self.numbers();
         let client = &*numbered(names.as_ref(), self.method(), client)?;
-        let verdict = match client.rounding {
+        let mut verdict = match client.rounding {
             Rounding::Gpu => table::verify::<Gpu>(method, &job, client, budget),
+            Rounding::Precise => table::verify::<Precise>(method, &job, client, budget),
             Rounding::Ieee => table::verify::<Ieee>(method, &job, client, budget),
         }?;
+        verdict.unlike = unlike::found(client, &verdict.stages);
         Ok(verdict.renumbered(|index| named(names.as_ref(), index)))
     }
 
@@ -61,6 +63,7 @@ impl Session<'_> {
         let client = &*numbered(names.as_ref(), self.method(), client)?;
         let mut checks = match client.rounding {
             Rounding::Gpu => table::checks::<Gpu>(self.method(), &job, client, pixel),
+            Rounding::Precise => table::checks::<Precise>(self.method(), &job, client, pixel),
             Rounding::Ieee => table::checks::<Ieee>(self.method(), &job, client, pixel),
         }?;
         let name = |index| named(names.as_ref(), index);

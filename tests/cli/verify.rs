@@ -26,7 +26,7 @@ fn verified(at: &TempDir, client: &str, rest: &[&str]) -> (i32, String) {
 #[test]
 fn what_render_writes_is_right() {
     let at = pictures();
-    for promise in ["gpu", "ieee"] {
+    for promise in ["gpu", "precise", "ieee"] {
         for client in ["mine.exr", "plain.exr"] {
             let (code, said) = verified(&at, client, &["--promise", promise]);
             assert_eq!(code, 0, "{said}");
@@ -119,9 +119,13 @@ fn a_suite_knows_every_word_of_its_verdicts() {
     let right = fs::read_to_string(at.path().join("right.json")).unwrap();
     let right: serde_json::Value = serde_json::from_str(&right).unwrap();
     for (place, value, said) in [
-        ("/outcome", "wrnog".into(), "outcome is \"wrnog\", but can be right, wrong, undecidable"),
+        (
+            "/outcome",
+            "wrnog".into(),
+            "outcome is \"wrnog\", but can be right, unlike, wrong, undecidable",
+        ),
         ("/outcome", serde_json::Value::Null, "not a verdict"),
-        ("/promise", "GPU".into(), "promise is \"GPU\", but can be ieee, gpu"),
+        ("/promise", "GPU".into(), "promise is \"GPU\", but can be ieee, precise, gpu"),
         ("/shifts/1/limit", "side".into(), "shifts.limit is \"side\", but can be cut-off, epsilon"),
         ("/shifts/0/variance", (-1).into(), "the numbers of the limit cut-off are impossible"),
     ] {

@@ -1,5 +1,5 @@
 //! No verdict accuses the crate: every method with every setting at other values, in several scenes,
-//! computed in f32 and in f64, under both promises. The settings come from their rows, so that a new
+//! computed in f32 and in f64, under every promise. The settings come from their rows, so that a new
 //! setting is tried too.
 
 use splatref::frame::Exec;
@@ -116,14 +116,16 @@ fn accusations(session: &Session<'_>, camera: &Camera) -> Option<Vec<String>> {
     let double = session.define::<f64>(camera, true).unwrap().frame.to_f32();
     let clients = [("f32", Client::from(&single)), ("f64", Client::from(&double).rounded())];
     for (number, mut client) in clients {
-        for rounding in [Rounding::Gpu, Rounding::Ieee] {
+        for rounding in [Rounding::Gpu, Rounding::Precise, Rounding::Ieee] {
             client.rounding = rounding;
             let verdict = session.verify(camera, &client, Verdict::BUDGET).unwrap();
             let wrong = verdict.first_wrong().map(|stage| {
                 let fault = stage.worst.as_ref().map(|worst| worst.fault.to_string());
                 format!("{} pixels of {}: {}", stage.wrong, stage.stage, fault.unwrap_or_default())
             });
-            found.extend(wrong.map(|wrong| format!("{number} {rounding:?}: {wrong}")));
+            let unlike = verdict.unlike.iter().map(ToString::to_string);
+            let said = wrong.into_iter().chain(unlike);
+            found.extend(said.map(|said| format!("{number} {rounding:?}: {said}")));
             if verdict.outcome() == Outcome::Undecidable && rounding == Rounding::Ieee {
                 println!("{number} {rounding:?} is undecidable: {}", verdict.undecided);
             }

@@ -2,12 +2,12 @@
 
 use crate::verify::cases::{Case, cases};
 use crate::verify::client::{Bug, Habit, How, records, render};
-use splatref::frame::Exec;
+use splatref::frame::{Exec, Samples};
 use splatref::method::{Method, Session};
 use splatref::splat::Epsilon;
-use splatref::verdict::Verdict;
 use splatref::verdict::causes::likely_cause;
 use splatref::verdict::client::{Client, Rounding, Ties};
+use splatref::verdict::{Outcome, Verdict};
 
 /// What is said of a client's picture of a case, however much of it is undecided.
 fn judge(case: &Case, how: How, rounding: Rounding) -> Verdict {
@@ -32,21 +32,11 @@ fn judge_with(
     session.verify(camera, &client, 1.0).unwrap()
 }
 
-/// What a client with a habit may promise.
-fn promises(habit: Habit) -> &'static [Rounding] {
-    match habit {
-        Habit::Plain | Habit::Fused | Habit::WideQuads | Habit::ClampHighFirst => {
-            &[Rounding::Ieee, Rounding::Gpu]
-        }
-        _ => &[Rounding::Gpu],
-    }
-}
-
 #[test]
 fn no_lawful_habit_is_called_wrong() {
     for (name, case) in cases() {
         for &habit in Habit::ALL {
-            for &promise in promises(habit) {
+            for &promise in habit.promises() {
                 let verdict = judge(&case, How { habit, bug: None }, promise);
                 let wrong = verdict.first_wrong().map(|stage| (stage.stage, &stage.worst));
                 assert_eq!(wrong, None, "{name}, {}, {promise:?}", habit.name());
@@ -241,4 +231,26 @@ fn known_mistakes_are_named() {
         println!("{}: {right} of {}: {said:?}", bug.name(), said.len());
         assert!(right > 0 && 2 * right > said.len(), "{}: {said:?}", bug.name());
     }
+}
+
+/// Colours that are all too large by the same fraction leave no interval, but no rounding leaves
+/// them.
+#[test]
+fn errors_to_one_side_are_unlike_those_of_a_right_renderer() {
+    let (_, (scene, camera, settings)) = cases().swap_remove(0);
+    let exec = Exec::sequential();
+    let session = Session::new(&scene, Method::Ewa(settings), &exec).unwrap();
+    let right = render(&scene, &camera, &settings, How::default());
+    let outcome = |factor: f32| {
+        let mut frame = right.clone();
+        frame.planes.retain(|plane| plane.name.is_empty());
+        if let Samples::Color(plane) = &mut frame.planes[0].samples {
+            plane.values_mut().iter_mut().flatten().for_each(|part| *part *= factor);
+        }
+        session.verify(&camera, &Client::from(&frame), 1.0).unwrap().outcome()
+    };
+    let outcomes: Vec<Outcome> = (0..12).map(|k| outcome(1.0 + 3e-6 * 2.0_f32.powi(k))).collect();
+    assert_eq!(outcomes[0], Outcome::Right, "{outcomes:?}");
+    assert!(outcomes.contains(&Outcome::Unlike), "{outcomes:?}");
+    assert_eq!(outcomes[11], Outcome::Wrong, "{outcomes:?}");
 }

@@ -12,7 +12,7 @@ use splatref::io::replace::Pending;
 use splatref::io::scene_file::{FileKind, Number, OutputSettings, SceneFile};
 use splatref::method::Session;
 use splatref::scene::Camera;
-use splatref::setting::Word;
+use splatref::setting::Words;
 use splatref::verdict::causes::likely_cause;
 use splatref::verdict::client::{Client, Rounding};
 use splatref::verdict::{Outcome, Verdict};
@@ -36,7 +36,8 @@ Examples:
 The documentation of splatref::io::client describes the TOML file.
 
 Exit codes: 0 right, 1 wrong, 2 could not be judged, 3 undecidable: no plane was judged, or too many
-sums are undecided.")]
+sums are undecided, 4 right in each pixel, but the errors together are unlike those of any right
+renderer that was tried; with --strict that is 1.")]
 pub(super) struct Args {
     /// The scene, as for render
     scene: PathBuf,
@@ -45,13 +46,17 @@ pub(super) struct Args {
     /// Take a plane from channels of another name, such as RGB=ViewLayer.Combined; repeatable
     #[arg(long, value_name = "PLANE=CHANNEL", value_parser = super::compare::channels)]
     channels: Vec<(String, String)>,
-    /// Set how precise the client's operations are: gpu, as shading languages guarantee; ieee, each
-    /// rounds once, to nearest [default: from the .toml, else gpu]
-    #[arg(long, value_name = "gpu|ieee", value_parser = rounding)]
+    /// Set how precise the client's operations are: gpu, as shading languages guarantee; precise,
+    /// sums and products round once, in the written order; ieee, each operation rounds once
+    /// [default: from the .toml, else gpu]
+    #[arg(long, value_name = "gpu|precise|ieee", value_parser = rounding)]
     promise: Option<Rounding>,
     /// Report "undecidable" if more than this fraction of the pixels has undecided sums
     #[arg(long, value_name = "X", default_value_t = Verdict::BUDGET, value_parser = share)]
     budget: f64,
+    /// Exit with 1 also if the picture is right, but unlike that of any right renderer
+    #[arg(long)]
+    strict: bool,
     /// Write, for each stage, the errors in bounds and the mask of undecided pixels
     #[arg(short, long, value_name = "FILE.exr")]
     output: Option<PathBuf>,
@@ -94,6 +99,8 @@ fn judge(args: &Args) -> Ended {
     seen.lines(args, &client).iter().for_each(say);
     Ok(match verdict.outcome() {
         Outcome::Right => Ending::Good,
+        Outcome::Unlike if args.strict => Ending::Different,
+        Outcome::Unlike => Ending::Unlike,
         Outcome::Wrong => Ending::Different,
         Outcome::Undecidable => Ending::Undecidable,
     })
@@ -170,8 +177,7 @@ fn errors(camera: &Camera, verdict: &Verdict) -> Result<Frame<f32>> {
 
 /// Parses the word of a promise.
 pub(super) fn rounding(text: &str) -> std::result::Result<Rounding, String> {
-    let mut rounding = Rounding::default();
-    if rounding.choose(text) { Ok(rounding) } else { Err("give gpu or ieee".into()) }
+    Rounding::named(text).ok_or_else(|| "give gpu, precise or ieee".into())
 }
 
 /// Parses a fraction of pixels.
@@ -186,7 +192,7 @@ impl Args {
         let mut words = vec!["splatref explain".to_owned(), quoted(self.scene.as_os_str())];
         words.extend([x.to_string(), y.to_string()]);
         words.extend(["--client".to_owned(), quoted(self.client.as_os_str())]);
-        let own = ["-o", "--output", "--json", "--budget"];
+        let own = ["-o", "--output", "--json", "--budget", "--strict"];
         let mut paths = vec![self.scene.as_os_str(), self.client.as_os_str()];
         let mut given = std::env::args_os().skip(1).skip_while(|word| word != "verify").skip(1);
         while let Some(word) = given.next() {

@@ -6,9 +6,10 @@ use serde::{Deserialize, Serialize};
 use splatref::Result;
 use splatref::method::Session;
 use splatref::scene::Camera;
-use splatref::verdict::client::{Client, Rounding};
+use splatref::setting::Word;
+use splatref::verdict::client::Client;
 use splatref::verdict::shift::{LIMITS, Shift};
-use splatref::verdict::{Doubt, Fault, Finding, Outcome, StageVerdict, Verdict};
+use splatref::verdict::{Doubt, Fault, Finding, Outcome, StageVerdict, Unlike, Verdict};
 
 /// A verdict, with what its report shows beside it.
 pub(super) struct Seen<'a> {
@@ -39,10 +40,7 @@ impl<'a> Seen<'a> {
     pub(super) fn lines(&self, args: &Args, client: &Client) -> Vec<String> {
         let Self { verdict, method, likely, heaviest } = self;
         let mut lines = vec![labelled("client", planes(client, method))];
-        let promise = match client.rounding {
-            Rounding::Gpu => "gpu, operations are as inexact as shading languages allow",
-            Rounding::Ieee => "ieee, each operation rounds once, to nearest",
-        };
+        let promise = format!("{}, {}", client.rounding.word(), client.rounding.promise());
         lines.push(labelled("promise", promise));
         lines.extend(verdict.stages.iter().map(|stage| labelled(stage.stage, judged(stage))));
         if let Some((stage, worst)) =
@@ -68,6 +66,7 @@ impl<'a> Seen<'a> {
         } else if let Some(next) = next(verdict) {
             lines.push(labelled("sharper", next));
         }
+        lines.extend(verdict.unlike.iter().map(|unlike| labelled("unlike", unlike)));
         let shifts = LIMITS.into_iter().zip(&verdict.shifts);
         let visible = shifts.filter(|(_, shift)| shift.z().abs() >= Shift::REMARK);
         lines.extend(visible.map(|(limit, shift)| labelled("shift", leaning(limit, shift))));
@@ -82,6 +81,10 @@ impl<'a> Seen<'a> {
         match self.verdict.outcome() {
             Outcome::Right => {
                 format!("right: of {covered} covered pixels {undecided} have undecided sums")
+            }
+            Outcome::Unlike => {
+                "unlike: right in each pixel, but no right renderer that was tried has such errors"
+                    .into()
             }
             Outcome::Wrong => {
                 "wrong: no implementation that keeps the promise can produce this".into()
@@ -103,16 +106,9 @@ impl<'a> Seen<'a> {
     pub(super) fn json(&self, client: &Client) -> Result<String> {
         let Self { verdict, method, likely, heaviest } = self;
         let json = Json {
-            outcome: match verdict.outcome() {
-                Outcome::Right => "right",
-                Outcome::Wrong => "wrong",
-                Outcome::Undecidable => "undecidable",
-            },
+            outcome: verdict.outcome().word(),
             method,
-            promise: match client.rounding {
-                Rounding::Gpu => "gpu",
-                Rounding::Ieee => "ieee",
-            },
+            promise: client.rounding.word(),
             covered: verdict.covered,
             undecided: verdict.undecided,
             budget: verdict.budget,
@@ -120,6 +116,7 @@ impl<'a> Seen<'a> {
             looks_like: likely.as_deref(),
             heaviest: heaviest.clone(),
             stages: verdict.stages.iter().map(JsonStage::new).collect(),
+            unlike: verdict.unlike.iter().map(JsonUnlike::new).collect(),
             shifts: LIMITS.iter().zip(&verdict.shifts).map(JsonShift::new).collect(),
         };
         let text = serde_json::to_string_pretty(&json);
@@ -215,6 +212,7 @@ struct Json<'a> {
     looks_like: Option<&'a str>,
     heaviest: Vec<(u32, f64)>,
     stages: Vec<JsonStage<'a>>,
+    unlike: Vec<JsonUnlike>,
     shifts: Vec<JsonShift>,
 }
 
@@ -249,6 +247,22 @@ impl JsonShift {
     pub(in crate::cli) fn shift(&self) -> Shift {
         let Self { decisions, score, information, variance, .. } = *self;
         Shift { decisions, score, information, variance }
+    }
+}
+
+/// A stage whose errors are unlike those of right renderers.
+#[derive(Serialize)]
+struct JsonUnlike {
+    stage: &'static str,
+    quantile: f64,
+    error: f64,
+    usual: f64,
+}
+
+impl JsonUnlike {
+    fn new(unlike: &Unlike) -> Self {
+        let Unlike { stage, quantile, error, usual } = *unlike;
+        Self { stage, quantile, error, usual }
     }
 }
 

@@ -15,7 +15,7 @@
 //! | key | values, the default first | meaning |
 //! |---|---|---|
 //! | `file` | a path | an EXR whose channels are planes by the crate's names; a plane without its own `file` is looked for in this EXR |
-//! | `profile` | `"gpu"`, `"ieee"` | the precision that the client's arithmetic promises, [`Client::rounding`] |
+//! | `profile` | `"gpu"`, `"precise"`, `"ieee"` | the precision that the client's arithmetic promises, [`Client::rounding`] |
 //! | `accumulator` | `"f32"`, `"f16"` | how the client stores sums between two additions, [`Client::accumulator`] |
 //! | `ties` | `"lowest"`, `"last"`, `"any"` | which of several equally near fragments wins, [`Client::ties`] |
 //! | `origin` | `"top-left"`, `"bottom-left"` | whether rows run down or up, in all files; only the order of rows changes, not row numbers stored in a plane, nor vectors |

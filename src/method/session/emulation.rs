@@ -6,8 +6,9 @@ use crate::error::Result;
 use crate::frame::{Frame, NamedPlane};
 use crate::method::Job;
 use crate::method::buffer_formats::{DepthKey, DepthRange, Formats};
-use crate::method::stage::When;
+use crate::method::stage::{Stage, When};
 use crate::method::{Method, Picture};
+use crate::number::Exact;
 use crate::scene::Camera;
 
 impl Session<'_> {
@@ -76,21 +77,48 @@ impl Session<'_> {
         frame: &mut Frame<f32>,
     ) -> Result<()> {
         let (job, range) = self.storing(camera, formats)?;
-        self.ask(camera, Making::Define { number: 4, stages: true })?;
-        for stage in self.method.stages().iter().filter(|stage| !stage.leaves.is_empty()) {
-            let levels = self.method.levels(&job, stage.name);
-            let parts =
-                // A pyramid stores level after level, because a level reads the rounded level
-                // before it.
-                if levels.is_empty() { vec![None] } else { levels.into_iter().map(Some).collect() };
-            for level in parts {
-                let mut left = self.run(&Job { level, ..job }, stage.name, frame)?;
-                formats.store(stage, &mut left, &range);
-                frame.put(left);
-            }
-        }
+        self.run_all(&job, frame, |stage, left| formats.store(stage, left, &range))?;
         if !stages {
             frame.planes.retain(|plane| self.is_shown(plane));
+        }
+        Ok(())
+    }
+
+    /// Runs stage after stage in any number, each on the planes that the stages before have left,
+    /// and returns the planes of all stages. `store` may change the planes that a stage leaves
+    /// before the next stage reads them, as storing them in a buffer does. A pyramid is stored level
+    /// after level.
+    ///
+    /// # Errors
+    /// As [`Session::define`].
+    pub fn run_stages<R: Exact>(
+        &self,
+        camera: &Camera,
+        mut store: impl FnMut(&Stage, &mut Frame<R>),
+    ) -> Result<Frame<R>> {
+        let mut frame = Frame { width: camera.width, height: camera.height, planes: Vec::new() };
+        self.run_all(&self.job(camera)?, &mut frame, |stage, left| store(stage, left))?;
+        Ok(frame)
+    }
+
+    /// Runs the stages of a job, and puts the planes of each into the frame.
+    fn run_all<R: Exact>(
+        &self,
+        job: &Job<'_>,
+        frame: &mut Frame<R>,
+        mut store: impl FnMut(&Stage, &mut Frame<R>),
+    ) -> Result<()> {
+        self.ask(job.camera, Making::Define { number: 4, stages: true })?;
+        for stage in self.method.stages().iter().filter(|stage| !stage.leaves.is_empty()) {
+            let levels = self.method.levels(job, stage.name);
+            let parts =
+                // A level reads the level before it as it is stored.
+                if levels.is_empty() { vec![None] } else { levels.into_iter().map(Some).collect() };
+            for level in parts {
+                let mut left = self.run(&Job { level, ..*job }, stage.name, frame)?;
+                store(stage, &mut left);
+                frame.put(left);
+            }
         }
         Ok(())
     }

@@ -22,7 +22,7 @@ impl<P: Profile> Ball<P> {
             return Self::unbounded(middle, true);
         }
         let spread = if reach < distance / 2.0 { reach / (distance - reach) } else { TAU };
-        let units = if P::ROUNDS_TO_NEAREST { 1.0 } else { 8192.0 };
+        let units = if P::ROUNDS_ALL_TO_NEAREST { 1.0 } else { 8192.0 };
         Self::rounded(middle, spread, units, P::TINY)
     }
 }

@@ -11,10 +11,11 @@ use std::ops::{Add, Div, Mul, Neg, Sub};
 /// Whether an operation on exact operands has exactly this result.
 ///
 /// The result in `f64` is within 2^-53 of the exact result. So if the `f64` result is an `f32`, the
-/// exact result rounds to it.
+/// exact result rounds to it, unless it may be flushed to 0.
 #[inline(always)]
-pub(super) fn is_exact<P: Profile>(result: f64, radii: f64) -> bool {
-    P::ROUNDS_TO_NEAREST && radii == 0.0 && f64::from(result as f32) == result
+pub(super) fn is_exact<P: Profile>(rounds_to_nearest: bool, result: f64, radii: f64) -> bool {
+    let kept = !P::FLUSHES | (result == 0.0) | (result.abs() >= f64::from(f32::MIN_POSITIVE));
+    rounds_to_nearest & kept & (radii == 0.0) & (f64::from(result as f32) == result)
 }
 
 impl<P: Profile> Add for Ball<P> {
@@ -25,7 +26,7 @@ impl<P: Profile> Add for Ball<P> {
             return common::sum(self, other);
         }
         let (middle, spread) = (self.middle + other.middle, self.radius + other.radius);
-        if is_exact::<P>(middle, spread) {
+        if is_exact::<P>(P::ROUNDS_TO_NEAREST, middle, spread) {
             return Self::exact(middle);
         }
         let sum = P::sum(middle, [&self, &other]);
@@ -69,7 +70,7 @@ impl<P: Profile> Mul for Ball<P> {
         }
         let (m, n, r, s) = (self.middle, other.middle, self.radius, other.radius);
         let middle = m * n;
-        if is_exact::<P>(middle, r + s) {
+        if is_exact::<P>(P::ROUNDS_TO_NEAREST, middle, r + s) {
             return Self::exact(middle);
         }
         let spread = m.abs() * s + n.abs() * r + r * s;
@@ -111,7 +112,7 @@ impl<P: Profile> Div for Ball<P> {
 fn quotient<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
     let (m, n, r, s) = (a.middle, b.middle, a.radius, b.radius);
     let middle = m / n;
-    if is_exact::<P>(middle, r + s) {
+    if is_exact::<P>(P::ROUNDS_ALL_TO_NEAREST, middle, r + s) {
         return Ball::exact(middle);
     }
     let spread = (m.abs() * s + n.abs() * r) / (n.abs() * (n.abs() - s));
@@ -152,7 +153,7 @@ impl<P: Profile> Neg for Ball<P> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Gpu, Ieee};
+    use super::super::{Gpu, Ieee, Precise};
     use super::*;
 
     /// Balls of common and of odd numbers.
@@ -175,16 +176,16 @@ mod tests {
         for a in balls::<P>() {
             for b in balls::<P>() {
                 let spread = a.radius + b.radius;
-                let or_exact = |middle: f64, rare: Ball<P>| {
-                    bits(if is_exact::<P>(middle, spread) { Ball::exact(middle) } else { rare })
+                let [one, all] = [P::ROUNDS_TO_NEAREST, P::ROUNDS_ALL_TO_NEAREST];
+                let or_exact = |rounds: bool, rare: Ball<P>| {
+                    let exact = is_exact::<P>(rounds, rare.middle, spread);
+                    bits(if exact { Ball::exact(rare.middle) } else { rare })
                 };
-                let (product, quotient) = (rare_product(a, b), rare_quotient(a, b));
-                assert_eq!(bits(a * b), or_exact(product.middle, product), "{a:?} times {b:?}");
-                assert_eq!(bits(a / b), or_exact(quotient.middle, quotient), "{a:?} by {b:?}");
+                assert_eq!(bits(a * b), or_exact(one, rare_product(a, b)), "{a:?} times {b:?}");
+                assert_eq!(bits(a / b), or_exact(all, rare_quotient(a, b)), "{a:?} by {b:?}");
                 let bounded = a.is_bounded() & b.is_bounded();
                 if !bounded {
-                    let sum = rare_sum(a, b);
-                    assert_eq!(bits(a + b), or_exact(sum.middle, sum), "{a:?} plus {b:?}");
+                    assert_eq!(bits(a + b), or_exact(one, rare_sum(a, b)), "{a:?} plus {b:?}");
                 }
             }
         }
@@ -193,6 +194,7 @@ mod tests {
     #[test]
     fn the_common_case_and_the_rare_ones_agree() {
         compare::<Ieee>();
+        compare::<Precise>();
         compare::<Gpu>();
     }
 

@@ -1,13 +1,8 @@
 //! The operations of [`Common`](super::Common) balls. They have no branch, and they choose each
 //! part of a result separately, because a choice between whole balls does not vectorize.
 
+use super::arithmetic::is_exact;
 use super::{Ball, Profile, Three};
-
-/// Whether an operation on exact operands has exactly this result, as for every other ball.
-#[inline(always)]
-fn is_exact<P: Profile>(result: f64, radii: f64) -> bool {
-    P::ROUNDS_TO_NEAREST & (radii == 0.0) & (f64::from(result as f32) == result)
-}
 
 /// Builds a result: exact, or with this radius if the result is common, else unknown.
 #[inline(always)]
@@ -22,7 +17,7 @@ fn result<P: Profile>(middle: f64, radius: f64, exact: bool, common: bool) -> Ba
 pub(super) fn sum<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
     let (middle, spread) = (a.middle + b.middle, a.radius + b.radius);
     let sum = P::sum(middle, [&a, &b]);
-    let exact = is_exact::<P>(middle, spread);
+    let exact = is_exact::<P>(P::ROUNDS_TO_NEAREST, middle, spread);
     let common = spread.is_finite();
     Ball { terms: sum.terms, ..result(middle, sum.radius, exact, common) }
 }
@@ -34,7 +29,7 @@ pub(super) fn product<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
     let spread = m.abs() * s + n.abs() * r + r * s;
     // 0 times a bounded ball; a NaN radius is not bounded.
     let zero = (a.is_zero() | b.is_zero()) & (spread == 0.0);
-    let exact = is_exact::<P>(middle, r + s) | zero;
+    let exact = is_exact::<P>(P::ROUNDS_TO_NEAREST, middle, r + s) | zero;
     result(middle, Ball::<P>::reach(middle, spread, P::PRODUCT, P::TINY), exact, true)
 }
 
@@ -46,7 +41,7 @@ pub(super) fn quotient<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
     let divides = !b.may_be_zero() & (n.abs() + s <= P::LARGEST_DIVISOR);
     // 0 divided by a bounded ball.
     let zero = divides & a.is_zero() & n.is_finite();
-    let exact = is_exact::<P>(middle, r + s) | zero;
+    let exact = is_exact::<P>(P::ROUNDS_ALL_TO_NEAREST, middle, r + s) | zero;
     let radius = Ball::<P>::reach(middle, spread, P::QUOTIENT, P::TINY);
     result(middle, radius, exact, divides)
 }
@@ -56,7 +51,7 @@ pub(super) fn quotient<P: Profile>(a: Ball<P>, b: Ball<P>) -> Ball<P> {
 pub(super) fn root<P: Profile>(x: Ball<P>) -> Ball<P> {
     let (middle, low) = (x.middle.sqrt(), x.low());
     let spread = x.radius / (middle + low.sqrt());
-    let exact = is_exact::<P>(middle, x.radius) | x.is_zero();
+    let exact = is_exact::<P>(P::ROUNDS_ALL_TO_NEAREST, middle, x.radius) | x.is_zero();
     result(middle, Ball::<P>::reach(middle, spread, P::ROOT, 0.0), exact, low >= 0.0)
 }
 
@@ -94,7 +89,7 @@ pub(super) fn at_least<P: Profile>(x: Ball<P>, low: Ball<P>) -> Ball<P> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Common, Gpu, Ieee};
+    use super::super::{Common, Gpu, Ieee, Precise};
     use super::*;
     use crate::number::Real;
 
@@ -148,6 +143,7 @@ mod tests {
     #[test]
     fn what_is_known_is_the_plain_ball() {
         compare::<Ieee>();
+        compare::<Precise>();
         compare::<Gpu>();
     }
 }

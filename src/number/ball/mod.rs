@@ -49,8 +49,8 @@
 //! r. A radius is therefore defined to about 2^-39 of itself, not to the bit; a midpoint is defined
 //! to the bit.
 //!
-//! - **Exact operations.** The radius is 0 where operations round to nearest, both radii are 0 and
-//!   the midpoint of the result is an `f32`. An infinity is an `f32`, so 1 / 0 of exact numbers is
+//! - **Exact operations.** The radius is 0 where the operation rounds to nearest, both radii are 0
+//!   and the midpoint of the result is an `f32` that is not flushed to 0. An infinity is an `f32`, so 1 / 0 of exact numbers is
 //!   exactly +inf, and so is a bounded ball plus +inf. 0 times a bounded ball is exactly 0, and so
 //!   is 0 divided by a ball that cannot be 0.
 //! - **Unbounded.** A radius of +inf stands for any number or infinity, and a radius of NaN
@@ -78,13 +78,13 @@ mod lanes;
 mod powers;
 mod profile;
 #[cfg(test)]
-mod tests;
+pub(crate) mod tests;
 mod three;
 mod totals;
 
 pub(crate) use lanes::BallLanes;
 pub(crate) use profile::Common;
-pub use profile::{Gpu, Ieee, Profile, SumTerms};
+pub use profile::{Gpu, Ieee, Precise, Profile, SumTerms};
 pub use three::{PixelRange, Three};
 pub(crate) use totals::{Totals, TotalsLanes};
 
@@ -321,7 +321,7 @@ impl<P: Profile> Real for Ball<P> {
     #[inline(always)]
     fn exp(self) -> Self {
         let middle = Real::exp(self.middle);
-        if is_exact::<P>(middle, self.radius) {
+        if is_exact::<P>(P::ROUNDS_ALL_TO_NEAREST, middle, self.radius) {
             return Self::exact(middle);
         }
         let spread = powers::exponential(middle, self.radius * SLACK, self.high());
@@ -333,7 +333,7 @@ impl<P: Profile> Real for Ball<P> {
     #[inline]
     fn pow(self, exponent: Self) -> Self {
         let middle = self.middle.pow(exponent.middle);
-        if is_exact::<P>(middle, self.radius + exponent.radius) {
+        if is_exact::<P>(P::ROUNDS_ALL_TO_NEAREST, middle, self.radius + exponent.radius) {
             return Self::exact(middle);
         }
         if exponent.radius > 0.0 {
@@ -407,7 +407,7 @@ impl<P: Profile> Real for Ball<P> {
 #[inline(always)]
 fn root<P: Profile>(x: Ball<P>) -> Ball<P> {
     let middle = x.middle.sqrt();
-    if is_exact::<P>(middle, x.radius) | x.is_zero() {
+    if is_exact::<P>(P::ROUNDS_ALL_TO_NEAREST, middle, x.radius) | x.is_zero() {
         return Ball::exact(middle);
     }
     let low = x.low();

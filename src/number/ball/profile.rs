@@ -13,9 +13,11 @@ pub trait Profile: Copy + Send + Sync + 'static {
     /// The terms of a number that is not a sum.
     const NO_SUM: Self::Terms;
 
-    /// Whether an operation gives the `f32` nearest to the exact result, so that a result that
+    /// Whether a sum or a product is the `f32` nearest to the exact result, so that a result that
     /// needs no rounding is exact.
     const ROUNDS_TO_NEAREST: bool;
+    /// Whether the result of every other operation is, too.
+    const ROUNDS_ALL_TO_NEAREST: bool;
     /// Whether numbers below the normal ones may become 0.
     const FLUSHES: bool;
     /// Rounding of a product.
@@ -72,6 +74,7 @@ impl Profile for Ieee {
     type Terms = ();
     const NO_SUM: () = ();
     const ROUNDS_TO_NEAREST: bool = true;
+    const ROUNDS_ALL_TO_NEAREST: bool = true;
     const FLUSHES: bool = false;
     const PRODUCT: f64 = 1.0;
     const QUOTIENT: f64 = 1.0;
@@ -89,6 +92,46 @@ impl Profile for Ieee {
     fn sum(middle: f64, [a, b]: [&Ball<Self>; 2]) -> Ball<Self> {
         // A sum below the normal numbers is exact.
         Ball::new(middle, Ball::<Self>::reach(middle, a.radius + b.radius, 1.0, 0.0))
+    }
+    #[inline(always)]
+    fn choose(_truth: bool, _yes: (), _no: ()) {}
+    type TermLanes = ();
+    const NO_SUMS: () = ();
+    #[inline(always)]
+    fn put_terms(_lanes: &mut (), _lane: usize, _terms: ()) {}
+    #[inline(always)]
+    fn terms_of(_lanes: &(), _lane: usize) {}
+}
+
+/// IEEE 754 for sums and products, and what a device has for the rest: between [`Ieee`] and [`Gpu`].
+///
+/// Sums and products round once, to nearest, in the order that is written; a product may be fused
+/// with the sum that it goes into. Quotients, square roots, exponentials, powers and angles are as
+/// inexact as [`Gpu`] allows. Numbers below the normal ones may be flushed to 0.
+#[derive(Clone, Copy, Debug)]
+pub struct Precise;
+
+impl Profile for Precise {
+    type Terms = ();
+    const NO_SUM: () = ();
+    const ROUNDS_TO_NEAREST: bool = true;
+    const ROUNDS_ALL_TO_NEAREST: bool = false;
+    const FLUSHES: bool = true;
+    const PRODUCT: f64 = Ieee::PRODUCT;
+    const QUOTIENT: f64 = Gpu::QUOTIENT;
+    const LARGEST_DIVISOR: f64 = Gpu::LARGEST_DIVISOR;
+    const ROOT: f64 = Gpu::ROOT;
+    const TINY: f64 = Gpu::TINY;
+
+    fn exponential(argument: f64) -> f64 {
+        Gpu::exponential(argument)
+    }
+    fn power(bases: [f64; 2], exponent: f64) -> f64 {
+        Gpu::power(bases, exponent)
+    }
+    #[inline(always)]
+    fn sum(middle: f64, [a, b]: [&Ball<Self>; 2]) -> Ball<Self> {
+        Ball::new(middle, Ball::<Self>::reach(middle, a.radius + b.radius, 1.0, Self::TINY))
     }
     #[inline(always)]
     fn choose(_truth: bool, _yes: (), _no: ()) {}
@@ -175,6 +218,7 @@ impl Profile for Gpu {
     type Terms = SumTerms;
     const NO_SUM: SumTerms = SumTerms { magnitude: 0.0, additions: 0.0, radius: 0.0 };
     const ROUNDS_TO_NEAREST: bool = false;
+    const ROUNDS_ALL_TO_NEAREST: bool = false;
     const FLUSHES: bool = true;
     const PRODUCT: f64 = 2.0;
     const QUOTIENT: f64 = 5.0;
@@ -260,6 +304,7 @@ impl<P: Profile> Profile for Common<P> {
     type Terms = P::Terms;
     const NO_SUM: P::Terms = P::NO_SUM;
     const ROUNDS_TO_NEAREST: bool = P::ROUNDS_TO_NEAREST;
+    const ROUNDS_ALL_TO_NEAREST: bool = P::ROUNDS_ALL_TO_NEAREST;
     const FLUSHES: bool = P::FLUSHES;
     const PRODUCT: f64 = P::PRODUCT;
     const QUOTIENT: f64 = P::QUOTIENT;

@@ -125,7 +125,7 @@ impl<P: Profile, const N: usize> TotalsLanes<P, N> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::{Gpu, Ieee};
+    use super::super::{Gpu, Ieee, Precise};
     use super::*;
 
     /// Compares sums of these terms with the sums of `+`; returns how many are known.
@@ -171,6 +171,7 @@ mod tests {
     #[test]
     fn totals_are_sums() {
         compare_all::<Ieee>();
+        compare_all::<Precise>();
         compare_all::<Gpu>();
     }
 }

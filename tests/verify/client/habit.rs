@@ -1,6 +1,7 @@
 //! What a right client may do otherwise than the crate.
 
 use super::named::named;
+use splatref::verdict::client::Rounding;
 
 named! {
     /// What a right implementation may do; the default is plain f32.
@@ -47,5 +48,28 @@ named! {
         /// Of equally near fragments the one of the higher index wins. *Not* the crate's rule: what
         /// a client declares whose depth test is <=.
         TiesToTheLast,
+    }
+}
+
+impl Habit {
+    /// The promises that a client with this habit keeps.
+    pub(crate) fn promises(self) -> &'static [Rounding] {
+        match self {
+            Self::Plain | Self::Fused | Self::WideQuads | Self::ClampHighFirst => {
+                &[Rounding::Ieee, Rounding::Precise, Rounding::Gpu]
+            }
+            Self::Reciprocal
+            | Self::InverseSqrt
+            | Self::Exp2
+            | Self::Coarse
+            | Self::FlushDenormals
+            | Self::DepthByNewton => &[Rounding::Precise, Rounding::Gpu],
+            Self::Reassociated
+            | Self::EitherNeighbor
+            | Self::TowardsZero
+            | Self::LastFirst
+            | Self::Shuffled
+            | Self::TiesToTheLast => &[Rounding::Gpu],
+        }
     }
 }

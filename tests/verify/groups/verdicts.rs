@@ -67,12 +67,9 @@ fn stands<'a>(cases: &'a [(&'static str, Case)], exec: &'a Exec) -> Vec<Stand<'a
 
 /// What a client with a habit may promise.
 fn promises(how: How) -> &'static [Rounding] {
-    match (how.manner, how.habit) {
-        (Manner::Plain | Manner::AnyOrder | Manner::DepthBufferOfDepth, Habit::Plain)
-        | (_, Habit::Fused | Habit::WideQuads | Habit::ClampHighFirst) => {
-            &[Rounding::Ieee, Rounding::Gpu]
-        }
-        _ => &[Rounding::Gpu],
+    match how.manner {
+        Manner::Plain | Manner::AnyOrder | Manner::DepthBufferOfDepth => how.habit.promises(),
+        _ => Habit::Reassociated.promises(),
     }
 }
 

@@ -49,8 +49,7 @@ fn is_of_level(plane: &str) -> bool {
 fn promises(habit: Habit) -> &'static [Rounding] {
     match habit {
         Habit::LastFirst | Habit::Shuffled | Habit::WideQuads | Habit::DepthByNewton => &[],
-        Habit::Plain | Habit::Fused => &[Rounding::Ieee, Rounding::Gpu],
-        _ => &[Rounding::Gpu],
+        _ => habit.promises(),
     }
 }
 

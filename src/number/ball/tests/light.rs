@@ -1,10 +1,10 @@
 //! The light of an environment, and the light seen through a refracting surface.
 
-use super::lawful::{Law, Lawful, angle, begin};
+use super::lawful::{Law, Lawful, begin};
 use crate::frame::Plane;
-use crate::number::ball::{Ball, Gpu, Ieee, Profile};
+use crate::number::ball::{Ball, Gpu, Ieee, Precise, Profile};
 use crate::number::random::{bits, unit};
-use crate::number::{Real, Vector3};
+use crate::number::{Exact, Real, Vector3};
 use crate::scene::Environment;
 use crate::scene::environment::{Map, scaled, sky};
 use crate::shade::optics::{Behind, BendingLayers, NearestLayer, Refraction, shade_before};
@@ -14,7 +14,7 @@ use std::f64::consts::TAU;
 fn light(environment: &Environment, direction: Vector3<Lawful>) -> [Lawful; 3] {
     let direction = scaled(direction);
     let Environment::Map(map) = environment else { return sky::radiance(direction) };
-    let [s, t] = map.place(direction, std::f32::consts::PI.into(), angle);
+    let [s, t] = map.place(direction, std::f32::consts::PI.into(), Lawful::atan2);
     let (i, j) = (s.floor(), t.floor());
     let width = i64::from(map.pixels().width());
     let column = |i: f32| (i as i64).rem_euclid(width) as u32;
@@ -79,6 +79,7 @@ fn assert_held<P: Profile>(law: Law) {
 #[test]
 fn light_and_what_bends_it_do_not_escape() {
     assert_held::<Ieee>(Law::Ieee);
+    assert_held::<Precise>(Law::Precise);
     assert_held::<Gpu>(Law::Gpu);
 }
 

@@ -1,7 +1,7 @@
 //! The ball holds every lawful value of the crate's formulas, and variants that round too little do
 //! not; then each rule of the module's page.
 
-mod lawful;
+pub(crate) mod lawful;
 mod light;
 mod scenes;
 
@@ -62,6 +62,7 @@ impl Found {
 fn no_lawful_value_escapes() {
     for (found, least) in [
         (soundness::<Ieee>(Law::Ieee, 1, 5_000), 0.1),
+        (soundness::<Precise>(Law::Precise, 1, 5_000), 0.02),
         (soundness::<Gpu>(Law::Gpu, 1, 5_000), 0.02),
     ] {
         assert_eq!(found.escaped, 0, "{:?}", found.worst);
@@ -75,6 +76,8 @@ fn no_lawful_value_escapes() {
 #[test]
 fn what_a_gpu_may_do_escapes_from_balls_that_round_once() {
     assert!(soundness::<Ieee>(Law::Gpu, 1, 1_000).escaped > 100);
+    assert!(soundness::<Ieee>(Law::Precise, 1, 1_000).escaped > 100);
+    assert!(soundness::<Precise>(Law::Gpu, 1, 1_000).escaped > 100);
 }
 
 #[test]
@@ -95,6 +98,7 @@ macro_rules! twin {
             type Terms = ();
             const NO_SUM: () = ();
             const ROUNDS_TO_NEAREST: bool = true;
+            const ROUNDS_ALL_TO_NEAREST: bool = true;
             const FLUSHES: bool = false;
             const PRODUCT: f64 = $product;
             const QUOTIENT: f64 = $quotient;

@@ -1,0 +1,163 @@
+//! Test whether the errors of a right picture are those of a right renderer, all together.
+//!
+//! An interval allows each value by itself. A client whose every weight is a little off may stay in
+//! all intervals, where a right renderer comes near the end of an interval only here and there. So
+//! the median and the 99th percentile of a stage's errors in bounds are compared with the largest
+//! that right renderers leave.
+//!
+//! Right renderers are simulated: `tests/lawful.rs` draws pictures by all methods in a number whose
+//! operations are as inexact as the promise allows, as a coin decides or always to one side. Only
+//! errors of rounding count: a pixel without an error says nothing, and where a decision is open, an
+//! interval is as wide as the decision. So pixels with an error of 0, pixels with an error of 1, the
+//! end of an interval, and pixels with a [doubt](super::Doubt) are left out. A stage with fewer than
+//! 100 others is not tested, and neither is a client that stores a plane in another format than f32,
+//! because what its format loses fills the intervals.
+
+use super::client::{Client, Rounding};
+use super::findings::StageVerdict;
+use std::fmt::{Display, Formatter, Result};
+
+/// A stage whose errors are larger, all together, than those of any right renderer that was tried.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Unlike {
+    /// The name of the stage.
+    pub stage: &'static str,
+    /// The fraction of the pixels with an error whose error is at most `error`.
+    pub quantile: f64,
+    /// The error in bounds.
+    pub error: f64,
+    /// The largest error at this quantile that is usual.
+    pub usual: f64,
+}
+
+/// The quantiles that are tested.
+const QUANTILES: [f64; 2] = [0.5, 0.99];
+
+/// The fewest pixels whose quantiles are tested.
+const FEW: usize = 100;
+
+/// The largest usual errors in bounds of each stage, at each of [`QUANTILES`], under the promises
+/// `gpu`, `precise` and `ieee`. `Decided:` 1.5 times the largest of 36 simulated pictures of each of
+/// four scenes by each method, and of 16 habits of a second implementation of `ewa` in ten scenes; at
+/// most 1, from where an error is wrong by itself.
+const USUAL: [(&str, [[f64; 2]; 3]); 17] = [
+    ("projection", [[0.38, 0.91], [0.43, 0.86], [0.45, 0.92]]),
+    ("visibility", [[0.19, 0.44], [0.26, 0.78], [0.24, 0.83]]),
+    ("indices", [[0.17, 0.52], [0.25, 0.61], [0.25, 0.61]]),
+    ("difference", [[0.1, 0.45], [0.17, 0.58], [0.19, 0.72]]),
+    ("attributes", [[0.06, 0.31], [0.11, 0.47], [0.14, 0.52]]),
+    ("geometry", [[0.2, 0.44], [0.33, 0.65], [0.38, 0.72]]),
+    ("discs", [[0.09, 0.29], [0.2, 0.58], [0.16, 0.68]]),
+    ("layers", [[0.19, 0.44], [0.26, 0.62], [0.26, 0.73]]),
+    ("nearest", [[0.27, 0.62], [0.55, 1.0], [0.52, 1.0]]),
+    ("pull", [[0.88, 1.0], [0.54, 1.0], [0.54, 1.0]]),
+    ("push", [[0.41, 1.0], [0.24, 1.0], [0.21, 1.0]]),
+    ("reconstruction", [[0.22, 0.52], [0.29, 0.65], [0.21, 0.54]]),
+    ("normalization", [[0.47, 1.0], [0.54, 1.0], [0.56, 1.0]]),
+    ("compositing", [[0.75, 1.0], [1.0, 1.0], [0.56, 1.0]]),
+    ("averaging", [[0.24, 0.55], [0.6, 0.8], [0.49, 1.0]]),
+    ("blending", [[0.37, 0.68], [0.42, 0.95], [0.41, 0.95]]),
+    ("shading", [[0.25, 0.5], [0.42, 0.81], [0.46, 0.62]]),
+];
+
+/// The stages of a right picture whose errors are unlike those of right renderers.
+pub(super) fn found(client: &Client, stages: &[StageVerdict]) -> Vec<Unlike> {
+    let promise = match client.rounding {
+        Rounding::Gpu => 0,
+        Rounding::Precise => 1,
+        Rounding::Ieee => 2,
+    };
+    if !client.stores_singles() {
+        return Vec::new();
+    }
+    let mut unlike = Vec::new();
+    for stage in stages.iter().filter(|stage| stage.wrong == 0) {
+        let Some((_, usual)) = USUAL.iter().find(|(name, _)| *name == stage.stage) else {
+            continue;
+        };
+        let Some(errors) = stage.quantiles(QUANTILES) else { continue };
+        let all = QUANTILES.into_iter().zip(errors).zip(usual[promise]);
+        unlike.extend(all.filter(|((_, error), usual)| error > usual).map(
+            |((quantile, error), usual)| Unlike { stage: stage.stage, quantile, error, usual },
+        ));
+    }
+    unlike
+}
+
+impl StageVerdict {
+    /// The errors in bounds at some quantiles of the pixels that have an error of rounding, see
+    /// [`Unlike`]; none if these are fewer than 100.
+    #[must_use]
+    pub fn quantiles<const N: usize>(&self, quantiles: [f64; N]) -> Option<[f64; N]> {
+        let all = self.errors.values().iter().zip(self.doubts.values());
+        let of_rounding =
+            all.filter(|(error, doubts)| **doubts == 0 && **error > 0.0 && **error < 1.0);
+        let mut errors: Vec<f32> = of_rounding.map(|(error, _)| *error).collect();
+        if errors.len() < FEW {
+            return None;
+        }
+        errors.sort_unstable_by(f32::total_cmp);
+        let last = (errors.len() - 1) as f64;
+        Some(quantiles.map(|quantile| f64::from(errors[(quantile * last) as usize])))
+    }
+}
+
+impl Display for Unlike {
+    fn fmt(&self, f: &mut Formatter<'_>) -> Result {
+        let Self { stage, quantile, error, usual } = self;
+        let share = 100.0 * (1.0 - quantile);
+        write!(
+            f,
+            "{stage}: {share:.0} % of the errors are {error:.2} bounds or more; at most {usual:.2} is usual"
+        )
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::frame::{Frame, Plane};
+    use crate::method::Method;
+    use crate::verdict::Causes;
+    use crate::verdict::client::Storage;
+
+    fn stage(stage: &'static str, error: impl Fn(u32) -> f32) -> StageVerdict {
+        StageVerdict {
+            stage,
+            planes: vec![""],
+            missing: Vec::new(),
+            errors: Plane::from_values(20, 10, (0..200).map(error).collect()),
+            doubts: Plane::filled(20, 10, 0),
+            wrong: 0,
+            causes: Causes::default(),
+            worst: None,
+        }
+    }
+
+    #[test]
+    fn errors_are_compared_at_the_median_and_near_the_end() {
+        let client = Client::new(Frame::new(20, 10));
+        let gpu = |error: &dyn Fn(u32) -> f32| found(&client, &[stage("shading", error)]);
+        assert_eq!(gpu(&|i| i as f32 / 200.0 * 0.4), []);
+        // A few large errors are usual, and the ends of intervals are no errors of rounding.
+        assert_eq!(gpu(&|i| if i == 0 { 0.9 } else { 0.1 }), []);
+        assert_eq!(gpu(&|i| if i < 90 { 1.0 } else { 0.1 }), []);
+        let [unlike] = gpu(&|i| if i < 4 { 0.75 } else { 0.1 })[..] else { panic!("the end") };
+        assert_eq!((unlike.quantile, unlike.error, unlike.usual), (0.99, 0.75, 0.5));
+        let [unlike] = gpu(&|_| 0.375)[..] else { panic!("the median") };
+        assert_eq!((unlike.quantile, unlike.error), (0.5, 0.375));
+        let halves = Client { accumulator: Storage::Half, ..client.clone() };
+        assert_eq!(found(&halves, &[stage("shading", |_| 0.375)]), []);
+        // So few pixels may be anything.
+        assert_eq!(gpu(&|i| if i < 99 { 0.9 } else { 0.0 }), []);
+    }
+
+    #[test]
+    fn every_stage_but_one_has_a_row() {
+        let stages = Method::all().into_iter().flat_map(|method| method.stages());
+        let drawn = stages.filter(|stage| !stage.leaves.is_empty()).map(|stage| stage.name);
+        let without = drawn.filter(|drawn| USUAL.iter().all(|(name, _)| name != drawn));
+        // Its levels have fewer than 100 pixels in the pictures that were tried.
+        assert_eq!(without.collect::<Vec<_>>(), ["propagation"]);
+    }
+}
