@@ -20,6 +20,7 @@ mod client_is_right;
 mod groups;
 mod image_space;
 mod ladder;
+mod matrix;
 mod nodes;
 mod own_pictures;
 mod suite;

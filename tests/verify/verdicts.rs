@@ -2,6 +2,7 @@
 
 use crate::verify::cases::{Case, cases};
 use crate::verify::client::{Bug, Habit, How, records, render};
+use crate::verify::matrix::Picture;
 use splatref::frame::{Exec, Samples};
 use splatref::method::{Method, Session};
 use splatref::splat::Epsilon;
@@ -30,6 +31,27 @@ fn judge_with(
         client.ties = Ties::Last;
     }
     session.verify(camera, &client, 1.0).unwrap()
+}
+
+/// The pictures of every habit and every bug.
+pub(crate) fn pictures(each: &mut dyn FnMut(Picture<'_>)) {
+    let exec = Exec::sequential();
+    for (name, (scene, camera, settings)) in cases() {
+        let session = Session::new(&scene, Method::Ewa(settings), &exec).unwrap();
+        let habits = Habit::ALL.iter().map(|&habit| How { habit, bug: None });
+        let bugs = Bug::ALL.iter().map(|&bug| How { habit: Habit::Plain, bug: Some(bug) });
+        for how in habits.chain(bugs) {
+            each(Picture {
+                session: &session,
+                camera: &camera,
+                scene: name,
+                what: how.bug.map_or(how.habit.name(), Bug::name).to_owned(),
+                keeps: how.bug.is_none().then(|| how.habit.promises()),
+                ties: if how.habit == Habit::TiesToTheLast { Ties::Last } else { Ties::Lowest },
+                frame: render(&scene, &camera, &settings, how),
+            });
+        }
+    }
 }
 
 #[test]

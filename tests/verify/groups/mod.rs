@@ -21,6 +21,8 @@ mod manner;
 mod planes;
 mod verdicts;
 
+pub(crate) use verdicts::pictures;
+
 use crate::verify::client::habit::Habit;
 use crate::verify::client::project::project;
 use crate::verify::client::view::Shared;

@@ -7,6 +7,7 @@ use super::manner::Manner;
 use super::{How, render};
 use crate::verify::client::Habit;
 use crate::verify::client_is_right::differences;
+use crate::verify::matrix::Picture;
 use splatref::frame::{Exec, Frame};
 use splatref::method::{Method, Session};
 use splatref::verdict::Verdict;
@@ -46,11 +47,7 @@ impl Stand<'_> {
         frame.planes.retain(|plane| (word.handed)(&plane.name));
         let mut client = Client::from(&frame);
         client.rounding = word.rounding;
-        client.ties = match (how.manner, how.habit) {
-            (Manner::AnyOrder, _) => Ties::Any,
-            (_, Habit::TiesToTheLast) => Ties::Last,
-            _ => Ties::Lowest,
-        };
+        client.ties = ties(how);
         let images = ["group##", "group##.normal", "group##.weight"];
         client = images.iter().fold(client, |client, row| client.stored(row, word.storage));
         self.session.verify(&self.case.1, &client, 1.0).unwrap()
@@ -79,6 +76,37 @@ fn lawful() -> Vec<How> {
     let manners = Manner::ALL.iter().filter(|manner| **manner != Manner::OneShader);
     let manners = manners.map(|&manner| How { manner, ..How::default() });
     habits.chain(manners.skip(1)).collect()
+}
+
+/// The pictures of every lawful way to draw and of every bug.
+pub(crate) fn pictures(each: &mut dyn FnMut(Picture<'_>)) {
+    let (cases, exec) = (cases(), Exec::sequential());
+    for stand in stands(&cases, &exec) {
+        for how in lawful().into_iter().chain(Bug::ALL.iter().map(|&bug| bug.into())) {
+            let variant = match how.manner {
+                Manner::Plain => how.habit.name(),
+                manner => manner.name(),
+            };
+            each(Picture {
+                session: &stand.session,
+                camera: &stand.case.1,
+                scene: stand.name,
+                what: how.bug.map_or(variant, Bug::name).to_owned(),
+                keeps: how.bug.is_none().then(|| promises(how)),
+                ties: ties(how),
+                frame: stand.draw(how),
+            });
+        }
+    }
+}
+
+/// The fragment that stays of equally near ones.
+fn ties(how: How) -> Ties {
+    match (how.manner, how.habit) {
+        (Manner::AnyOrder, _) => Ties::Any,
+        (_, Habit::TiesToTheLast) => Ties::Last,
+        _ => Ties::Lowest,
+    }
 }
 
 /// What is wrong, in words.

@@ -23,6 +23,8 @@ mod pyramid;
 mod template;
 mod verdicts;
 
+pub(crate) use verdicts::{pictures_of_pyramid, pictures_of_template};
+
 use crate::verify::client::habit::Habit;
 use crate::verify::client::number::{Number, Vector, dot, sum, unit};
 use crate::verify::client::view::Shared;

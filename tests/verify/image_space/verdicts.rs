@@ -6,6 +6,7 @@ use super::cases::{Case, of_pyramid, of_template};
 use super::{How, render};
 use crate::verify::client::Habit;
 use crate::verify::client_is_right::differences;
+use crate::verify::matrix::Picture;
 use splatref::frame::{Exec, Frame};
 use splatref::method::Session;
 use splatref::verdict::Verdict;
@@ -99,6 +100,41 @@ fn no_lawful_habit_is_called_wrong(cases: &[(&str, Case)]) {
         }
     }
     assert!(found.is_empty(), "{found:#?}");
+}
+
+/// The pictures of every habit and of these bugs.
+fn pictures(
+    cases: &[(&'static str, Case)],
+    bugs: fn(Bug) -> bool,
+    each: &mut dyn FnMut(Picture<'_>),
+) {
+    let exec = Exec::sequential();
+    for (name, (scene, camera, method)) in cases {
+        let session = Session::new(scene, *method, &exec).unwrap();
+        let habits = Habit::ALL.iter().filter(|habit| !promises(**habit).is_empty());
+        let habits = habits.map(|&habit| How { habit, bug: None });
+        let bugs = Bug::ALL.iter().filter(|bug| bugs(**bug));
+        let bugs = bugs.map(|&bug| How { habit: Habit::Plain, bug: Some(bug) });
+        for how in habits.chain(bugs) {
+            each(Picture {
+                session: &session,
+                camera,
+                scene: name,
+                what: how.bug.map_or(how.habit.name(), Bug::name).to_owned(),
+                keeps: how.bug.is_none().then(|| promises(how.habit)),
+                ties: if how.habit == Habit::TiesToTheLast { Ties::Last } else { Ties::Lowest },
+                frame: render(scene, camera, method, how),
+            });
+        }
+    }
+}
+
+pub(crate) fn pictures_of_pyramid(each: &mut dyn FnMut(Picture<'_>)) {
+    pictures(&of_pyramid(), Bug::of_pyramid, each);
+}
+
+pub(crate) fn pictures_of_template(each: &mut dyn FnMut(Picture<'_>)) {
+    pictures(&of_template(), Bug::of_template, each);
 }
 
 /// What is wrong, in words.
