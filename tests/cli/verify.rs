@@ -180,6 +180,21 @@ fn a_suite_does_not_wait_for_a_pipe() {
     assert!(fails(at.path(), &["suite", "pipe"], 2).contains("pipe: this is no file"));
 }
 
+#[test]
+fn the_cause_can_be_left_out() {
+    let at = pictures();
+    let other = ["--low-pass", "0.5"];
+    let (code, said) = verified(&at, "plain.exr", &other);
+    assert!(code == 1 && said.contains("looks like"), "{said}");
+    let (code, said) = verified(&at, "plain.exr", &[&["--no-cause"], &other[..]].concat());
+    assert!(code == 1 && !said.contains("looks like"), "{said}");
+    // The command that explains the pixel takes neither option, and keeps the one after them.
+    let rest = ["--strict", "--no-cause", "--low-pass", "0.5"];
+    let (_, said) = verified(&at, "plain.exr", &rest);
+    let replay = said.lines().find(|line| line.starts_with("replay")).unwrap();
+    assert!(replay.contains("--low-pass 0.5") && !replay.contains("--no-cause"), "{replay}");
+}
+
 /// Each plane of a picture alone: wrong where the picture is wrong, and never an error or a share
 /// above 100 %.
 #[test]
