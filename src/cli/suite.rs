@@ -1,9 +1,12 @@
 //! `splatref suite`: pools the verdicts of several scenes.
 
-use super::verify::report::{JsonShift, leaning};
+use super::verify::report::{self, JsonShift, leaning};
 use super::{Ended, Ending, say};
 use serde::Deserialize;
-use splatref::setting::Word;
+use serde_json::{Map, Value};
+use splatref::method::Method;
+use splatref::setting::{Word, Words};
+use splatref::verdict::client::Rounding;
 use splatref::verdict::shift::{LIMITS, Shift, Shifts};
 use splatref::verdict::{Doubt, Outcome};
 use splatref::{Error, Result};
@@ -17,6 +20,10 @@ use std::path::{Path, PathBuf};
 A decision close to a threshold is undecided in a single picture. Pooling the verdicts of several scenes
 exposes a slightly wrong threshold, because it biases the undecided decisions one way; rounding turns
 about as many to either side. The same verdict, named twice or copied, counts once.
+
+The verdicts of each promise are pooled by themselves. Under every promise the bias is WRONG if its z is
+4.5 or more, and larger than a rounded threshold or one-sided rounding can cause. At most one right suite
+of 10,000 is called wrong.
 
 Examples:
   splatref verify a.toml a.exr --promise ieee --json a.json
@@ -34,32 +41,66 @@ pub(super) struct Args {
 /// The fields that are read from a verdict.
 #[derive(Deserialize)]
 struct Verdict {
+    method: String,
     outcome: String,
     promise: String,
+    stages: Vec<Map<String, Value>>,
     shifts: Vec<JsonShift>,
 }
 
 /// The words of the promises.
-const PROMISES: [&str; 3] = ["ieee", "precise", "gpu"];
+fn promises() -> Vec<&'static str> {
+    Rounding::WORDS.iter().map(|(word, _)| *word).collect()
+}
 
 impl Verdict {
     /// Checks the words, because one that is not known would count as nothing.
     fn check(&self) -> std::result::Result<(), String> {
-        let limits = LIMITS.map(Doubt::name);
+        let (limits, promises) = (LIMITS.map(Doubt::name), promises());
         let shifts = self.shifts.iter().map(|shift| ("shifts.limit", &shift.limit, &limits[..]));
         let outcomes = Outcome::Right.words();
         let own =
-            [("outcome", &self.outcome, &outcomes[..]), ("promise", &self.promise, &PROMISES[..])];
+            [("outcome", &self.outcome, &outcomes[..]), ("promise", &self.promise, &promises[..])];
         for (key, word, known) in own.into_iter().chain(shifts) {
             if !known.contains(&word.as_str()) {
                 let known = known.join(", ");
                 return Err(format!("{key} is \"{word}\", but can be {known}"));
             }
         }
+        self.check_stages()?;
         match self.shifts.iter().find(|shift| !shift.is_possible()) {
             Some(shift) => Err(format!("the numbers of the limit {} are impossible", shift.limit)),
             None => Ok(()),
         }
+    }
+}
+
+impl Verdict {
+    /// Checks the names of the stages, because a verdict on other stages judges something else.
+    fn check_stages(&self) -> std::result::Result<(), String> {
+        let methods = Method::all();
+        let Some(method) = methods.iter().find(|method| method.name() == self.method) else {
+            return Err(format!("method is \"{}\", which is unknown", self.method));
+        };
+        let known: Vec<&str> = method.stages().iter().map(|stage| stage.name).collect();
+        let [_, fields] = report::fields();
+        for stage in &self.stages {
+            check_fields(stage, &fields)?;
+            let name = stage.get("stage").and_then(Value::as_str).unwrap_or_default();
+            if !known.contains(&name) {
+                let known = known.join(", ");
+                return Err(format!("stages.stage is \"{name}\", but can be {known}"));
+            }
+        }
+        Ok(())
+    }
+}
+
+/// Refuses a field that `verify` does not write, because it may change what the others mean.
+fn check_fields(found: &Map<String, Value>, known: &[String]) -> std::result::Result<(), String> {
+    match found.keys().find(|key| !known.contains(key)) {
+        Some(key) => Err(format!("the field \"{key}\" is unknown")),
+        None => Ok(()),
     }
 }
 
@@ -86,13 +127,12 @@ pub(super) fn run(args: &Args) -> Ended {
     }
     let any = |word: &str| verdicts.iter().any(|verdict| verdict.outcome == word);
     let mut leans = false;
-    // A decision that is undecided under one promise may be certain under the other.
-    for promise in PROMISES {
+    // A decision that is undecided under one promise may be certain under another.
+    for promise in promises() {
         let own = verdicts.iter().filter(|verdict| verdict.promise == promise);
         let all = together(own.flat_map(|verdict| &verdict.shifts));
         for (limit, shift) in LIMITS.iter().zip(&all).filter(|(_, shift)| shift.decisions > 0) {
-            // An operation that is inexact within its promise may be biased.
-            let alarms = promise == "ieee" && shift.alarms();
+            let alarms = shift.alarms();
             leans |= alarms;
             let word = if alarms { "WRONG" } else { "" };
             say(format!("{word:<12} {promise:<5} {}", leaning(*limit, shift)));
@@ -123,8 +163,11 @@ fn verdict(path: &Path) -> Result<(String, Verdict)> {
     file.read_to_string(&mut text).map_err(io)?;
     let no_verdict =
         |what: String| Error::format(path, format!("not a verdict of `verify --json`: {what}"));
-    let verdict: Verdict =
-        serde_json::from_str(&text).map_err(|error| no_verdict(error.to_string()))?;
+    let json = |error: serde_json::Error| no_verdict(error.to_string());
+    let all: Map<String, Value> = serde_json::from_str(&text).map_err(json)?;
+    let verdict: Verdict = serde_json::from_str(&text).map_err(json)?;
+    let [fields, _] = report::fields();
+    check_fields(&all, &fields).map_err(no_verdict)?;
     verdict.check().map_err(no_verdict)?;
     Ok((text, verdict))
 }

@@ -130,6 +130,7 @@ mod tests {
         ) {
             prop_assume!(takes.contains(&true));
             lawful(means::hull(&mean, takes, w, a))?;
+            lawful(means::quotient(&mean, takes, w, a))?;
         }
 
         #[test]

@@ -89,7 +89,8 @@ mod tests {
             layers in prop::collection::vec(layer(), 0..6),
             (_, color) in layer(),
         ) {
-            lawful(under::ends(&operator, &layers, color))?;
+            lawful(under::ends(&operator, &layers, [color; 2]))?;
+            lawful(under::infinite(&operator, &layers))?;
         }
     }
 }

@@ -3,8 +3,8 @@
 //! The operator is `over(below, opacity, colour)`: it blends the next nearer layer over the layers
 //! below, and returns the result.
 
-use super::inputs::{CASES, Inputs};
-use super::{Lawful, law, same, unit};
+use super::search::{Asked, search};
+use super::{Kind, Law, Lawful, law, same, unit};
 use crate::composite::over::Blend;
 use crate::number::Exact;
 
@@ -13,17 +13,43 @@ use crate::number::Exact;
 /// # Errors
 /// The first counterexample.
 pub fn over<R: Exact>(over: &impl Fn(Blend<R>, R, [R; 3]) -> Blend<R>) -> Lawful {
-    let mut inputs = Inputs::new(3);
-    closed_form(over, &[])?;
-    for _ in 0..CASES {
+    of_kinds(&Kind::ALL, over)
+}
+
+/// Tries the laws of these kinds.
+///
+/// # Errors
+/// The first counterexample.
+pub fn of_kinds<R: Exact>(
+    kinds: &[Kind],
+    over: &impl Fn(Blend<R>, R, [R; 3]) -> Blend<R>,
+) -> Lawful {
+    Asked::ordinary(kinds).check(Kind::Algebraic, || closed_form(over, &[]))?;
+    search(3, kinds, &|inputs, asked| {
         let (layers, nearer) = (inputs.layers(24), inputs.layers(8));
         let color = inputs.color();
-        closed_form(over, &layers)?;
-        ends(over, &layers, color)?;
-        wall(over, &layers, color, &nearer)?;
-    }
-    Ok(())
+        asked.check(Kind::Algebraic, || closed_form(over, &layers))?;
+        asked.check(Kind::Exact, || ends(over, &layers, color))?;
+        asked.check(Kind::Exact, || wall(over, &layers, color, &nearer))
+    })
 }
+
+const CLOSED_FORM: Law = Law::algebraic(
+    "blending is its closed form, up to rounding",
+    "the colour and the opacity of every pixel where layers lie over each other",
+);
+const HIDES: Law = Law::exact(
+    "an opaque layer hides what is below",
+    "hidden layers may be left out: no bit of the picture depends on them",
+);
+const CLEAR: Law = Law::exact(
+    "a clear layer changes nothing",
+    "layers of opacity 0 may be left out: no bit of the picture depends on them",
+);
+const WALL: Law = Law::exact(
+    "nothing shines through an opaque layer",
+    "a loop may begin at the nearest opaque layer, and draw the same bits",
+);
 
 /// Blends layers from back to front over nothing.
 fn blend<R: Exact>(
@@ -77,10 +103,10 @@ pub fn closed_form<R: Exact>(
         && (R::ZERO <= found.alpha && found.alpha <= R::ONE)
         && (0..3).all(|i| near(found.color[i], color[i]));
     let expected = Blend { color, alpha: 1.0 - through };
-    law("blending is its closed form, up to rounding", holds, &layers, &expected, &found)
+    law(&CLOSED_FORM, holds, &layers, &expected, &found)
 }
 
-/// An opaque layer hides everything below, and a clear layer changes nothing, to the bit.
+/// Exact laws: an opaque layer hides everything below, and a clear layer changes nothing, to the bit.
 ///
 /// # Errors
 /// The first counterexample.
@@ -92,12 +118,12 @@ pub fn ends<R: Exact>(
     let below = blend(over, layers);
     let inputs = format_args!("the colour {color:?} over {below:?}");
     let (alone, found) = (Blend { color, alpha: R::ONE }, over(below, R::ONE, color));
-    law("an opaque layer hides what is below", equal(&found, &alone), &inputs, &alone, &found)?;
+    law(&HIDES, equal(&found, &alone), &inputs, &alone, &found)?;
     let found = over(below, R::ZERO, color);
-    law("a clear layer changes nothing", equal(&found, &below), &inputs, &below, &found)
+    law(&CLEAR, equal(&found, &below), &inputs, &below, &found)
 }
 
-/// Layers behind an opaque layer change no bit, whatever is in front of the opaque layer.
+/// Exact law: layers behind an opaque layer change no bit, whatever is in front of the opaque layer.
 ///
 /// # Errors
 /// The first counterexample.
@@ -110,5 +136,5 @@ pub fn wall<R: Exact>(
     let from_wall = [&[(R::ONE, color)], before].concat();
     let whole = [behind, &from_wall].concat();
     let (alone, found) = (blend(over, &from_wall), blend(over, &whole));
-    law("nothing shines through an opaque layer", equal(&found, &alone), &whole, &alone, &found)
+    law(&WALL, equal(&found, &alone), &whole, &alone, &found)
 }

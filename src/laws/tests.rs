@@ -14,7 +14,7 @@ fn breaks(found: Lawful, law: &str) {
     let counterexample = found.expect_err(law);
     assert!(counterexample.law.contains(law), "{counterexample}");
     let line = counterexample.to_string();
-    for part in [": of ", ": expected ", ", found "] {
+    for part in [" (", "): of ", ": expected ", ", found "] {
         assert!(line.contains(part) && !line.contains('\n'), "{line}");
     }
 }
@@ -42,26 +42,122 @@ fn the_operators_of_the_crate_keep_every_law() {
     keeps_every_law::<f64>();
 }
 
+/// Blends as b + a (c - b).
+fn lerped(below: Blend<f32>, a: f32, color: [f32; 3]) -> Blend<f32> {
+    let mix = |below: f32, c: f32| below + a * (c - below);
+    let [r, g, b] = [0, 1, 2].map(|i| mix(below.color[i], color[i]));
+    Blend { color: [r, g, b], alpha: mix(below.alpha, 1.0) }
+}
+
+/// Adds from front to back, whatever the colour of a layer of opacity 0 is.
+fn plain_under(above: Under<f32>, a: f32, color: [f32; 3]) -> Under<f32> {
+    let color = sum::add(above.color, above.through * a, color);
+    Under { color, ..above.under(a, [0.0; 3]) }
+}
+
+#[test]
+fn lawful_operators_break_laws_that_can_be_left_out_alone() {
+    let found = over(&lerped).unwrap_err();
+    assert_eq!((found.kind, found.law), (Kind::Exact, "an opaque layer hides what is below"));
+    assert_eq!(over::of_kinds(&[Kind::Algebraic, Kind::Odd], &lerped), Ok(()));
+    let found = under(&plain_under).unwrap_err();
+    let law = "a clear layer of an infinite colour changes nothing";
+    assert_eq!((found.kind, found.law), (Kind::Odd, law));
+    assert_eq!(under::of_kinds(&[Kind::Algebraic, Kind::Exact], &plain_under), Ok(()));
+    // An epsilon-z test by a difference, and sums in another order.
+    let difference = |t: f32, nearest: f32, e: f32| t - nearest <= e;
+    assert_eq!(epsilon(&difference).unwrap_err().kind, Kind::Exact);
+    assert_eq!(epsilon::of_kinds(&[Kind::Algebraic, Kind::Odd], &difference), Ok(()));
+    let reversed = |samples: &[WeightedFragment<f32>], epsilon: f32| {
+        let samples: Vec<_> = samples.iter().rev().copied().collect();
+        compose(&samples, epsilon)
+    };
+    assert_eq!(groups(&reversed).unwrap_err().kind, Kind::Exact);
+    assert_eq!(groups::of_kinds(&[Kind::Algebraic], &reversed), Ok(()));
+    // A quotient by a reciprocal, and a mean without bounds.
+    let reciprocal =
+        |s: [f32; 3], w: f32| s.map(|s| if w > 0.0 { s * (1.0 / w) + 0.0 } else { 0.0 });
+    assert_eq!(sums(&sum::add, &reciprocal).unwrap_err().kind, Kind::Exact);
+    assert_eq!(sums::of_kinds(&[Kind::Algebraic], &sum::add, &reciprocal), Ok(()));
+}
+
+/// Wrong operators break algebraic laws, so that they are found without the others too.
+#[test]
+fn wrong_operators_break_algebraic_laws() {
+    let only = &[Kind::Algebraic];
+    let of = |op: fn(f32, f32, f32) -> bool| epsilon::of_kinds(only, &op);
+    let wrong = [
+        of(|t, nearest, e| t < nearest + e),
+        of(|t, nearest, e| t <= nearest + 1.001 * e),
+        of(|t, nearest, e| t <= nearest * (1.0 + e)),
+        of(|t, nearest, e| (t - nearest).abs() <= e),
+        of(|_, _, _| true),
+    ];
+    assert!(wrong.iter().all(Result::is_err), "{wrong:?}");
+    type Over = fn(Blend<f32>, f32, [f32; 3]) -> Blend<f32>;
+    let of = |op: Over| over::of_kinds(only, &op);
+    let wrong = [
+        of(|below, a, color| Blend { color, ..below.over(a, color) }),
+        of(|below, a, color| below.over(a * a, color)),
+        of(|below, a, color| Blend { alpha: below.alpha.at_least(a), ..below.over(a, color) }),
+        of(|below, a, color| below.over((a * 255.0).floor() / 255.0, color)),
+    ];
+    assert!(wrong.iter().all(Result::is_err), "{wrong:?}");
+    type Front = fn(Under<f32>, f32, [f32; 3]) -> Under<f32>;
+    let of = |op: Front| under::of_kinds(only, &op);
+    let wrong = [
+        of(|above, a, color| above.under(a, color.map(|c| c * a))),
+        of(|above, a, color| Under { through: above.through - a, ..above.under(a, color) }),
+        of(|above, a, color| if above.alpha > 0.99 { above } else { above.under(a, color) }),
+    ];
+    assert!(wrong.iter().all(Result::is_err), "{wrong:?}");
+}
+
+#[test]
+fn a_counterexample_is_as_simple_as_can_be_found() {
+    let found = over(&|below: Blend<f32>, a, color| Blend { color, ..below.over(a, color) });
+    let found = found.unwrap_err();
+    // One layer that is not opaque is enough.
+    assert_eq!(found.inputs, "[(0.0, [2.0, 0.0, 0.0])]", "{found}");
+    let again = over(&|below: Blend<f32>, a, color| Blend { color, ..below.over(a, color) });
+    assert_eq!(again.unwrap_err(), found, "the search is deterministic");
+    // Few digits: without shrinking each of these numbers has eight.
+    let strict = epsilon(&|t: f32, nearest, epsilon| t < nearest + epsilon).unwrap_err();
+    assert!(strict.inputs.len() < 50, "{strict}");
+    let twice = epsilon(&|t: f32, nearest, epsilon| t <= nearest + 2.0 * epsilon).unwrap_err();
+    assert!(twice.inputs.len() < 50, "{twice}");
+    let reversed = |samples: &[WeightedFragment<f32>], epsilon: f32| {
+        let samples: Vec<_> = samples.iter().rev().copied().collect();
+        compose(&samples, epsilon)
+    };
+    let found = groups(&reversed).unwrap_err();
+    // A sum of two is the same in both orders.
+    let samples = found.inputs.matches("WeightedFragment").count();
+    assert!((3..6).contains(&samples), "{found}");
+}
+
 #[test]
 fn a_broken_epsilon_test_is_caught() {
     let of = |op: fn(f32, f32, f32) -> bool| epsilon(&op);
-    breaks(of(|t, nearest, e| t < nearest + e), "the limit is nearest + epsilon");
-    breaks(of(|t, nearest, e| t - nearest <= e), "the limit is nearest + epsilon");
+    breaks(of(|t, nearest, e| t < nearest + e), "the nearest fragment is visible");
+    breaks(of(|t, nearest, e| t - nearest <= e), "the limit is nearest + epsilon, and visible");
     // Each law alone.
     type Test = fn(f32, f32, f32) -> bool;
     let at = |t, nearest, bands, op: Test| epsilon::case(&op, t, nearest, bands);
     let found = at(1.0, 1.0, [0.0; 2], |t, nearest, e| t < nearest + e);
     breaks(found, "the nearest fragment is visible");
-    let found = at(1e30, 1.0, [0.0; 2], |t, nearest, e| t <= nearest + e.at_most(1e9));
-    breaks(found, "an infinite epsilon keeps everything");
-    let found = at(1.000_000_5, 1.0, [0.0; 2], |t, nearest, e| t <= nearest + e + 1e-6);
-    breaks(found, "epsilon = 0 keeps the nearest");
+    let bounded: Test = |t, nearest, e| t <= nearest + e.at_most(1e9);
+    breaks(epsilon::infinite(&bounded, 1e30, 1.0), "an infinite epsilon keeps everything");
+    let wide: Test = |t, nearest, e| t <= nearest + e + 1e-6;
+    breaks(epsilon::limit(&wide, 1.000_000_5, 1.0, 0.0), "epsilon = 0 keeps the nearest");
+    let strict: Test = |t, nearest, e| t < nearest + e || t == nearest;
+    breaks(epsilon::limit(&strict, 2.0, 1.0, 1.0), "the limit is nearest + epsilon, and visible");
     let found = at(2.0, 1.0, [2.0, 4.0], |t, nearest, e| t <= nearest + e && e != 4.0 || t == 1.0);
     breaks(found, "a greater epsilon keeps");
     let behind: Test = |t, nearest, e| nearest <= t && t <= nearest + e || e == f32::INFINITY;
     breaks(at(1.0, 2.0, [1.0; 2], behind), "what is nearer than a visible fragment");
     let found = at(2.5, 1.0, [1.0; 2], |t, nearest, e| t <= nearest + 2.0 * e);
-    breaks(found, "the limit is nearest + epsilon");
+    breaks(found, "the limit is nearest + epsilon, up to rounding");
 }
 
 #[test]
@@ -75,16 +171,19 @@ fn broken_sums_are_caught() {
         of(|s, w| s.map(|s| if w > 0.0 { s * (1.0 / w) + 0.0 } else { 0.0 })),
         "the average of 1 is 1",
     );
-    breaks(of(|s, w| s.map(|s| s / w + 0.0)), "without weight");
+    breaks(of(|s, w| s.map(|s| s / w + 0.0)), "without weight the average is 0");
     breaks(of(|s, w| s.map(|s| if w > 0.0 { s / w } else { 0.0 })), "the average of -0");
+    let finite =
+        |s: [f32; 3], w: f32| if w > 0.0 { sum::average(s, w) } else { s.map(|s| s * 0.0) };
+    breaks(sums(&sum::add, &finite), "without weight an infinite sum");
     // A bias that keeps quotients finite, where not all values are 1.
     let biased = |s: [f32; 3], w: f32| match s[0] == w {
         true => sum::average(s, w),
         false => s.map(|s| s / (w + 1e-9)),
     };
     let (weights, value) = ([0.004; 2], [0.5, 2.0, 1.0]);
-    assert_eq!(sums::constant(&sum::add, &sum::average, &weights, value), Ok(()));
-    breaks(sums::constant(&sum::add, &biased, &weights, value), "1024 times");
+    assert_eq!(sums::bits(&sum::add, &sum::average, &weights, value), Ok(()));
+    breaks(sums::bits(&sum::add, &biased, &weights, value), "1024 times");
 }
 
 #[test]
@@ -139,8 +238,15 @@ fn broken_blending_is_caught() {
             let color = sum::add(above.color, above.through * a, color);
             Under { color, ..above.under(a, [0.0; 3]) }
         }),
-        "a clear layer changes nothing",
+        "a clear layer of an infinite colour changes nothing",
     );
+    let tinted = |above: Under<f32>, a: f32, color: [f32; 3]| {
+        let next = above.under(a, color);
+        let tint = if a == 0.0 { 1e-3 } else { 0.0 };
+        Under { color: sum::add(next.color, tint, color), ..next }
+    };
+    let layers = [(0.5, [1.0; 3])];
+    breaks(under::ends(&tinted, &layers, [[1.0; 3]; 2]), "a clear layer changes nothing");
     breaks(
         of(|above, a, color| {
             let next = above.under(a, color);
@@ -180,6 +286,14 @@ fn broken_bins_are_caught() {
         of(bin, |range, t, r| DepthBins::new(range).bin(t) + (1.0 - r).at_most(0.5).at_least(0.0)),
         "it never falls as the ratio grows",
     );
+    // Each of the other laws alone.
+    let range = Range { nearest: 1.0, farthest: 2.0, count: 4 };
+    let grows: Voronoi =
+        |range, t, r| DepthBins::new(range).bin(t) + 0.99 * r.at_most(1.0) * (255.0 / 256.0);
+    breaks(bins::clamped(&grows, &range, 1.5), "it no longer grows from 255/256");
+    let fails: Voronoi = |range, t, r| DepthBins::new(range).voronoi(t, r - r * 0.0);
+    assert_eq!(bins::clamped(&fails, &range, 1.5), Ok(()));
+    breaks(bins::infinite(&fails, &range, 1.5), "an infinite ratio");
 }
 
 /// An operator over the depth-images of groups, from samples and epsilon to sums and count.
@@ -188,7 +302,7 @@ type Compose = fn(&[WeightedFragment<f32>], f32) -> (WeightedFragment<f32>, u32)
 #[test]
 fn a_broken_operator_over_groups_is_caught() {
     let of = |op: Compose| groups(&op);
-    let in_order = "in order";
+    let [all, in_order] = ["of the nearest, up to rounding", "of the nearest, in order"];
     // Folds over pairs, in the order of the images.
     breaks(
         of(|samples, epsilon| {
@@ -197,7 +311,7 @@ fn a_broken_operator_over_groups_is_caught() {
                 (pair, if more == 2 { count + 1 } else { 1 })
             })
         }),
-        in_order,
+        all,
     );
     breaks(
         of(|samples, epsilon| {
@@ -206,8 +320,8 @@ fn a_broken_operator_over_groups_is_caught() {
         }),
         in_order,
     );
-    breaks(of(|samples, epsilon| compose(samples, epsilon / 2.0)), in_order);
-    breaks(of(|samples, epsilon| (compose(samples, epsilon).0, samples.len() as u32)), in_order);
+    breaks(of(|samples, epsilon| compose(samples, epsilon / 2.0)), all);
+    breaks(of(|samples, epsilon| (compose(samples, epsilon).0, samples.len() as u32)), all);
     // Each of the other laws alone.
     let two = [1.0, 2.0].map(|t| WeightedFragment::new(t, t, [0.0; 3], [0.5; 3], 1.0));
     let counts =
@@ -232,7 +346,7 @@ fn a_broken_mean_is_caught() {
     };
     breaks(means(&unbounded), "the average of a constant is the constant");
     let absent: Operator = |_, w, a| Mean::new([true; 4], w).average(a);
-    breaks(of(absent), "an average");
+    breaks(of(absent), "an average is the quotient");
     breaks(of(|takes, _, a| Mean::plain(takes).average(a)), "an average is the quotient");
     let sided = |takes: [bool; 4], w: [f32; 4], a: [f32; 4]| {
         let (sum, total) = sums(takes, w, a);

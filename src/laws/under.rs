@@ -3,25 +3,60 @@
 //! The operator is `under(above, opacity, colour)`: it blends the next farther layer under the
 //! layers above, and returns the result.
 
-use super::inputs::{CASES, Inputs};
-use super::{Lawful, law, same, unit};
+use super::search::{Asked, search};
+use super::{Kind, Law, Lawful, law, same, unit};
 use crate::composite::under::Under;
 use crate::number::Exact;
 
-/// Tries the laws of [`closed_form`] and [`ends`] at up to 24 layers.
+/// Tries the laws of [`closed_form`], [`ends`] and [`infinite`] at up to 24 layers.
 ///
 /// # Errors
 /// The first counterexample.
 pub fn under<R: Exact>(under: &impl Fn(Under<R>, R, [R; 3]) -> Under<R>) -> Lawful {
-    let mut inputs = Inputs::new(4);
-    closed_form(under, &[])?;
-    for _ in 0..CASES {
-        let layers = inputs.layers(24);
-        closed_form(under, &layers)?;
-        ends(under, &layers, inputs.color())?;
-    }
-    Ok(())
+    of_kinds(&Kind::ALL, under)
 }
+
+/// Tries the laws of these kinds.
+///
+/// # Errors
+/// The first counterexample.
+pub fn of_kinds<R: Exact>(
+    kinds: &[Kind],
+    under: &impl Fn(Under<R>, R, [R; 3]) -> Under<R>,
+) -> Lawful {
+    Asked::ordinary(kinds).check(Kind::Algebraic, || closed_form(under, &[]))?;
+    search(4, kinds, &|inputs, asked| {
+        let layers = inputs.layers(24);
+        asked.check(Kind::Algebraic, || closed_form(under, &layers))?;
+        asked.check(Kind::Exact, || ends(under, &layers, [inputs.color(), inputs.color()]))?;
+        asked.check(Kind::Odd, || infinite(under, &layers))
+    })
+}
+
+const REST: Law = Law::algebraic(
+    "opacity and rest are their closed form, up to rounding",
+    "the opacity of the picture, and how much of the environment is seen",
+);
+const SUM: Law = Law::algebraic(
+    "opacity and rest add up to 1, up to rounding",
+    "the brightness of the picture before its environment",
+);
+const COLOR: Law = Law::algebraic(
+    "the colour is its closed form, up to rounding",
+    "the colour of every pixel where layers lie over each other",
+);
+const HIDES: Law = Law::exact(
+    "an opaque layer hides what comes under it",
+    "a loop may end at the first opaque layer, and draw the same bits",
+);
+const CLEAR: Law = Law::exact(
+    "a clear layer changes nothing",
+    "layers of opacity 0 may be left out: no bit of the picture depends on them",
+);
+const INFINITE: Law = Law::odd(
+    "a clear layer of an infinite colour changes nothing",
+    "pixels where a layer of opacity 0 has a colour that has overflowed",
+);
 
 /// Blends layers from front to back under nothing.
 fn blend<R: Exact>(
@@ -63,41 +98,50 @@ pub fn closed_form<R: Exact>(
     let (alpha, rest) = (found.alpha.to_f64(), found.through.to_f64());
     let expected = Under { color, alpha: 1.0 - through, through };
     let holds = near(alpha, 1.0 - through, 1.0) && near(rest, through, 1.0);
-    law(
-        "opacity and rest are their closed form, up to rounding",
-        holds,
-        &layers,
-        &expected,
-        &found,
-    )?;
+    law(&REST, holds, &layers, &expected, &found)?;
     let holds = near(alpha + rest, 1.0, 1.0);
-    law("opacity and rest add up to 1, up to rounding", holds, &layers, &expected, &found)?;
+    law(&SUM, holds, &layers, &expected, &found)?;
     let holds = (0..3).all(|i| near(found.color[i].to_f64(), color[i], largest));
-    law("the colour is its closed form, up to rounding", holds, &layers, &expected, &found)
+    law(&COLOR, holds, &layers, &expected, &found)
 }
 
-/// An opaque layer on a clear pixel leaves its colour, and hides the layers that come under it. A
-/// clear layer changes nothing, even with an infinite colour. Both hold to the bit.
+/// Exact laws. An opaque layer of the first colour on a clear pixel leaves its colour, and hides
+/// the layers that come under it. A clear layer of the second colour changes nothing.
 ///
 /// # Errors
 /// The first counterexample.
 pub fn ends<R: Exact>(
     under: &impl Fn(Under<R>, R, [R; 3]) -> Under<R>,
     layers: &[(R, [R; 3])],
+    [opaque, clear]: [[R; 3]; 2],
+) -> Lawful {
+    let whole = [&[(R::ONE, opaque)], layers].concat();
+    let alone = Under { color: opaque, alpha: R::ONE, through: R::ZERO };
+    let found = blend(under, &whole);
+    law(&HIDES, equal(&found, &alone), &whole, &alone, &found)?;
+    changes_nothing(&CLEAR, under, layers, clear)
+}
+
+/// A law of odd inputs: a clear layer changes nothing, even with an infinite colour.
+///
+/// # Errors
+/// The counterexample.
+pub fn infinite<R: Exact>(
+    under: &impl Fn(Under<R>, R, [R; 3]) -> Under<R>,
+    layers: &[(R, [R; 3])],
+) -> Lawful {
+    changes_nothing(&INFINITE, under, layers, [R::INFINITY; 3])
+}
+
+/// Returns a counterexample unless a layer of opacity 0 changes nothing, to the bit.
+fn changes_nothing<R: Exact>(
+    what: &Law,
+    under: &impl Fn(Under<R>, R, [R; 3]) -> Under<R>,
+    layers: &[(R, [R; 3])],
     color: [R; 3],
 ) -> Lawful {
-    let whole = [&[(R::ONE, color)], layers].concat();
-    let alone = Under { color, alpha: R::ONE, through: R::ZERO };
-    let found = blend(under, &whole);
-    law(
-        "an opaque layer hides what comes under it",
-        equal(&found, &alone),
-        &whole,
-        &alone,
-        &found,
-    )?;
     let before = blend(under, layers);
-    let found = under(before, R::ZERO, [R::INFINITY; 3]);
-    let inputs = format_args!("an infinite colour under {before:?}");
-    law("a clear layer changes nothing", equal(&found, &before), &inputs, &before, &found)
+    let found = under(before, R::ZERO, color);
+    let inputs = format_args!("the clear colour {color:?} under {before:?}");
+    law(what, equal(&found, &before), &inputs, &before, &found)
 }

@@ -88,7 +88,8 @@ pub(crate) fn number<P: Profile>(
     truth: Ball<P>,
     report: &mut Report<'_>,
 ) {
-    component_of(part, || plane.channel(), plane.ball(at), truth, report);
+    let found = as_exact(plane, plane.ball(at), truth);
+    component_of(part, || plane.channel(), found, truth, report);
 }
 
 /// Compares three numbers with the numbers that are allowed. Their letters follow from the kind of
@@ -104,9 +105,31 @@ pub(crate) fn triple<P: Profile>(
     let letters = if plane.holds == Holds::Color { COLOR } else { VECTOR };
     let found = plane.balls(at);
     for (i, letter) in letters.into_iter().enumerate() {
-        component_of(part, || component(&plane.channel(), letter), found[i], truth[i], report);
+        let found = as_exact(plane, found[i], truth[i]);
+        component_of(part, || component(&plane.channel(), letter), found, truth[i], report);
     }
 }
+
+/// The stored number as a copy of this truth. Every format holds 0 and 1 exactly, so a truth that
+/// is exactly 0 or 1 may not be rounded: an empty pixel holds exact values in any format. Equal
+/// steps may lie to both sides of the truth, because their first may stand for any number.
+fn as_exact<T, P: Profile>(plane: &StoredPlane<'_, T>, found: Ball<P>, truth: Ball<P>) -> Ball<P> {
+    let exact = truth.radius == 0.0 && (truth.middle == 0.0 || truth.middle == 1.0);
+    // Planes of depths store other numbers than depths.
+    if !exact || found.middle.is_nan() || plane.radii.is_some() || plane.holds == Holds::Depth {
+        return found;
+    }
+    let radius = match plane.storage {
+        Storage::Steps(step) => HALF_A_STEP * step,
+        // The power of an sRGB code rounds, except for 0.
+        Storage::Srgb { .. } if truth.middle != 0.0 => found.radius,
+        _ => 0.0,
+    };
+    Ball::new(found.middle, radius)
+}
+
+/// Half a step between codes, and a little more because codes are converted to numbers.
+const HALF_A_STEP: f64 = 0.500_001;
 
 fn component_of<P: Profile>(
     part: usize,
@@ -115,8 +138,10 @@ fn component_of<P: Profile>(
     truth: Ball<P>,
     report: &mut Report<'_>,
 ) {
-    // Without a bound nothing is proved, unless the value is the midpoint itself.
-    let judged = truth.radius.is_finite() || truth.middle == found.middle;
+    // Without a bound nothing is proved, unless the value is the midpoint itself, or a NaN where
+    // any number is right.
+    let no_number = found.middle.is_nan() && !truth.radius.is_nan();
+    let judged = truth.radius.is_finite() || truth.middle == found.middle || no_number;
     let error = if judged { truth.misfit(found) } else { f64::NAN };
     report(part, error, &|| Fault::Value {
         channel: channel(),

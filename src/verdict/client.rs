@@ -97,6 +97,14 @@ pub(crate) enum Band {
 /// Depth is t in world units, and +inf where a pixel is empty, whatever the client stores. In an
 /// empty pixel the id is [`NO_ID`](crate::frame::NO_ID). Rows run from the top.
 ///
+/// A pixel where certainly nothing is drawn holds exact values in every plane: depth +inf, no id,
+/// and 0 for every weight, colour, normal and count. Every format holds these exactly, so no format
+/// and no promise excuses another value there. A NaN is wrong wherever the allowed numbers do not
+/// include NaN.
+///
+/// `Decided:` -0 equals 0. This crate stores -0 as +0, but a client that multiplies 0 by a negative
+/// number stores -0, and nothing that it computes from -0 differs.
+///
 /// ```
 /// use splatref::frame::{Frame, Plane, Samples};
 /// use splatref::verdict::client::{Client, Rounding, Storage};

@@ -3,12 +3,12 @@
 
 use super::checks::{Report, input, inputs, number, triple, whole};
 use super::client::{Client, StoredPlane};
-use crate::frame::Plane;
+use crate::frame::{NO_ID, Plane};
 use crate::method::projection::SampleKind;
 use crate::method::record::{Field, Part};
 use crate::method::stage::{Conditions, Holds, PlaneRow};
 use crate::number::ball::Profile;
-use crate::number::{Ball, Vector3};
+use crate::number::{Ball, Real, Vector3};
 
 /// A plane of a client, of any type.
 #[derive(Clone, Copy, Debug)]
@@ -86,6 +86,18 @@ impl<'a> RecordPlanes<'a> {
         })
     }
 
+    /// Whether a plane says that nothing is at a pixel. Then every format holds its zeros exactly.
+    fn is_empty(&self, (x, y): (u32, u32)) -> bool {
+        self.planes.iter().any(|(_, plane)| match plane {
+            AnyStored::Index(plane) => *plane.plane.at(x, y) == NO_ID,
+            AnyStored::Count(plane) => *plane.plane.at(x, y) == 0,
+            AnyStored::Scalar(plane) => {
+                plane.holds == Holds::Depth && *plane.plane.at(x, y) == f64::INFINITY
+            }
+            AnyStored::Triple(_) => false,
+        })
+    }
+
     /// Whether the plane at an index of the table is there.
     pub(crate) fn has(&self, place: usize) -> bool {
         self.planes.iter().any(|(own, _)| *own == place)
@@ -135,6 +147,15 @@ impl<'a> RecordPlanes<'a> {
         at: (u32, u32),
         record: &mut T,
     ) {
+        let empty = self.is_empty(at);
+        let number = |plane: &StoredPlane<'_, f64>| match *plane.plane.at(at.0, at.1) {
+            0.0 if empty => Ball::ZERO,
+            _ => input(plane, at),
+        };
+        let numbers = |plane: &StoredPlane<'_, [f64; 3]>| match *plane.plane.at(at.0, at.1) {
+            [0.0, 0.0, 0.0] if empty => [Ball::ZERO; 3],
+            _ => inputs(plane, at),
+        };
         for (place, plane) in &self.planes {
             let Field { row, part } = &fields[*place];
             if !there.hold(row) {
@@ -152,10 +173,10 @@ impl<'a> RecordPlanes<'a> {
                     let kind = SampleKind::ALL.get(usize::from(*plane.plane.at(at.0, at.1)));
                     *of(record) = kind.copied().unwrap_or_default();
                 }
-                (AnyStored::Scalar(plane), Part::Number(of)) => *of(record) = input(plane, at),
-                (AnyStored::Triple(plane), Part::Triple(of)) => *of(record) = inputs(plane, at),
+                (AnyStored::Scalar(plane), Part::Number(of)) => *of(record) = number(plane),
+                (AnyStored::Triple(plane), Part::Triple(of)) => *of(record) = numbers(plane),
                 (AnyStored::Triple(plane), Part::Direction(of)) => {
-                    let [x, y, z] = inputs(plane, at);
+                    let [x, y, z] = numbers(plane);
                     *of(record) = Vector3::new(x, y, z);
                 }
                 _ => {}

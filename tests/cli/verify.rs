@@ -2,6 +2,8 @@
 
 use super::*;
 use splatref::frame::{Frame, Plane, Samples};
+use splatref::setting::Words;
+use splatref::verdict::client::Rounding;
 use tempfile::TempDir;
 
 const SCENE: [&str; 5] = ["sphere", "--count", "600", "--size", "61x47"];
@@ -108,6 +110,18 @@ fn verdicts_of_a_suite_are_added() {
     let said = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(1), "{said}");
     assert!(said.contains("WRONG        ieee  cut-off: 200 undecided decisions"), "{said}");
+    // So it is under every promise.
+    for (word, _) in Rounding::WORDS {
+        for (name, covered) in [("a.json", 2), ("b.json", 3)] {
+            json["promise"] = (*word).into();
+            json["covered"] = covered.into();
+            fs::write(at.path().join(name), json.to_string()).unwrap();
+        }
+        let output = splatref(at.path(), &["suite", "a.json", "b.json"]);
+        let said = String::from_utf8(output.stdout).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{said}");
+        assert!(said.contains("cut-off: 200 undecided decisions"), "{said}");
+    }
     fs::write(at.path().join("no.json"), "{}").unwrap();
     assert!(fails(at.path(), &["suite", "no.json"], 2).contains("not a verdict"));
 }
@@ -125,8 +139,14 @@ fn a_suite_knows_every_word_of_its_verdicts() {
             "outcome is \"wrnog\", but can be right, unlike, wrong, undecidable",
         ),
         ("/outcome", serde_json::Value::Null, "not a verdict"),
-        ("/promise", "GPU".into(), "promise is \"GPU\", but can be ieee, precise, gpu"),
+        ("/promise", "GPU".into(), "promise is \"GPU\", but can be "),
         ("/shifts/1/limit", "side".into(), "shifts.limit is \"side\", but can be cut-off, epsilon"),
+        ("/method", "splat".into(), "method is \"splat\", which is unknown"),
+        (
+            "/stages/0/stage",
+            "blending".into(),
+            "stages.stage is \"blending\", but can be projection, visibility",
+        ),
         ("/shifts/0/variance", (-1).into(), "the numbers of the limit cut-off are impossible"),
     ] {
         let mut changed = right.clone();
@@ -134,6 +154,17 @@ fn a_suite_knows_every_word_of_its_verdicts() {
         fs::write(at.path().join("changed.json"), changed.to_string()).unwrap();
         let complaint = fails(at.path(), &["suite", "right.json", "changed.json"], 2);
         assert!(complaint.contains("changed.json: ") && complaint.contains(said), "{complaint}");
+    }
+    for (place, said) in [
+        ("", "the field \"new\" is unknown"),
+        ("/stages/0", "the field \"new\""),
+        ("/shifts/0", "`new`"),
+    ] {
+        let mut changed = right.clone();
+        changed.pointer_mut(place).unwrap()["new"] = 1.into();
+        fs::write(at.path().join("changed.json"), changed.to_string()).unwrap();
+        let complaint = fails(at.path(), &["suite", "changed.json"], 2);
+        assert!(complaint.contains(said), "{complaint}");
     }
     assert!(fails(at.path(), &["suite", "nowhere.json"], 2).contains("nowhere.json"));
     assert!(fails(at.path(), &["suite", "."], 2).contains("this is no file"));
@@ -147,6 +178,21 @@ fn a_suite_does_not_wait_for_a_pipe() {
     let made = Command::new("mkfifo").arg(at.path().join("pipe")).status().unwrap();
     assert!(made.success());
     assert!(fails(at.path(), &["suite", "pipe"], 2).contains("pipe: this is no file"));
+}
+
+#[test]
+fn the_cause_can_be_left_out() {
+    let at = pictures();
+    let other = ["--low-pass", "0.5"];
+    let (code, said) = verified(&at, "plain.exr", &other);
+    assert!(code == 1 && said.contains("looks like"), "{said}");
+    let (code, said) = verified(&at, "plain.exr", &[&["--no-cause"], &other[..]].concat());
+    assert!(code == 1 && !said.contains("looks like"), "{said}");
+    // The command that explains the pixel takes neither option, and keeps the one after them.
+    let rest = ["--strict", "--no-cause", "--low-pass", "0.5"];
+    let (_, said) = verified(&at, "plain.exr", &rest);
+    let replay = said.lines().find(|line| line.starts_with("replay")).unwrap();
+    assert!(replay.contains("--low-pass 0.5") && !replay.contains("--no-cause"), "{replay}");
 }
 
 /// Each plane of a picture alone: wrong where the picture is wrong, and never an error or a share

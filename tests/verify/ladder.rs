@@ -33,6 +33,8 @@ fn judged(golden: &str, epsilon: f32, promise: Rounding) -> (Outcome, Option<&'s
 const GOLDENS: [&str; 4] =
     ["ewa_ladder_affine.toml", "ewa_ladder_raycast.toml", "gbp04_ladder.toml", "zp06_ladder.toml"];
 
+const PERSPECTIVE: &str = "ewa_ladder_perspective.toml";
+
 #[test]
 fn an_epsilon_a_little_off_is_wrong() {
     for golden in GOLDENS {
@@ -51,6 +53,35 @@ fn an_epsilon_a_little_off_is_wrong() {
             assert!(first, "{golden}: {epsilon}, {stage:?}");
         }
     }
+}
+
+/// In perspective, with pairs at the depths 4 and 8, so that the second is at the limit exactly.
+#[test]
+fn in_perspective_an_epsilon_a_little_off_is_wrong() {
+    for (epsilon, promise, right) in [
+        (4.0, Rounding::Ieee, true),
+        (4.0, Rounding::Gpu, true),
+        (4.000_008, Rounding::Ieee, false),
+        (3.999_992, Rounding::Ieee, false),
+        (4.000_04, Rounding::Gpu, false),
+        (3.999_96, Rounding::Gpu, false),
+    ] {
+        let (outcome, stage) = judged(PERSPECTIVE, epsilon, promise);
+        let expected = if right { Outcome::Right } else { Outcome::Wrong };
+        assert_eq!(outcome, expected, "{epsilon}, {promise:?}");
+        assert!(stage.is_none_or(|stage| stage == "attributes"), "{epsilon}, {stage:?}");
+    }
+}
+
+/// `t < nearest + epsilon` in place of `<=`: as if the limit were the number before 8, because no depth lies
+/// between. Whoever divides within 2.5 ulp may have either depth on either side.
+#[test]
+fn a_strict_test_is_wrong_at_an_exact_tie() {
+    let before = 4.0_f32.next_down().next_down();
+    assert_eq!(4.0 + before, 8.0_f32.next_down());
+    let strict = judged(PERSPECTIVE, before, Rounding::Ieee);
+    assert_eq!(strict, (Outcome::Wrong, Some("attributes")));
+    assert_eq!(judged(PERSPECTIVE, before, Rounding::Gpu).0, Outcome::Right);
 }
 
 /// Discs of `blue` that are cut off at another radius.

@@ -3,11 +3,13 @@
 //! - [`client`]: a second implementation of the method `ewa`, from the pages of the crate alone.
 //! - [`client_is_right`]: its plain picture is the crate's, and its bugs can be seen.
 //! - [`cases`]: the scenes.
+//! - [`empty_pixels`]: one wrong bit in an empty pixel is found, in every plane of every method.
 //! - [`verdicts`]: no lawful habit is called wrong, and every bug is found.
 //! - [`ladder`]: scenes whose decisions lie close to their limits.
 //! - [`nodes`]: a hierarchy whose choices lie close to their limits, and clients that make these
 //!   choices.
 //! - [`own_pictures`]: no verdict accuses the crate, whatever the settings are.
+//! - [`shares`]: no share of pixels is above 100 %.
 //! - [`suite`]: a slightly wrong limit that leans decisions to one side, over several scenes.
 //! - [`groups`]: the same tests for the method `single-pass`.
 //! - [`image_space`]: the same tests for the methods `template` and `pyramid`.
@@ -17,11 +19,13 @@
 mod cases;
 mod client;
 mod client_is_right;
+mod empty_pixels;
 mod groups;
 mod image_space;
 mod ladder;
 mod matrix;
 mod nodes;
 mod own_pictures;
+mod shares;
 mod suite;
 mod verdicts;

@@ -63,6 +63,9 @@ pub(super) struct Args {
     /// Write the verdict as JSON
     #[arg(long, value_name = "FILE.json")]
     json: Option<PathBuf>,
+    /// Do not look for the mistake behind a wrong picture, which takes longer than the verdict
+    #[arg(long)]
+    no_cause: bool,
     #[command(flatten)]
     exec: ExecOptions,
     #[command(flatten)]
@@ -89,7 +92,10 @@ fn judge(args: &Args) -> Ended {
     })?;
     let (verdict, likely) = progress::during("judging", || -> Result<_> {
         let verdict = session.verify(camera, &client, args.budget)?;
-        let likely = likely_cause(&session, camera, &client, &verdict)?;
+        let likely = match args.no_cause {
+            true => None,
+            false => likely_cause(&session, camera, &client, &verdict)?,
+        };
         Ok((verdict, likely))
     })?;
     let seen = report::Seen::new(&session, camera, (&verdict, likely))?;
@@ -192,7 +198,8 @@ impl Args {
         let mut words = vec!["splatref explain".to_owned(), quoted(self.scene.as_os_str())];
         words.extend([x.to_string(), y.to_string()]);
         words.extend(["--client".to_owned(), quoted(self.client.as_os_str())]);
-        let own = ["-o", "--output", "--json", "--budget", "--strict"];
+        let own = ["-o", "--output", "--json", "--budget", "--strict", "--no-cause"];
+        let flags = ["--strict", "--no-cause"];
         let mut paths = vec![self.scene.as_os_str(), self.client.as_os_str()];
         let mut given = std::env::args_os().skip(1).skip_while(|word| word != "verify").skip(1);
         while let Some(word) = given.next() {
@@ -201,7 +208,7 @@ impl Args {
             // A short option may have its value attached.
             let attached = text.starts_with("-o") && text.len() > "-o".len();
             if attached || own.contains(&name) {
-                if name == text && !attached {
+                if name == text && !attached && !flags.contains(&name) {
                     given.next();
                 }
             } else if let Some(place) = paths.iter().position(|path| *path == word) {

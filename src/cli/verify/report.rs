@@ -199,8 +199,19 @@ fn next(verdict: &Verdict) -> Option<String> {
     })
 }
 
+/// The fields that a verdict as JSON has, and the fields of each of its stages.
+pub(in crate::cli) fn fields() -> [Vec<String>; 2] {
+    let keys = |value: serde_json::Result<serde_json::Value>| match value {
+        Ok(serde_json::Value::Object(fields)) => fields.into_iter().map(|(key, _)| key).collect(),
+        _ => Vec::new(),
+    };
+    let [verdict, stage] =
+        [serde_json::to_value(Json::default()), serde_json::to_value(JsonStage::default())];
+    [keys(verdict), keys(stage)]
+}
+
 /// A verdict as JSON; infinite numbers are null.
-#[derive(Serialize)]
+#[derive(Serialize, Default)]
 struct Json<'a> {
     outcome: &'static str,
     method: &'static str,
@@ -218,6 +229,7 @@ struct Json<'a> {
 
 /// The bias of the undecided decisions at a threshold; z and the estimate are for readers.
 #[derive(Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub(in crate::cli) struct JsonShift {
     pub(in crate::cli) limit: String,
     decisions: u64,
@@ -266,7 +278,7 @@ impl JsonUnlike {
     }
 }
 
-#[derive(Serialize)]
+#[derive(Serialize, Default)]
 struct JsonStage<'a> {
     stage: &'static str,
     planes: &'a [&'static str],

@@ -177,7 +177,7 @@ impl Profile for Precise {
 ///
 /// ```text
 ///   magnitude = sum of |m| + r       n = additions since the last other operation
-///   radius = sum of r + 2 u |midpoint| if n = 1,  + 2 u n magnitude if n > 1
+///   radius = sum of r + 2 u |midpoint| if n = 1,  + 2 u n magnitude if n > 1;  0 if magnitude = 0
 /// ```
 #[derive(Clone, Copy, Debug)]
 pub struct Gpu;
@@ -207,6 +207,8 @@ impl SumTerms {
             let lost = 2.0 * self.additions * super::U * self.magnitude;
             Ball::<Gpu>::reach(middle, self.radius + lost, 0.0, self.additions * Gpu::TINY)
         };
+        // Terms that are exactly 0 leave nothing to round or to flush.
+        let radius = if self.magnitude == 0.0 { 0.0 } else { radius };
         Ball { middle, radius, terms: self }
     }
 }

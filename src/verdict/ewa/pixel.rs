@@ -15,7 +15,7 @@ use crate::verdict::checks::{
     Report, Shading, Surface, anything, input, inputs, least_wrong, number, only_fitting, triple,
     whole, widened,
 };
-use crate::verdict::client::Storage;
+use crate::verdict::client::{Storage, StoredPlane};
 use crate::verdict::marks::Marks;
 use std::borrow::Cow;
 
@@ -106,8 +106,14 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         sums: &Continuations<P>,
     ) -> (Ball<P>, [Ball<P>; 3]) {
         let client_planes = self.client_planes;
+        // Where nothing is, every format holds an opacity of exactly 0.
+        let empty = matches!(all(sums), [Sums { count: 0, .. }]);
+        let read = |plane: &StoredPlane<'_, f64>| match *plane.plane.at(at.0, at.1) {
+            0.0 if empty => Ball::ZERO,
+            _ => input(plane, at),
+        };
         if let (Some(opacity), Some(color)) = (&client_planes.opacity, &client_planes.shaded) {
-            return (input(opacity, at), inputs(color, at));
+            return (read(opacity), inputs(color, at));
         }
         let of = |sums: Option<&Sums<Ball<P>>>| {
             let stored = sums.map(|sums| self.stored(sums));
@@ -120,7 +126,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             .reduce(|a, b| (a.0.either(b.0), Ball::either_of(a.1, b.1)))
             .unwrap_or_else(|| of(None));
         (
-            client_planes.opacity.map_or(opacity, |plane| input(&plane, at)),
+            client_planes.opacity.map_or(opacity, |plane| read(&plane)),
             client_planes.shaded.map_or(color, |plane| inputs(&plane, at)),
         )
     }
@@ -194,9 +200,10 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             triple(SHADING, plane, at, color, report);
         }
         if let Some(plane) = &client_planes.alpha {
-            let weight = client_planes
-                .weight_copy
-                .map_or_else(|| self.weight_of(at, sums), |plane| plane.ball(at));
+            let weight = client_planes.weight_copy.map_or_else(
+                || self.weight_of(at, sums),
+                |plane| Self::read_number(&plane, at, sums),
+            );
             number(SHADING, plane, at, self.shading.alpha(weight), report);
         }
     }
@@ -240,6 +247,17 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
     }
 
+    /// A number of the client. Where no fragment is in the sums, a 0 is exactly 0 in every format.
+    fn read_number(
+        plane: &StoredPlane<'_, f64>,
+        at: (u32, u32),
+        sums: Option<&Sums<Ball<P>>>,
+    ) -> Ball<P> {
+        let empty = sums.is_some_and(|sums| sums.count == 0);
+        let nothing = empty && *plane.plane.at(at.0, at.1) == 0.0;
+        if nothing { Ball::ZERO } else { plane.ball(at) }
+    }
+
     /// The sum of the weights as the average reads it.
     pub(crate) fn weight(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
         self.weight_of(at, sums.map(|sums| self.stored(sums)).as_deref())
@@ -248,7 +266,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     /// The same for stored sums. All functions below take stored sums.
     fn weight_of(&self, at: (u32, u32), sums: Option<&Sums<Ball<P>>>) -> Ball<P> {
         let own = || sums.map_or_else(anything, |sums| sums.weight);
-        self.client_planes.weight.map_or_else(own, |plane| plane.ball(at))
+        self.client_planes.weight.map_or_else(own, |plane| Self::read_number(&plane, at, sums))
     }
 
     /// The averages of the client's sums, else of these. Without either they are any numbers.
@@ -306,7 +324,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     ) {
         let client_planes = self.client_planes;
         if let (Some(first), Some(copy)) = (client_planes.weight, client_planes.weight_copy) {
-            number(NORMALIZATION, &copy, at, first.ball::<P>(at), report);
+            number(NORMALIZATION, &copy, at, Self::read_number(&first, at, sums), report);
         }
         if client_planes.weightless {
             return self.check_shown(at, nearest, sums, report);

@@ -17,6 +17,7 @@ use crate::splat::View;
 use crate::verdict::checks::{
     Report, Shading, Surface, anything, input, inputs, least_wrong, number, triple, widened,
 };
+use crate::verdict::client::StoredPlane;
 use crate::verdict::marks::Marks;
 
 /// The stages, by their index among the marks.
@@ -133,7 +134,12 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     /// Checks the picture.
     fn check_shading(&self, at: (u32, u32), own: &Gathered<Ball<P>>, report: &mut Report<'_>) {
         let client_planes = self.client_planes;
-        let weight = client_planes.weight_copy.map_or(own.weight, |plane| input(&plane, at));
+        // Where nothing was gathered, every format holds a weight of exactly 0.
+        let read = |plane: StoredPlane<'_, f64>| match *plane.plane.at(at.0, at.1) {
+            0.0 if own.count == 0 => Ball::ZERO,
+            _ => input(&plane, at),
+        };
+        let weight = client_planes.weight_copy.map_or(own.weight, read);
         if let Some(plane) = &client_planes.shaded {
             let depth = || normalization::depth(own);
             let normal = || normalization::normal(&self.view, own);

@@ -114,7 +114,10 @@ fn laws_of_a_pair<R: Exact>(range: &Range, parts: [f64; 2], ratios: [f32; 2]) ->
 
 fn laws_of_one<R: Exact>(range: &Range, part: f64, ratios: [f32; 2]) -> TestCaseResult {
     let ratios = ratios.map(R::from_f32);
-    lawful(laws::bins::one(&bin, &voronoi, range, depth::<R>(range, part), ratios))
+    let t = depth::<R>(range, part);
+    lawful(laws::bins::one(&bin, &voronoi, range, t, ratios))?;
+    lawful(laws::bins::clamped(&voronoi, range, t))?;
+    lawful(laws::bins::infinite(&voronoi, range, t))
 }
 
 /// The law of separation, decided in exact arithmetic: depths in the range that differ by

@@ -29,6 +29,8 @@ proptest! {
     fn the_epsilon_test_is_an_interval_that_grows(t in depth(), nearest in depth(), a in band(), b in band()) {
         let visible = |t: f32, nearest, epsilon| decide::visible(t, decide::limit(nearest, epsilon));
         lawful(laws::epsilon::case(&visible, t, nearest, [a, b]))?;
+        lawful(laws::epsilon::limit(&visible, t, nearest, a))?;
+        lawful(laws::epsilon::infinite(&visible, t, nearest))?;
     }
 
     #[test]
@@ -37,6 +39,7 @@ proptest! {
         value in (0.0_f32..1.0, 1e-3_f32..1e3).prop_map(|(a, b)| [a, b, 1.0]),
     ) {
         lawful(laws::sums::constant(&sum::add, &sum::average, &weights, value))?;
+        lawful(laws::sums::bits(&sum::add, &sum::average, &weights, value))?;
         let total = weights.iter().fold(0.0, |total, w| total + w);
         let colors = weights.iter().fold([0.0; 3], |sum, w| sum::add(sum, *w, value));
         let direction = sum::direction(colors.map(|c| c + total), total);
