@@ -25,7 +25,7 @@ pub(in crate::cli) struct Seen<'a> {
 const NAMED: usize = 5;
 
 impl<'a> Seen<'a> {
-    pub(super) fn new(
+    pub(in crate::cli) fn new(
         session: &Session<'_>,
         camera: &Camera,
         (verdict, likely): (&'a Verdict, Option<String>),
