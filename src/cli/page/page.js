@@ -15,18 +15,24 @@ async function load() {
     next.error = next.marks.errors ? errorColors(next.marks) : null;
     next.doubt = next.marks.doubts ? doubtColors(next.marks.doubts) : null;
   }
-  await Promise.all(listed.flatMap(({ names }) => names).map(async name => {
+  const need = names => Promise.all(names.map(async name => {
     const entry = data.channels[name];
     if (!next.channels.has(name)) next.channels.set(name, entry && entry.digits ? await values(entry) : null);
   }));
+  await need(plane ? plane.channels : []);
   if (mine !== turn) return;
-  loaded = next;
-  loaded.rows = listed.flatMap(({ plane, names }) => names.map(name => ({ name, kind: plane.kind })));
+  loaded = { ...next, rows: [], complete: false };
   const channels = plane ? plane.channels.map(name => next.channels.get(name)) : [];
   const limits = range(channels);
   loaded.sides = plane ? [0, 1].map(side => colors(plane, channels, side, limits)) : [null, null];
   by("scale").innerHTML = plane ? scaleOf(plane, limits) : "";
   by("meaning").textContent = plane ? plane.meaning : "";
+  draw();
+  // The pictures are there; the numbers of the other planes follow.
+  await need(listed.flatMap(({ names }) => names));
+  if (mine !== turn) return;
+  loaded.rows = listed.flatMap(({ plane, names }) => names.map(name => ({ name, kind: plane.kind })));
+  loaded.complete = true;
   draw();
 }
 
@@ -114,7 +120,7 @@ function now() {
   const pixel = shown();
   if (pixel) views.forEach((canvas, i) => { if (there[i]) box(canvas, pixel, "#fff", 8 * ratio); });
   read();
-  document.body.dataset.ready = `${state.tab} ${state.plane} ${state.mode}`;
+  document.body.dataset.ready = loaded.complete ? `${state.tab} ${state.plane} ${state.mode}` : "";
 }
 
 // ---- The read-out
