@@ -20,6 +20,7 @@ mod interrupt;
 mod memory;
 mod options;
 mod output;
+mod page;
 mod plan;
 mod progress;
 mod project;

@@ -52,7 +52,8 @@ pub fn is_observation(channel: &str) -> bool {
 
 impl Criteria {
     /// The tolerance of a channel. `all` holds the names of all channels, sorted.
-    pub(super) fn tolerance_of(&self, channel: &str, all: &[String]) -> Tolerance {
+    #[must_use]
+    pub fn tolerance_of(&self, channel: &str, all: &[String]) -> Tolerance {
         let last = self.named.iter().rev().find(|(name, _)| selects(name, channel, all));
         last.map_or(self.tolerance, |(_, tolerance)| *tolerance)
     }

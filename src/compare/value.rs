@@ -94,7 +94,8 @@ impl Difference {
     }
 
     /// Whether the difference lies within either bound of `tolerance`.
-    pub(super) fn passes(&self, tolerance: Tolerance) -> bool {
+    #[must_use]
+    pub fn passes(&self, tolerance: Tolerance) -> bool {
         let (ChannelValue::Float(first), ChannelValue::Float(second)) = (self.first, self.second)
         else {
             // Indices have no distance, and equal ones never get here.

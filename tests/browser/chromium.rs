@@ -176,6 +176,22 @@ impl Page<'_> {
         }
     }
 
+    /// Presses a key by its name: `ArrowLeft`.
+    pub(crate) fn press(&mut self, name: &str) {
+        for kind in ["rawKeyDown", "keyUp"] {
+            self.ask("Input.dispatchKeyEvent", json!({ "type": kind, "key": name }));
+        }
+    }
+
+    /// Shows the page as a person wants it who prefers a scheme and less motion.
+    pub(crate) fn prefers(&mut self, scheme: &str, motion: &str) {
+        let features = json!([
+            { "name": "prefers-color-scheme", "value": scheme },
+            { "name": "prefers-reduced-motion", "value": motion },
+        ]);
+        self.ask("Emulation.setEmulatedMedia", json!({ "features": features }));
+    }
+
     /// Asserts that nothing went wrong and nothing was asked of the network.
     pub(crate) fn finish(self) {
         assert!(self.browser.complaints.is_empty(), "{:?}", self.browser.complaints);

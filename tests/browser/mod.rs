@@ -6,6 +6,7 @@
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
 mod chromium;
+mod verdict;
 
 use chromium::{Browser, Page};
 use std::path::Path;

@@ -42,6 +42,23 @@ fn npy(at: &TempDir, name: &str, descr: &str, shape: &str, data: &[u8]) {
 }
 
 #[test]
+fn a_page_shows_what_was_compared() {
+    let at = two_pictures();
+    let (code, said) = compared(&at, &["a.exr", "b.exr", "--report", "page.html"]);
+    assert_eq!((code, said), compared(&at, &["a.exr", "b.exr"]), "prints the same");
+    let page = fs::read_to_string(at.path().join("page.html")).unwrap();
+    assert!(page.contains("different: 2 of 5 planes differ") && !page.contains("://"));
+    let compare = |rest: &[&str]| fails(at.path(), &[&["compare", "a.exr"], rest].concat(), 2);
+    assert!(compare(&["b.exr", "--report", "./b.exr"]).contains("is also an input"));
+    // Pictures of two sizes have a page too, which says so.
+    let small = Frame::new(2, 2).with("Z", Samples::Scalar(Plane::filled(2, 2, 1.0))).unwrap();
+    exr::write(&at.path().join("small.exr"), &small, "").unwrap();
+    assert_eq!(compared(&at, &["a.exr", "small.exr", "--report", "page.html"]).0, 1);
+    let page = fs::read_to_string(at.path().join("page.html")).unwrap();
+    assert!(page.contains("The sizes differ, so no pixel can be compared."));
+}
+
+#[test]
 fn planes_are_chosen_and_each_has_its_tolerance() {
     let at = two_pictures();
     let (code, said) = compared(&at, &["a.exr", "b.exr"]);

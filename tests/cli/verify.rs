@@ -75,6 +75,78 @@ fn the_errors_are_written_as_json_and_exr() {
 }
 
 #[test]
+fn json_lists_wrong_pixels_and_counts_errors() {
+    let at = pictures();
+    let (code, said) = verified(&at, "plain.exr", &["--epsilon", "1r", "--json", "verdict.json"]);
+    assert_eq!(code, 1);
+    let json = fs::read_to_string(at.path().join("verdict.json")).unwrap();
+    let json: serde_json::Value = serde_json::from_str(&json).unwrap();
+    assert!(said.contains(&format!("replay         {}", json["replay"].as_str().unwrap())));
+    for stage in json["stages"].as_array().unwrap() {
+        let counts: Vec<u64> = stage["histogram"]["counts"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|count| count.as_u64().unwrap())
+            .collect();
+        let edges = stage["histogram"]["edges"].as_array().unwrap();
+        assert_eq!((counts.len(), counts.iter().sum::<u64>()), (edges.len() + 1, 61 * 47));
+        let right = edges.iter().position(|edge| edge.as_f64() == Some(1.0)).unwrap();
+        let wrong = stage["wrong"].as_u64().unwrap();
+        assert_eq!(counts[right + 1..].iter().sum::<u64>(), wrong);
+        let listed = stage["wrong_pixels"].as_array().unwrap();
+        assert_eq!(listed.len() as u64, wrong.min(1000));
+        if let Some(first) = listed.first() {
+            assert_eq!(first["pixel"], stage["worst"]["pixel"]);
+        }
+    }
+}
+
+#[test]
+fn a_page_is_written_whole_and_apart_from_other_files() {
+    let at = pictures();
+    let (code, said) = verified(&at, "mine.exr", &["--epsilon", "1r", "--report", "page.html"]);
+    assert_eq!(code, 1, "{said}");
+    assert_eq!(verified(&at, "mine.exr", &["--epsilon", "1r"]).1, said, "prints the same");
+    let page = fs::read_to_string(at.path().join("page.html")).unwrap();
+    for text in ["epsilon is twice as wide", "splatref explain sphere", "visible if depth"] {
+        assert!(page.contains(text), "no {text}");
+    }
+    assert!(!page.contains("://") && page.ends_with("</html>\n"), "loads nothing");
+    let verify = |rest: &[&str], code| {
+        fails(
+            at.path(),
+            &[&["verify"], &SCENE[..1], &["mine.exr"], &SCENE[1..], rest].concat(),
+            code,
+        )
+    };
+    for rest in [["--json", "a.x", "--report", "./a.x"], ["-o", "a.exr", "--report", "a.exr"]] {
+        assert!(verify(&rest, 2).contains("are the same file; give two names"));
+    }
+    assert!(verify(&["--report", "mine.exr"], 2).contains("is also an input"));
+    assert!(verify(&["--report", "-"], 2).contains("standard output"));
+    assert!(verify(&["--report", "none/page.html"], 2).contains("none/page.html"));
+    // A read-only page stays, and no other file is replaced.
+    fs::write(at.path().join("v.json"), "old").unwrap();
+    fs::create_dir(at.path().join("folder.html")).unwrap();
+    verify(&["--json", "v.json", "--report", "folder.html"], 2);
+    assert_eq!(fs::read_to_string(at.path().join("v.json")).unwrap(), "old");
+}
+
+#[test]
+#[ignore = "slow: .ci/run runs it"]
+fn a_page_of_1024_x_768_pixels_has_less_than_10_mb() {
+    let at = TempDir::new().unwrap();
+    let scene = ["sphere", "--count", "20000", "--size", "1024x768"];
+    succeeds(at.path(), &[&["render"], &scene[..], &["--stages", "-o", "mine.exr"]].concat());
+    let page = ["--epsilon", "1r", "--report", "page.html"];
+    let verify = [&["verify", "sphere", "mine.exr"], &scene[1..], &page].concat();
+    assert_eq!(splatref(at.path(), &verify).status.code(), Some(1));
+    let length = fs::metadata(at.path().join("page.html")).unwrap().len();
+    assert!((1_000_000..10_000_000).contains(&length), "{length} bytes");
+}
+
+#[test]
 fn verdicts_of_a_suite_are_added() {
     let at = pictures();
     for (client, json) in [("mine.exr", "a.json"), ("plain.exr", "b.json")] {

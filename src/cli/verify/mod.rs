@@ -1,8 +1,10 @@
 //! `splatref verify`: decides whether a correct implementation can produce the planes of a client.
 
+pub(super) mod page;
 pub(super) mod report;
 
 use super::options::{ExecOptions, SceneOptions};
+use super::page::Report;
 use super::words::quoted;
 use super::{Ended, Ending, draw, output, progress, say};
 use splatref::frame::{Exec, Frame, Samples};
@@ -30,7 +32,7 @@ computed in f64 and stored f32, add --number f64: the verdict then allows for th
 Examples:
   splatref render sphere --stages -o out/mine.exr && splatref verify sphere out/mine.exr
   splatref verify scene.toml gpu.exr --promise ieee -o out/errors.exr --json out/verdict.json
-  splatref verify scene.toml gpu.toml
+  splatref verify scene.toml gpu.toml --report out/verdict.html
   splatref verify scene.toml blender.exr --channels RGB=ViewLayer.Combined
 
 The documentation of splatref::io::client describes the TOML file.
@@ -66,6 +68,9 @@ pub(super) struct Args {
     /// Do not look for the mistake behind a wrong picture, which takes longer than the verdict
     #[arg(long)]
     no_cause: bool,
+    /// Write a page that shows each stage, its errors and the worst pixels in a browser
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
     #[command(flatten)]
     exec: ExecOptions,
     #[command(flatten)]
@@ -100,7 +105,13 @@ fn judge(args: &Args) -> Ended {
     })?;
     let seen = report::Seen::new(&session, camera, (&verdict, likely))?;
     progress::during("writing", || {
-        write(args, (&seen, &client), || errors(camera, &verdict), &exec)
+        let page = || {
+            let (facts, replay) = (seen.facts(args, &client), &|pixel| args.replay(pixel));
+            let (client, number, seen) = (&client, file.output.number, &seen);
+            let (session, exec) = (&session, &exec);
+            page::Judged { session, camera, number, client, seen, facts, replay, exec }.report()
+        };
+        write(args, (&seen, &client), (|| errors(camera, &verdict), page), &exec)
     })?;
     seen.lines(args, &client).iter().for_each(say);
     Ok(match verdict.outcome() {
@@ -112,11 +123,11 @@ fn judge(args: &Args) -> Ended {
     })
 }
 
-/// Writes the requested files; both are complete before either replaces an old file.
+/// Writes the requested files; all are complete before any replaces an old file.
 fn write(
     args: &Args,
     (seen, client): (&report::Seen<'_>, &Client),
-    errors: impl FnOnce() -> Result<Frame<f32>>,
+    (errors, page): (impl FnOnce() -> Result<Frame<f32>>, impl FnOnce() -> Result<Report>),
     exec: &Exec,
 ) -> Result<()> {
     let compression = OutputSettings::default().compression;
@@ -126,23 +137,26 @@ fn write(
     };
     let json = match &args.json {
         Some(path) => {
-            let text = seen.json(client)?;
+            let text = seen.json(args, client)?;
             Some(Pending::write(path, |file| file.write_all(text.as_bytes()))?)
         }
         None => None,
     };
-    picture.into_iter().chain(json).try_for_each(Pending::put)
+    let page = match &args.report {
+        Some(path) => Some(super::page::pending(path, &page()?, exec)?),
+        None => None,
+    };
+    picture.into_iter().chain(json).chain(page).try_for_each(Pending::put)
 }
 
 /// Refuses wrong options before anything is loaded.
 fn check(args: &Args, file: &SceneFile, described: &Description) -> Result<()> {
-    for path in args.output.iter().chain(&args.json) {
+    let outputs: Vec<&PathBuf> = args.output.iter().chain(&args.json).chain(&args.report).collect();
+    for (i, path) in outputs.iter().enumerate() {
+        outputs[..i].iter().try_for_each(|other| output::check_two(other, path))?;
         output::check(path, &args.scene, file)?;
         output::check_other(path, &args.client)?;
         described.files().try_for_each(|read| output::check_other(path, read))?;
-    }
-    if let (Some(errors), Some(json)) = (&args.output, &args.json) {
-        output::check_two(errors, json)?;
     }
     if let Some(path) = &args.output
         && !matches!(FileKind::from_extension(path), Ok(FileKind::Exr))
@@ -198,8 +212,8 @@ impl Args {
         let mut words = vec!["splatref explain".to_owned(), quoted(self.scene.as_os_str())];
         words.extend([x.to_string(), y.to_string()]);
         words.extend(["--client".to_owned(), quoted(self.client.as_os_str())]);
-        let own = ["-o", "--output", "--json", "--budget", "--strict", "--no-cause"];
         let flags = ["--strict", "--no-cause"];
+        let own = ["-o", "--output", "--json", "--report", "--budget", flags[0], flags[1]];
         let mut paths = vec![self.scene.as_os_str(), self.client.as_os_str()];
         let mut given = std::env::args_os().skip(1).skip_while(|word| word != "verify").skip(1);
         while let Some(word) = given.next() {

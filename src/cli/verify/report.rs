@@ -4,6 +4,7 @@ use super::Args;
 use crate::cli::report::short;
 use serde::{Deserialize, Serialize};
 use splatref::Result;
+use splatref::frame::Plane;
 use splatref::method::Session;
 use splatref::scene::Camera;
 use splatref::setting::Word;
@@ -12,10 +13,10 @@ use splatref::verdict::shift::{LIMITS, Shift};
 use splatref::verdict::{Doubt, Fault, Finding, Outcome, StageVerdict, Unlike, Verdict};
 
 /// A verdict, with what its report shows beside it.
-pub(super) struct Seen<'a> {
-    verdict: &'a Verdict,
+pub(in crate::cli) struct Seen<'a> {
+    pub(super) verdict: &'a Verdict,
     method: &'static str,
-    likely: Option<String>,
+    pub(super) likely: Option<String>,
     /// The surfels with the largest weights at the worst pixel.
     heaviest: Vec<(u32, f64)>,
 }
@@ -24,12 +25,12 @@ pub(super) struct Seen<'a> {
 const NAMED: usize = 5;
 
 impl<'a> Seen<'a> {
-    pub(super) fn new(
+    pub(in crate::cli) fn new(
         session: &Session<'_>,
         camera: &Camera,
         (verdict, likely): (&'a Verdict, Option<String>),
     ) -> Result<Self> {
-        let heaviest = match verdict.first_wrong().and_then(|stage| stage.worst.as_ref()) {
+        let heaviest = match worst(verdict) {
             Some(worst) => session.weights(camera, worst.pixel)?,
             None => Vec::new(),
         };
@@ -38,6 +39,13 @@ impl<'a> Seen<'a> {
 
     /// The lines of the report.
     pub(super) fn lines(&self, args: &Args, client: &Client) -> Vec<String> {
+        let facts = self.facts(args, client).into_iter();
+        let lines = facts.map(|(label, text)| format!("{label:<14} {text}"));
+        lines.chain([self.ending()]).collect()
+    }
+
+    /// Labels and texts: the report without its last line.
+    pub(super) fn facts(&self, args: &Args, client: &Client) -> Vec<(String, String)> {
         let Self { verdict, method, likely, heaviest } = self;
         let mut lines = vec![labelled("client", planes(client, method))];
         let promise = format!("{}, {}", client.rounding.word(), client.rounding.promise());
@@ -70,12 +78,11 @@ impl<'a> Seen<'a> {
         let shifts = LIMITS.into_iter().zip(&verdict.shifts);
         let visible = shifts.filter(|(_, shift)| shift.z().abs() >= Shift::REMARK);
         lines.extend(visible.map(|(limit, shift)| labelled("shift", leaning(limit, shift))));
-        lines.push(self.ending());
         lines
     }
 
     /// The verdict in a sentence.
-    fn ending(&self) -> String {
+    pub(super) fn ending(&self) -> String {
         let Verdict { undecided, covered, unbounded, budget, .. } = self.verdict;
         let share = |pixels: u64| 100.0 * pixels as f64 / (*covered).max(1) as f64;
         match self.verdict.outcome() {
@@ -103,7 +110,7 @@ impl<'a> Seen<'a> {
     }
 
     /// The report as JSON, for other programs.
-    pub(super) fn json(&self, client: &Client) -> Result<String> {
+    pub(super) fn json(&self, args: &Args, client: &Client) -> Result<String> {
         let Self { verdict, method, likely, heaviest } = self;
         let json = Json {
             outcome: verdict.outcome().word(),
@@ -115,6 +122,7 @@ impl<'a> Seen<'a> {
             first_wrong: verdict.first_wrong().map(|stage| stage.stage),
             looks_like: likely.as_deref(),
             heaviest: heaviest.clone(),
+            replay: worst(verdict).map(|worst| args.replay(worst.pixel)),
             stages: verdict.stages.iter().map(JsonStage::new).collect(),
             unlike: verdict.unlike.iter().map(JsonUnlike::new).collect(),
             shifts: LIMITS.iter().zip(&verdict.shifts).map(JsonShift::new).collect(),
@@ -124,8 +132,8 @@ impl<'a> Seen<'a> {
     }
 }
 
-fn labelled(label: &str, text: impl std::fmt::Display) -> String {
-    format!("{label:<14} {text}")
+fn labelled(label: &str, text: impl std::fmt::Display) -> (String, String) {
+    (label.to_owned(), text.to_string())
 }
 
 /// The planes that the client handed in.
@@ -140,7 +148,7 @@ fn planes(client: &Client, method: &str) -> String {
 }
 
 /// A stage in words.
-fn judged(stage: &StageVerdict) -> String {
+pub(super) fn judged(stage: &StageVerdict) -> String {
     if stage.planes.is_empty() {
         return "not judged: none of its planes was handed in".into();
     }
@@ -222,6 +230,8 @@ struct Json<'a> {
     first_wrong: Option<&'static str>,
     looks_like: Option<&'a str>,
     heaviest: Vec<(u32, f64)>,
+    /// The command that explains the worst pixel of the first wrong stage.
+    replay: Option<String>,
     stages: Vec<JsonStage<'a>>,
     unlike: Vec<JsonUnlike>,
     shifts: Vec<JsonShift>,
@@ -286,6 +296,25 @@ struct JsonStage<'a> {
     wrong: u64,
     undecided: Vec<(&'static str, u64)>,
     worst: Option<JsonFinding>,
+    wrong_pixels: Vec<JsonPixel>,
+    histogram: JsonHistogram,
+}
+
+/// A wrong pixel and its error in bounds.
+#[derive(Serialize)]
+struct JsonPixel {
+    pixel: (u32, u32),
+    error: f32,
+}
+
+/// How many pixels have errors in which range.
+#[derive(Serialize)]
+struct JsonHistogram {
+    /// The edges, ascending.
+    edges: [f32; EDGES.len()],
+    /// The number of pixels with an error up to the first edge, then of each range above an edge up
+    /// to the next, and last above all edges.
+    counts: Vec<u64>,
 }
 
 #[derive(Serialize)]
@@ -308,8 +337,43 @@ impl<'a> JsonStage<'a> {
             wrong: stage.wrong,
             undecided: undecided.to_vec(),
             worst: stage.worst.as_ref().map(JsonFinding::new),
+            wrong_pixels: wrong_pixels(&stage.errors),
+            histogram: histogram(stage.errors.values()),
         }
     }
+}
+
+/// The most wrong pixels of a stage that the JSON lists.
+const MOST_WRONG: usize = 1000;
+
+/// The edges of the histogram of errors in bounds. Up to 1 a pixel is right.
+const EDGES: [f32; 18] = [
+    0.0, 0.001, 0.01, 0.05, 0.1, 0.15, 0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 1.0, 10.0, 100.0,
+    1000.0,
+];
+
+/// The worst wrong pixels, the worst first.
+fn wrong_pixels(errors: &Plane<f32>) -> Vec<JsonPixel> {
+    let width = errors.width().max(1) as usize;
+    let errors = errors.values();
+    let mut wrong: Vec<usize> = (0..errors.len()).filter(|&i| errors[i] > 1.0).collect();
+    wrong.sort_by(|&a, &b| errors[b].total_cmp(&errors[a]).then(a.cmp(&b)));
+    let pixel = |i: usize| ((i % width) as u32, (i / width) as u32);
+    let wrong = wrong.into_iter().take(MOST_WRONG);
+    wrong.map(|i| JsonPixel { pixel: pixel(i), error: errors[i] }).collect()
+}
+
+fn histogram(errors: &[f32]) -> JsonHistogram {
+    let mut counts = vec![0; EDGES.len() + 1];
+    for error in errors {
+        counts[EDGES.partition_point(|edge| edge < error)] += 1;
+    }
+    JsonHistogram { edges: EDGES, counts }
+}
+
+/// The worst pixel of the first wrong stage.
+fn worst(verdict: &Verdict) -> Option<&Finding> {
+    verdict.first_wrong()?.worst.as_ref()
 }
 
 impl JsonFinding {

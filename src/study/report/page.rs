@@ -85,7 +85,8 @@ fn inline(png: &[u8]) -> String {
 
 /// Fills in a template: `{{name}}` becomes the text of that name. Inserted text is not searched
 /// again.
-fn filled(template: &str, texts: &[(&str, String)]) -> String {
+#[must_use]
+pub fn filled(template: &str, texts: &[(&str, String)]) -> String {
     let mut parts = template.split("{{");
     let mut out = parts.next().unwrap_or_default().to_owned();
     for part in parts {

@@ -1,9 +1,13 @@
 //! `splatref compare`: compares two pictures, plane by plane.
 
-use super::{Ended, Ending, report, say};
+mod page;
+
+use super::page::pending;
+use super::{Ended, Ending, output, report, say};
 use splatref::compare::metrics;
 use splatref::compare::{Criteria, Tolerance, Verdict, compare};
 use splatref::frame::{Exec, Image};
+use splatref::io::replace::Pending;
 use splatref::io::{exr, extension, npy, npz, png};
 use splatref::number::srgb;
 use splatref::{Error, Result};
@@ -33,7 +37,7 @@ Examples:
   splatref compare truth.exr gpu.exr --planes Z,id,normal --tolerance Z:ulp=4,pixels=3
       --tolerance id:pixels=20
   splatref compare truth.exr Z.npy
-  splatref compare truth.exr screen.png --max-abs 0.004
+  splatref compare truth.exr screen.png --max-abs 0.004 --report out/differences.html
 
 Exit codes: 0 equal or within the tolerance, 1 different or failed, 2 wrong usage.")]
 pub(super) struct Args {
@@ -61,22 +65,36 @@ pub(super) struct Args {
     /// Give the plane in an NPY this name
     #[arg(long = "as", value_name = "NAME")]
     name: Option<String>,
+    /// Write a page that shows both pictures and their differences in a browser
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
 }
 
 pub(super) fn run(args: &Args) -> Ended {
+    if let Some(path) = &args.report {
+        output::check_folder(path)?;
+        [&args.first, &args.second].iter().try_for_each(|read| output::check_other(path, read))?;
+    }
     let exec = Exec::new(0, 32)?;
     let read = |path| PictureFile::read(path, args, &exec);
     let mut pair = [read(&args.first)?, read(&args.second)?];
     args.rename(&mut pair)?;
     let stored = pair.iter().any(|file| matches!(file, PictureFile::Png(_)));
     let (first, second) = alike(pair)?;
-    let found = compare(&first, &second, &args.criteria())?;
+    let criteria = args.criteria();
+    let found = compare(&first, &second, &criteria)?;
     let lines = found.lines();
     let (verdict, planes) = lines.split_last().map_or(("", [].as_slice()), |(v, p)| (v, p));
-    planes.iter().for_each(say);
-    if let Some(line) = distances(&first, &second, stored, &exec)? {
-        say(line);
-    }
+    let distances = distances(&first, &second, stored, &exec)?;
+    let page = args.report.as_ref().map(|path| {
+        let facts = [("first", &args.first), ("second", &args.second)];
+        let facts = facts.map(|(label, path)| (label.to_owned(), path.display().to_string()));
+        let distances = distances.iter().map(|line| ("distance".to_owned(), line.clone()));
+        let facts = facts.into_iter().chain(distances).collect();
+        pending(path, &page::report([first, second], &found, &criteria, facts, verdict), &exec)
+    });
+    page.transpose()?.map_or(Ok(()), Pending::put)?;
+    planes.iter().chain(&distances).for_each(say);
     say(verdict);
     Ok(match found.verdict() {
         Verdict::Equal | Verdict::Within => Ending::Good,
