@@ -1,6 +1,6 @@
 //! The bugs that a client makes on purpose. Each is one line of a shader or of a pipeline.
 
-/// A seeded bug. Up to [`Bug::CoarseExp`] a bug has the number that `view.wgsl` gives it.
+/// A seeded bug. Up to [`Bug::NeverOccluded`] a bug has the number that `view.wgsl` gives it.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(crate) enum Bug {
     #[default]
@@ -16,6 +16,11 @@ pub(crate) enum Bug {
     BackNotTurned,
     DepthOfCenter,
     CoarseExp,
+    RatioAboveOne,
+    RoundedBin,
+    LevelOff,
+    EqualWeights,
+    NeverOccluded,
     /// The depth test lets the last of equally near fragments win.
     LastOfTies,
     /// The depth buffer has 16 bits, and nobody says so.
@@ -27,7 +32,8 @@ pub(crate) enum Bug {
 }
 
 impl Bug {
-    pub(crate) const ALL: [Self; 15] = [
+    /// The bugs of EWA.
+    pub(crate) const EWA: [Self; 15] = [
         Self::NoLowPass,
         Self::HalfEpsilon,
         Self::HalfPixel,
@@ -45,10 +51,14 @@ impl Bug {
         Self::HalfSums,
     ];
 
+    pub(crate) const SINGLE_PASS: [Self; 3] =
+        [Self::RatioAboveOne, Self::RoundedBin, Self::HalfEpsilon];
+    pub(crate) const PYRAMID: [Self; 3] = [Self::LevelOff, Self::EqualWeights, Self::NeverOccluded];
+
     /// The constants of every pipeline.
     pub(crate) fn constants(self) -> [(&'static str, f64); 1] {
         let number = self as u32;
-        [("bug", if number <= Self::CoarseExp as u32 { number.into() } else { 0.0 })]
+        [("bug", if number <= Self::NeverOccluded as u32 { number.into() } else { 0.0 })]
     }
 
     /// The bug in words.
@@ -66,6 +76,11 @@ impl Bug {
             Self::BackNotTurned => "normals of backs are not turned",
             Self::DepthOfCenter => "a splat has the depth of its centre everywhere",
             Self::CoarseExp => "exp is a power of 1 - x / 256",
+            Self::RatioAboveOne => "the ratio of the Voronoi-enhanced depth exceeds 1",
+            Self::RoundedBin => "depths are rounded to bins, not rounded down",
+            Self::LevelOff => "the push takes cells of the next level's size",
+            Self::EqualWeights => "the push weighs all cells alike",
+            Self::NeverOccluded => "the push keeps occluded cells",
             Self::LastOfTies => "the last of equally near fragments wins",
             Self::ShallowDepth => "the depth buffer has 16 bits, undeclared",
             Self::OneMissing => "the last splat is not drawn",

@@ -60,3 +60,27 @@ pub(crate) const ALL: [RightClient; 7] = [
     SINGLE_PASS,
     PYRAMID,
 ];
+
+/// The bugs that a client is drawn with.
+pub(crate) struct Seeded {
+    pub(crate) client: &'static str,
+    pub(crate) jobs: fn() -> Vec<Job>,
+    pub(crate) draw: fn(&Gpu, &Job, Bug) -> Client,
+    pub(crate) bugs: &'static [Bug],
+}
+
+pub(crate) const SEEDED: [Seeded; 3] = [
+    Seeded {
+        client: EWA_PROJECTION.name,
+        jobs: of_ewa,
+        draw: |gpu, job, bug| ewa_raster::draw(gpu, job, Variant { bug, ..Variant::default() }),
+        bugs: &Bug::EWA,
+    },
+    Seeded {
+        client: SINGLE_PASS.name,
+        jobs: of_single_pass,
+        draw: single_pass::draw,
+        bugs: &Bug::SINGLE_PASS,
+    },
+    Seeded { client: PYRAMID.name, jobs: of_pyramid, draw: pyramid::draw, bugs: &Bug::PYRAMID },
+];

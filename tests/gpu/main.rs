@@ -16,11 +16,10 @@ mod single_pass;
 mod table;
 
 use bugs::Bug;
-use clients::RightClient;
+use clients::{RightClient, Seeded};
 use device::{Gpu, gpu};
-use ewa_raster::Variant;
 use judge::judge;
-use scenes::{Job, of_ewa};
+use scenes::Job;
 use splatref::verdict::Outcome;
 use splatref::verdict::client::Rounding;
 
@@ -73,10 +72,9 @@ fn the_pyramid_by_points_and_compute() {
     is_right(&clients::PYRAMID);
 }
 
-/// Whether the rasterizer with its own projection is found wrong in a scene if it has this bug.
-fn exposes(gpu: &Gpu, job: &Job, bug: Bug) -> bool {
-    let client = ewa_raster::draw(gpu, job, Variant { bug, ..Variant::default() });
-    let judged = judge(job, &client, Rounding::Gpu);
+/// Whether a scene exposes a bug.
+fn exposes(gpu: &Gpu, seeded: &Seeded, job: &Job, bug: Bug) -> bool {
+    let judged = judge(job, &(seeded.draw)(gpu, job, bug), Rounding::Gpu);
     println!("{bug:?} in {}: {judged:?}", job.name);
     judged.outcome == Outcome::Wrong
 }
@@ -84,9 +82,12 @@ fn exposes(gpu: &Gpu, job: &Job, bug: Bug) -> bool {
 #[test]
 fn each_seeded_bug_is_found() {
     let Some(gpu) = gpu() else { return };
-    let jobs = of_ewa();
-    let missed = |&bug: &Bug| !jobs.iter().any(|job| exposes(gpu, job, bug));
-    let missed: Vec<Bug> = Bug::ALL.into_iter().filter(missed).collect();
+    let mut missed: Vec<Bug> = Vec::new();
+    for seeded in &clients::SEEDED {
+        let jobs = (seeded.jobs)();
+        let unseen = |bug: &Bug| !jobs.iter().any(|job| exposes(gpu, seeded, job, *bug));
+        missed.extend(seeded.bugs.iter().filter(|bug| unseen(bug)));
+    }
     assert!(missed.is_empty(), "no scene exposes {missed:?}");
 }
 

@@ -1,6 +1,5 @@
 //! The tables of `docs/gpu-clients.md`.
 
-use crate::bugs::Bug;
 use crate::clients::{self, RightClient};
 use crate::device::Gpu;
 use crate::exposes;
@@ -127,11 +126,14 @@ fn summaries(gpu: &Gpu, client: &RightClient) -> Vec<Summary> {
 
 /// One row a seeded bug.
 fn bugs(gpu: &Gpu) -> String {
-    let jobs = of_ewa();
-    let mut rows = format!("| seeded bug | scenes of {} that expose it |\n|---|---|\n", jobs.len());
-    for bug in Bug::ALL {
-        let exposing = jobs.iter().filter(|job| exposes(gpu, job, bug)).count();
-        line(&mut rows, format_args!("| {} | {exposing} |", bug.words()));
+    let mut rows = "| client | seeded bug | scenes that expose it |\n|---|---|---|\n".to_owned();
+    for seeded in &clients::SEEDED {
+        let jobs = (seeded.jobs)();
+        for &bug in seeded.bugs {
+            let exposing = jobs.iter().filter(|job| exposes(gpu, seeded, job, bug)).count();
+            let (client, words, of) = (seeded.client, bug.words(), jobs.len());
+            line(&mut rows, format_args!("| {client} | {words} | {exposing} of {of} |"));
+        }
     }
     rows
 }

@@ -187,7 +187,8 @@ fn push(@builtin(global_invocation_id) id: vec3<u32>) {
     var cell = pulled[here];
     let parent = id.xy / 2u;
     let above = pushed[step.coarse_at + parent.y * step.coarse.x + parent.x];
-    if cell.kind == 0u || (above.kind != 0u && cell.front > above.back) {
+    let occluded = above.kind != 0u && cell.front > above.back && bug != NEVER_OCCLUDED;
+    if cell.kind == 0u || occluded {
         var four = Four();
         let odd = id.xy % 2u == vec2(1u);
         let beside = vec2<i32>(parent) + select(vec2(-1), vec2(1), odd);
@@ -198,7 +199,8 @@ fn push(@builtin(global_invocation_id) id: vec3<u32>) {
             if all(at >= vec2(0)) && all(at < vec2<i32>(step.coarse)) {
                 four.cells[j] = pushed[step.coarse_at + u32(at.y) * step.coarse.x + u32(at.x)];
             }
-            let far = step.side * select(vec2(0.5), vec2(1.5), neighbour);
+            let side = select(step.side, 2.0 * step.side, bug == LEVEL_OFF);
+            let far = side * select(vec2(0.5), vec2(1.5), neighbour);
             four.v[j] = four.cells[j].displacement + select(far, -far, neighbour != odd);
         }
         let takes = taken(&four);
@@ -207,7 +209,8 @@ fn push(@builtin(global_invocation_id) id: vec3<u32>) {
             for (var j = 0; j < 4; j++) {
                 if takes[j] {
                     let c = four.cells[j];
-                    w[j] = exp(-2.0 * (form(c, four.v[j]) / (c.extent * c.extent)));
+                    let falloff = exp(-2.0 * (form(c, four.v[j]) / (c.extent * c.extent)));
+                    w[j] = select(falloff, 1.0, bug == EQUAL_WEIGHTS);
                 }
             }
             cell = merged(&four, w, takes);

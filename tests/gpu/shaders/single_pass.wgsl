@@ -27,7 +27,10 @@ fn geometry(quad: Quad) -> Kept {
 
 fn voronoi(t: f32, q: f32) -> f32 {
     let position = ((t - view.bins.x) / (view.bins.y - view.bins.x)) * view.bins.z;
-    let bin = clamp(floor(position), 0.0, view.bins.z);
+    let bin = clamp(floor(position + select(0.0, 0.5, bug == ROUNDED_BIN)), 0.0, view.bins.z);
+    if bug == RATIO_ABOVE_ONE {
+        return bin + sqrt(q);
+    }
     let ratio = sqrt(q / (view.cutoff * view.cutoff));
     return bin + min(ratio, 255.0 / 256.0);
 }

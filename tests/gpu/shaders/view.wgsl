@@ -35,6 +35,11 @@ const NO_AMPLITUDE = 8u;
 const BACK_NOT_TURNED = 9u;
 const DEPTH_OF_CENTER = 10u;
 const COARSE_EXP = 11u;
+const RATIO_ABOVE_ONE = 12u; // from here on, of Algorithm 1
+const ROUNDED_BIN = 13u;
+const LEVEL_OFF = 14u; // from here on, of the pyramid
+const EQUAL_WEIGHTS = 15u;
+const NEVER_OCCLUDED = 16u;
 
 fn perspective() -> bool {
     return view.perspective != 0u;
