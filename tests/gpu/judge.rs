@@ -11,6 +11,8 @@ pub(crate) struct Judged {
     pub(crate) outcome: Outcome,
     /// The first wrong stage, and its worst pixel in words.
     pub(crate) fault: Option<String>,
+    /// The stages whose errors are unlike those of right renderers.
+    pub(crate) unlike: String,
     /// The largest error of each judged stage, in bounds.
     pub(crate) errors: Vec<(&'static str, f32)>,
     /// The share of covered pixels whose sums are undecided.
@@ -38,6 +40,7 @@ pub(crate) fn judge(job: &Job, client: &Client, rounding: Rounding) -> Judged {
     Judged {
         outcome: verdict.outcome(),
         fault,
+        unlike: verdict.unlike.iter().map(ToString::to_string).collect::<Vec<_>>().join("; "),
         errors: judged.map(|stage| (stage.stage, largest(stage.errors.values()))).collect(),
         undecided: verdict.undecided as f64 / verdict.covered.max(1) as f64,
         shifts: verdict.shifts,

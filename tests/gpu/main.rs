@@ -23,14 +23,16 @@ use scenes::Job;
 use splatref::verdict::Outcome;
 use splatref::verdict::client::Rounding;
 
-/// Draws every scene of a client and expects every verdict to be right.
+/// Draws every scene of a client and expects that no verdict accuses it.
 fn is_right(client: &RightClient) {
     let Some(gpu) = gpu() else { return };
     let mut accused = Vec::new();
     for job in (client.jobs)() {
         let judged = judge(&job, &(client.draw)(gpu, &job), Rounding::Gpu);
         println!("{}: {judged:?}", job.name);
-        if judged.outcome != Outcome::Right {
+        // The usual errors of attributes are too small for clients that hand in records, so a right
+        // client may be unlike. The page counts these.
+        if !matches!(judged.outcome, Outcome::Right | Outcome::Unlike) {
             accused.push(format!("{}: {judged:?}", job.name));
         }
     }

@@ -54,7 +54,7 @@ struct Summary {
     errors: Vec<(&'static str, f32)>,
     undecided: f64,
     shifts: Shifts,
-    /// The scenes that are not right, and how.
+    /// The outcomes that are not right.
     others: Vec<String>,
 }
 
@@ -71,8 +71,8 @@ impl Summary {
         if judged.outcome != Outcome::Right {
             let word = format!("{:?}", judged.outcome).to_lowercase();
             let fault = judged.fault.as_deref().unwrap_or_default();
-            println!("{scene}: {word} {fault}");
-            self.others.push(format!("{scene} is {word}"));
+            println!("{scene}: {word} {fault} {}", judged.unlike);
+            self.others.push(word);
         }
     }
 }
@@ -85,7 +85,7 @@ fn clients(gpu: &Gpu) -> [String; 2] {
     let mut errors = format!("| client | stage | {} |\n|---|---|{rule}\n", heads.join(" | "));
     let mut pictures =
         "| client | promise | undecided, at most | lean of the cut-off, of epsilon | \
-                        not right |\n|---|---|---|---|---|\n"
+                        scenes not right |\n|---|---|---|---|---|\n"
             .to_owned();
     for client in clients::ALL {
         let summaries = summaries(gpu, &client);
@@ -99,7 +99,7 @@ fn clients(gpu: &Gpu) -> [String; 2] {
             let lean = summary.shifts.map(|shift| format!("{:.1}", shift.z() + 0.0)).join(", ");
             let others = match summary.others.len() {
                 0 => "none".to_owned(),
-                _ => summary.others.join("; "),
+                _ => counted(&summary.others),
             };
             let undecided = 100.0 * summary.undecided;
             let name = client.name;
@@ -110,6 +110,16 @@ fn clients(gpu: &Gpu) -> [String; 2] {
         }
     }
     [errors, pictures]
+}
+
+/// How often each word occurs.
+fn counted(words: &[String]) -> String {
+    let mut different = words.to_vec();
+    different.sort();
+    different.dedup();
+    let count = |word: &String| words.iter().filter(|other| *other == word).count();
+    let counts: Vec<_> = different.iter().map(|word| format!("{} {word}", count(word))).collect();
+    counts.join(", ")
 }
 
 /// The verdicts of a client under each promise.
