@@ -3,6 +3,7 @@
 //! - [`client`]: a second implementation of the method `ewa`, from the pages of the crate alone.
 //! - [`client_is_right`]: its plain picture is the crate's, and its bugs can be seen.
 //! - [`cases`]: the scenes.
+//! - [`conformance`]: the suite of small scenes, as files and as tests of `cargo test`.
 //! - [`verdicts`]: no lawful habit is called wrong, and every bug is found.
 //! - [`ladder`]: scenes whose decisions lie close to their limits.
 //! - [`nodes`]: a hierarchy whose choices lie close to their limits, and clients that make these
@@ -17,6 +18,7 @@
 mod cases;
 mod client;
 mod client_is_right;
+mod conformance;
 mod groups;
 mod image_space;
 mod ladder;

@@ -229,7 +229,7 @@ pub(in crate::cli) struct JsonShift {
 }
 
 impl JsonShift {
-    fn new((limit, shift): (&Doubt, &Shift)) -> Self {
+    pub(in crate::cli) fn new((limit, shift): (&Doubt, &Shift)) -> Self {
         let Shift { decisions, score, information, variance } = *shift;
         let (z, estimate) = (shift.z(), shift.estimate());
         Self { limit: limit.name().into(), decisions, score, information, variance, z, estimate }
@@ -267,7 +267,7 @@ impl JsonUnlike {
 }
 
 #[derive(Serialize)]
-struct JsonStage<'a> {
+pub(in crate::cli) struct JsonStage<'a> {
     stage: &'static str,
     planes: &'a [&'static str],
     missing: &'a [String],
@@ -287,7 +287,7 @@ struct JsonFinding {
 }
 
 impl<'a> JsonStage<'a> {
-    fn new(stage: &'a StageVerdict) -> Self {
+    pub(in crate::cli) fn new(stage: &'a StageVerdict) -> Self {
         let undecided = Doubt::ALL.map(|doubt| (doubt.name(), stage.doubtful(doubt as u8)));
         Self {
             stage: stage.stage,
