@@ -57,7 +57,7 @@ fn flaws(method: &str, large: bool, promises: &[Rounding], exec: &Exec) -> Vec<S
     let mut flaws = Vec::new();
     for rule in rules {
         let (case, broken) = (rule.case(exec).unwrap(), rule.broken(exec).unwrap());
-        let most = if large { (5100, 320) } else { (100, 64) };
+        let most = if large { (5100, 320) } else { (FEW, 64) };
         let size = case.camera.size();
         if case.scene.surfels.len() > most.0 || size.iter().any(|&side| side > most.1) {
             flaws.push(format!("{method} {}: too large", rule.name));
@@ -67,7 +67,7 @@ fn flaws(method: &str, large: bool, promises: &[Rounding], exec: &Exec) -> Vec<S
             for (client, wanted) in [(&own, Outcome::Right), (&other, Outcome::Wrong)] {
                 let client = Client { rounding, ..client.clone() };
                 let session = case.session(exec).unwrap();
-                let verdict = session.verify(&case.camera, &client, Verdict::BUDGET).unwrap();
+                let verdict = case.verify(&session, &client, Verdict::BUDGET).unwrap();
                 if verdict.outcome() != wanted {
                     let fault = verdict.first_wrong().and_then(|stage| stage.worst.as_ref());
                     flaws.push(format!(
