@@ -8,6 +8,7 @@ mod atlas;
 mod camera;
 mod claims;
 mod compare;
+mod conformance;
 mod destination;
 mod draw;
 mod ending;
@@ -69,8 +70,8 @@ Examples:
   splatref verify bunny.ply gpu.exr            check what another renderer drew
   splatref explain bunny.ply 512 400           print how this pixel got its value
 
-Exit codes: 0 success, 1 different or failed, 2 wrong usage; of verify and suite also 3 undecidable,
-4 right, but unlike any right renderer.";
+Exit codes: 0 success, 1 different or failed, 2 wrong usage; of verify, suite and conformance also
+3 undecidable, 4 right, but unlike any right renderer.";
 
 #[derive(Subcommand)]
 enum Command {
@@ -82,6 +83,8 @@ enum Command {
     Compare(compare::Args),
     /// Judge the planes of another renderer, stage by stage
     Verify(verify::Args),
+    /// Run a renderer on the suite of a method: a scene and a verdict for each rule
+    Conformance(conformance::Args),
     /// Pool the verdicts of several scenes, to find thresholds that are slightly wrong
     Suite(suite::Args),
     /// Print every decision at one pixel
@@ -123,6 +126,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Golden(args) => golden::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Verify(args) => verify::run(&args),
+        Command::Conformance(args) => conformance::run(&args),
         Command::Suite(args) => suite::run(&args),
         Command::Explain(args) => explain::run(&args),
         Command::Group(args) => group::run(&args),

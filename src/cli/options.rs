@@ -276,7 +276,7 @@ fn environment(text: &str) -> std::result::Result<EnvironmentChoice, String> {
 }
 
 /// Parses the name of a method.
-fn method(text: &str) -> std::result::Result<&'static str, String> {
+pub(super) fn method(text: &str) -> std::result::Result<&'static str, String> {
     Method::by_name(text).map(|method| method.name()).map_err(|error| error.to_string())
 }
 

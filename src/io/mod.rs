@@ -18,8 +18,9 @@
 //! - [`exr`]: write and read every plane of a frame, exactly; reading guards against files that
 //!   lie.
 //! - `png`: write an 8-bit preview; needs the feature `cli`.
-//! - [`npy`], [`npz`]: read arrays of `NumPy` as planes.
+//! - [`npy`], [`npz`]: read arrays of `NumPy` as planes; write arrays.
 //! - [`client`]: read another renderer's planes, and the TOML file that describes them.
+//! - `conformance`: write the cases of the suite as folders of files; needs the feature `cli`.
 //! - [`provenance`]: write the text that a picture carries.
 //! - [`state`]: store the surfels that a frame saw, to resume a sequence.
 //!
@@ -33,6 +34,8 @@
 pub mod cameras;
 mod checksum;
 pub mod client;
+#[cfg(feature = "cli")]
+pub mod conformance;
 pub mod environment;
 pub mod exr;
 mod guard;

@@ -1,4 +1,4 @@
-//! Read an array from an NPY file of `NumPy` as a plane of a picture.
+//! Read an array from an NPY file of `NumPy` as a plane of a picture, and write arrays.
 //!
 //! Format: [NEP 1](https://numpy.org/doc/stable/reference/generated/numpy.lib.format.html),
 //! versions 1.0 to 3.0.
@@ -6,6 +6,9 @@
 mod array;
 #[cfg(test)]
 mod tests;
+mod write;
+
+pub use write::{Values, write};
 
 use super::guard::guarded;
 use super::{Reason, input};

@@ -16,6 +16,7 @@
 //! - [`Verdict`]: the findings, with a [`Fault`] for each wrong pixel.
 //! - [`causes`]: known mistakes, and which of them a client makes.
 //! - [`Unlike`]: whether the errors are those of a correct renderer, all together.
+//! - [`conformance`]: small scenes, one for each rule of a method, and a report on a renderer.
 //! - [`shift`]: whether the undecided decisions lean to one side, over a suite of scenes.
 //!
 //! If you do not need a verdict: [`crate::compare`] compares planes with planes, and
@@ -25,6 +26,7 @@ pub mod blue;
 pub mod causes;
 mod checks;
 pub mod client;
+pub mod conformance;
 pub mod deferred;
 mod doubt;
 pub mod ewa;

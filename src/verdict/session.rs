@@ -41,7 +41,9 @@ impl Session<'_> {
             Rounding::Precise => table::verify::<Precise>(method, &job, client, budget),
             Rounding::Ieee => table::verify::<Ieee>(method, &job, client, budget),
         }?;
-        verdict.unlike = unlike::found(client, &verdict.stages);
+        if self.scene().surfels.len() > unlike::FEW {
+            verdict.unlike = unlike::found(client, &verdict.stages);
+        }
         Ok(verdict.renumbered(|index| named(names.as_ref(), index)))
     }
 

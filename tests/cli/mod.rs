@@ -5,6 +5,7 @@
 
 mod cameras;
 mod compare;
+mod conformance;
 mod damage;
 mod foreign;
 mod golden;
@@ -36,7 +37,13 @@ use std::process::{Command, Output};
 
 /// What the program did in a directory.
 fn splatref(directory: &Path, arguments: &[&str]) -> Output {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_splatref"));
+    let program = Path::new(env!("CARGO_BIN_EXE_splatref"));
+    let mut command = Command::new(program);
+    // A command that `splatref conformance` runs may be splatref itself.
+    let own = program.parent().map(Path::to_owned);
+    let others = std::env::var_os("PATH").unwrap_or_default();
+    let path = own.into_iter().chain(std::env::split_paths(&others));
+    command.env("PATH", std::env::join_paths(path).unwrap());
     command.current_dir(directory).args(arguments).output().expect("the program starts")
 }
 

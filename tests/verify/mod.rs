@@ -3,6 +3,7 @@
 //! - [`client`]: a second implementation of the method `ewa`, from the pages of the crate alone.
 //! - [`client_is_right`]: its plain picture is the crate's, and its bugs can be seen.
 //! - [`cases`]: the scenes.
+//! - [`conformance`]: the suite of small scenes, as files and as tests of `cargo test`.
 //! - [`empty_pixels`]: one wrong bit in an empty pixel is found, in every plane of every method.
 //! - [`verdicts`]: no lawful habit is called wrong, and every bug is found.
 //! - [`ladder`]: scenes whose decisions lie close to their limits.
@@ -19,6 +20,7 @@
 mod cases;
 mod client;
 mod client_is_right;
+mod conformance;
 mod empty_pixels;
 mod groups;
 mod image_space;

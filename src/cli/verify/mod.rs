@@ -201,7 +201,7 @@ pub(super) fn rounding(text: &str) -> std::result::Result<Rounding, String> {
 }
 
 /// Parses a fraction of pixels.
-fn share(text: &str) -> std::result::Result<f64, String> {
+pub(super) fn share(text: &str) -> std::result::Result<f64, String> {
     let share = text.parse().ok().filter(|share| (0.0..=1.0).contains(share));
     share.ok_or_else(|| "give a fraction from 0 to 1".into())
 }

@@ -251,7 +251,7 @@ pub(in crate::cli) struct JsonShift {
 }
 
 impl JsonShift {
-    fn new((limit, shift): (&Doubt, &Shift)) -> Self {
+    pub(in crate::cli) fn new((limit, shift): (&Doubt, &Shift)) -> Self {
         let Shift { decisions, score, information, variance } = *shift;
         let (z, estimate) = (shift.z(), shift.estimate());
         Self { limit: limit.name().into(), decisions, score, information, variance, z, estimate }
@@ -289,7 +289,7 @@ impl JsonUnlike {
 }
 
 #[derive(Serialize, Default)]
-struct JsonStage<'a> {
+pub(in crate::cli) struct JsonStage<'a> {
     stage: &'static str,
     planes: &'a [&'static str],
     missing: &'a [String],
@@ -308,7 +308,7 @@ struct JsonPixel {
 }
 
 /// How many pixels have errors in which range.
-#[derive(Serialize)]
+#[derive(Serialize, Default)]
 struct JsonHistogram {
     /// The edges, ascending.
     edges: [f32; EDGES.len()],
@@ -328,7 +328,7 @@ struct JsonFinding {
 }
 
 impl<'a> JsonStage<'a> {
-    fn new(stage: &'a StageVerdict) -> Self {
+    pub(in crate::cli) fn new(stage: &'a StageVerdict) -> Self {
         let undecided = Doubt::ALL.map(|doubt| (doubt.name(), stage.doubtful(doubt as u8)));
         Self {
             stage: stage.stage,

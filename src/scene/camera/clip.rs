@@ -1,4 +1,4 @@
-//! Read a camera from a projection matrix and the view matrix beside it.
+//! Read a camera from a projection matrix and the view matrix beside it, and write such a matrix.
 //!
 //! Both are given by rows and multiply column vectors: clip = P V world. A [`Convention`] says what
 //! the graphics interface makes of clip space:
@@ -48,7 +48,7 @@
 //! H - cy. Any other mirror is refused, because it belongs to a left-handed world.
 
 use super::convention::{Convention, PoseMatrix, signed};
-use super::{Intrinsics, Projection};
+use super::{Camera, Intrinsics, Projection};
 use glam::{DMat4, DVec4};
 
 /// What the two matrices say.
@@ -112,6 +112,67 @@ pub fn from_clip(
     let f = [half[0] * lens.scale[0].abs(), half[1] * lens.scale[1].abs()];
     let intrinsics = Intrinsics { size, projection: lens.projection, f, c };
     Ok(ClipCamera { intrinsics, view: signed(view, [sx, sy, sz]), near: low, far: high })
+}
+
+/// The projection matrix of a camera for [`Camera::view_from_world`], with the far plane at the depth
+/// `far`, in f64. With n the near plane and f the far plane:
+///
+/// ```text
+///   perspective    2 fx / W    0           1 - 2 cx / W    0            orthographic   2 fx / W    0           0    2 cx / W - 1
+///                  0           2 fy / H    2 cy / H - 1    0                           0           2 fy / H    0    1 - 2 cy / H
+///                  0           0           a               b                           0           0           c    d
+///                  0           0           -1              0                           0           0           0    1
+///
+///   depth 0 to 1   a = f / (n - f)          b = n f / (n - f)      c = 1 / (n - f)    d = n / (n - f)
+///   depth -1 to 1  a = (f + n) / (n - f)    b = 2 n f / (n - f)    c = 2 / (n - f)    d = (f + n) / (n - f)
+/// ```
+///
+/// The second row is negated for Vulkan.
+///
+/// # Errors
+/// If the convention has no clip space, or if the far plane is not behind the near plane.
+pub fn to_clip(camera: &Camera, convention: Convention, far: f64) -> Result<DMat4, String> {
+    let (up, whole) = match convention {
+        Convention::OpenGl => (1.0, true),
+        Convention::Direct3d => (1.0, false),
+        Convention::Vulkan => (-1.0, false),
+        Convention::OpenCv | Convention::Blender => {
+            let what = "the convention of a projection matrix is opengl, vulkan or d3d";
+            return Err(what.into());
+        }
+    };
+    let [near, fx, fy, cx, cy] =
+        [camera.near, camera.fx, camera.fy, camera.cx, camera.cy].map(f64::from);
+    if !(far > near && far.is_finite()) {
+        return Err(format!("the far plane {far} is not behind the near plane {near}"));
+    }
+    let [w, h] = camera.size().map(f64::from);
+    let (x, y) = (2.0 * cx / w - 1.0, up * (1.0 - 2.0 * cy / h));
+    let span = near - far;
+    let rows = match camera.projection {
+        Projection::Perspective => {
+            let (a, b) = match whole {
+                true => ((far + near) / span, 2.0 * near * far / span),
+                false => (far / span, near * far / span),
+            };
+            [[-x, 0.0], [-y, 0.0], [a, b], [-1.0, 0.0]]
+        }
+        Projection::Orthographic => {
+            let (a, b) = match whole {
+                true => (2.0 / span, (far + near) / span),
+                false => (1.0 / span, near / span),
+            };
+            [[0.0, x], [0.0, y], [a, b], [0.0, 1.0]]
+        }
+    };
+    let diagonal = [2.0 * fx / w, up * 2.0 * fy / h];
+    let row = |i: usize| {
+        let [z, last] = rows[i];
+        let of = |column: usize| if i == column { diagonal[i] } else { 0.0 };
+        // Adding 0 turns -0 into 0.
+        DVec4::new(of(0), of(1), z, last) + DVec4::ZERO
+    };
+    Ok(DMat4::from_cols(row(0), row(1), row(2), row(3)).transpose())
 }
 
 /// The numbers of a projection matrix.

@@ -198,3 +198,28 @@ fn what_is_no_camera_is_refused() {
     let other = from_clip(&perspective, Convention::OpenCv, SIZE, PoseMatrix::WorldToCamera(pose));
     assert!(other.unwrap_err().contains("opengl, vulkan or d3d"));
 }
+
+/// What is written is read again as the same camera.
+#[test]
+fn a_camera_gives_matrices_that_give_the_camera() {
+    let pose =
+        crate::scene::Pose { eye: DVec3::new(1.0, 2.0, 6.0), target: DVec3::ZERO, up: DVec3::Y };
+    for lens in [crate::scene::Lens::FieldOfView(50.0), crate::scene::Lens::Orthographic(3.0)] {
+        let mut camera = Camera::new(64, 48, pose, lens).unwrap();
+        (camera.cx, camera.cy, camera.fy, camera.near) = (30.25, 27.5, 0.75 * camera.fx, 0.5);
+        let view = PoseMatrix::WorldToCamera(camera.view_from_world.as_dmat4());
+        for convention in [Convention::OpenGl, Convention::Vulkan, Convention::Direct3d] {
+            let matrix = to_clip(&camera, convention, 40.0).unwrap();
+            let read = from_clip(&matrix, convention, camera.size(), view).unwrap();
+            let intrinsics = read.intrinsics;
+            let found = [intrinsics.f, intrinsics.c, [read.near, read.far]].concat();
+            let wanted = [camera.fx, camera.fy, camera.cx, camera.cy, 0.5, 40.0].map(f64::from);
+            for (found, wanted) in found.iter().zip(wanted) {
+                assert!((found - wanted).abs() < 1e-9, "{convention:?} {read:?}");
+            }
+            assert_eq!(read.view, camera.view_from_world.as_dmat4());
+        }
+        assert!(to_clip(&camera, Convention::OpenCv, 40.0).is_err());
+        assert!(to_clip(&camera, Convention::OpenGl, 0.5).is_err());
+    }
+}

@@ -1,0 +1,192 @@
+//! `splatref conformance`: runs a renderer on the suite of a method, and reports on every rule.
+
+mod command;
+mod report;
+
+use super::options::{ExecOptions, method};
+use super::verify::{rounding, share};
+use super::words::quoted;
+use super::{Ended, Ending, output, progress, say};
+use command::{Program, split};
+use report::Tried;
+use splatref::frame::Exec;
+use splatref::io::conformance::write;
+use splatref::io::replace::Pending;
+use splatref::verdict::client::Rounding;
+use splatref::verdict::conformance::{Renderer, Report, Row, Rule};
+use splatref::verdict::{Outcome, Verdict};
+use splatref::{Error, Result};
+use std::io::Write;
+use std::path::{Path, PathBuf};
+use std::time::{Duration, Instant};
+
+#[derive(clap::Args)]
+#[command(after_help = "\
+Each rule has a small scene. For each scene, splatref writes a folder FOLDER/METHOD/RULE, runs the
+command, and judges the planes that the command wrote. The folder has a README.md that lists the files
+of the scene and the planes to leave.
+
+In the command, {scene} stands for the folder of the scene, and {out} for the EXR to write, which is
+{scene}/client.exr. A command that writes other files describes them in {scene}/client.toml, as for
+verify. splatref splits the command at blanks; quotes keep blanks together. No shell runs it: for a
+shell, write sh -c '...'. What the command prints is kept in {scene}/client.log.
+
+Examples:
+  splatref conformance ewa --list
+  splatref conformance ewa --command './mine {scene} {out}'
+  splatref conformance ewa --command './mine {scene} {out}' --only rim,tie
+  splatref conformance peeling --command 'python mine.py {scene} {out}' --junit junit.xml
+
+Exit codes: 0 all right, 1 any wrong or failed, or their decisions biased to one side, 2 wrong usage or
+the scenes could not be written, 3 any undecidable, 4 any unlike those of right renderers; with
+--strict that is 1.")]
+pub(super) struct Args {
+    /// The method
+    #[arg(value_parser = method)]
+    method: &'static str,
+    /// Run this command for each scene; without it, only write the scenes
+    #[arg(long, value_name = "COMMAND", allow_hyphen_values = true)]
+    command: Option<String>,
+    /// Run only these rules; repeatable, or several between commas
+    #[arg(long, value_name = "RULE", value_delimiter = ',')]
+    only: Vec<String>,
+    /// List the rules, and what each tests
+    #[arg(long, conflicts_with_all = ["command", "only"])]
+    list: bool,
+    /// Write the folders of the scenes into this folder; it is made if it does not exist
+    #[arg(short, long, value_name = "FOLDER", default_value = "out/conformance")]
+    output: PathBuf,
+    /// End the command after this many seconds [default: no limit]
+    #[arg(long, value_name = "SECONDS", value_parser = clap::value_parser!(u64).range(1..))]
+    timeout: Option<u64>,
+    /// Set how precise the client's operations are, as for verify
+    #[arg(long, value_name = "gpu|precise|ieee", value_parser = rounding)]
+    promise: Option<Rounding>,
+    /// Report "undecidable" if more than this fraction of the pixels has undecided sums
+    #[arg(long, value_name = "X", default_value_t = Verdict::BUDGET, value_parser = share)]
+    budget: f64,
+    /// Exit with 1 also if a picture is right, but unlike that of any right renderer
+    #[arg(long)]
+    strict: bool,
+    /// Write the report as JSON; docs/conformance.schema.json describes it
+    #[arg(long, value_name = "FILE.json")]
+    json: Option<PathBuf>,
+    /// Write the report as JUnit XML
+    #[arg(long, value_name = "FILE.xml")]
+    junit: Option<PathBuf>,
+    #[command(flatten)]
+    exec: ExecOptions,
+}
+
+/// An error that prevents the verdicts exits with 2, because 1 says that a picture is wrong.
+pub(super) fn run(args: &Args) -> Ended {
+    suite(args).map_err(|error| Error::Usage(error.to_string()))
+}
+
+fn suite(args: &Args) -> Ended {
+    let rules = rules(args)?;
+    if args.list {
+        let width = Report::width(&rules);
+        rules.iter().for_each(|rule| say(format!("{:<width$}  {}", rule.name, rule.tests)));
+        return Ok(Ending::Good);
+    }
+    args.json.iter().chain(&args.junit).try_for_each(|path| output::check_folder(path))?;
+    if let (Some(json), Some(junit)) = (&args.json, &args.junit) {
+        output::check_two(json, junit)?;
+    }
+    let exec = args.exec.exec()?;
+    let folder = args.output.join(args.method);
+    let Some(command) = &args.command else { return scenes(&rules, &folder, &exec) };
+    let words = split(command).map_err(Error::Usage)?;
+    let timeout = args.timeout.map(Duration::from_secs);
+    let absolute = std::path::absolute(&folder).map_err(|source| Error::io(&folder, source))?;
+    let mut program =
+        Program { words, folder: absolute, timeout, promise: args.promise, exec: &exec };
+    let tried = try_all(args, rules, (&folder, &mut program), &exec)?;
+    finish(args, &folder, &tried)
+}
+
+/// The rules to run.
+fn rules(args: &Args) -> Result<Vec<Rule>> {
+    let all = Rule::all(args.method)?;
+    let known = |name: &&String| all.iter().any(|rule| rule.name == **name);
+    if let Some(unknown) = args.only.iter().find(|name| !known(name)) {
+        let method = args.method;
+        return Err(Error::Usage(format!(
+            "--only {unknown}: {method} has no such rule; `splatref conformance {method} --list` lists \
+             the rules"
+        )));
+    }
+    let taken = |rule: &Rule| args.only.is_empty() || args.only.contains(&rule.name);
+    Ok(all.into_iter().filter(taken).collect())
+}
+
+/// Writes the scenes, and runs nothing.
+fn scenes(rules: &[Rule], folder: &Path, exec: &Exec) -> Ended {
+    let steps = progress::Steps::new("writing");
+    for (i, rule) in rules.iter().enumerate() {
+        steps.show(&rule.name, i as u64, rules.len() as u64);
+        write(&folder.join(&rule.name), rule, &rule.case(exec)?, exec)?;
+    }
+    drop(steps);
+    say(format!("wrote {} scenes into {}", rules.len(), folder.display()));
+    say("give --command to run a renderer on them");
+    Ok(Ending::Good)
+}
+
+/// Runs the command on every rule, and prints the table row by row.
+fn try_all(
+    args: &Args,
+    rules: Vec<Rule>,
+    (folder, program): (&Path, &mut Program<'_>),
+    exec: &Exec,
+) -> Result<Tried> {
+    let (width, count) = (Report::width(&rules), rules.len() as u64);
+    let mut tried = Tried::new(args.method);
+    for (i, rule) in rules.into_iter().enumerate() {
+        let case = rule.case(exec)?;
+        let place = folder.join(&rule.name);
+        write(&place, &rule, &case, exec)?;
+        let steps = progress::Steps::new("running");
+        steps.show(&format!("running {}", rule.name), i as u64, count);
+        let start = Instant::now();
+        let drawn = program.draw(&case);
+        let seconds = start.elapsed().as_secs_f64();
+        let name = rule.name.clone();
+        let judged = drawn.and_then(|client| case.judge(&client, args.budget, exec));
+        drop(steps);
+        let row = Row::new(rule, judged);
+        say(format!("{name:<width$}  {row}"));
+        tried.push(row, (seconds, place));
+    }
+    Ok(tried)
+}
+
+/// Prints what all rules say together, and writes the requested files.
+fn finish(args: &Args, folder: &Path, tried: &Tried) -> Ended {
+    let report = &tried.report;
+    report.summary().iter().for_each(say);
+    let wrong = report.rows.iter().find(|row| row.outcome() == Some(Outcome::Wrong));
+    if let Some(row) = wrong {
+        let place = folder.join(&row.rule.name);
+        let file = |name: &str| quoted(place.join(name).as_os_str());
+        let client = if place.join(command::DESCRIPTION).exists() {
+            command::DESCRIPTION
+        } else {
+            command::PICTURE
+        };
+        say(format!("look closer: splatref verify {} {}", file("scene.toml"), file(client)));
+    }
+    let command = args.command.as_deref().unwrap_or_default();
+    let json = args.json.as_ref().map(|path| (path, tried.json(command)));
+    let junit = args.junit.as_ref().map(|path| (path, Ok(tried.junit())));
+    let files = json.into_iter().chain(junit).map(|(path, text)| {
+        let text = text?;
+        Pending::write(path, |file| file.write_all(text.as_bytes()))
+    });
+    files.collect::<Result<Vec<_>>>()?.into_iter().try_for_each(Pending::put)?;
+    Ok(match tried.ending() {
+        Ending::Unlike if args.strict => Ending::Different,
+        ending => ending,
+    })
+}

@@ -1,0 +1,169 @@
+//! The report as JSON and as JUnit XML.
+
+use crate::cli::Ending;
+use crate::cli::verify::report::{JsonShift, JsonStage};
+use serde_json::{Value, json};
+use splatref::setting::Word;
+use splatref::verdict::Outcome;
+use splatref::verdict::conformance::{Judged, Report, Row};
+use splatref::verdict::shift::LIMITS;
+use splatref::{Error, Result};
+use std::fmt::Write;
+use std::path::PathBuf;
+
+/// The report, with what the program knows beside it.
+pub(super) struct Tried {
+    pub(super) report: Report,
+    /// For each row: seconds of the command, and the folder of the scene.
+    more: Vec<(f64, PathBuf)>,
+}
+
+/// A verdict in the words of `verify --json`.
+fn verdict(judged: &Judged) -> Value {
+    let Judged { verdict, rounding, .. } = judged;
+    json!({
+        "promise": rounding.word(),
+        "covered": verdict.covered,
+        "undecided": verdict.undecided,
+        "budget": verdict.budget,
+        "first_wrong": verdict.first_wrong().map(|stage| stage.stage),
+        "stages": verdict.stages.iter().map(JsonStage::new).collect::<Vec<_>>(),
+        "shifts": LIMITS.iter().zip(&verdict.shifts).map(JsonShift::new).collect::<Vec<_>>(),
+    })
+}
+
+/// How the command ends because of a row.
+fn ending(row: &Row) -> Ending {
+    match row.outcome() {
+        None | Some(Outcome::Wrong) => Ending::Different,
+        Some(Outcome::Undecidable) => Ending::Undecidable,
+        Some(Outcome::Unlike) => Ending::Unlike,
+        Some(Outcome::Right) => Ending::Good,
+    }
+}
+
+impl Tried {
+    pub(super) fn new(method: &str) -> Self {
+        Self { report: Report::new(method), more: Vec::new() }
+    }
+
+    pub(super) fn push(&mut self, row: Row, more: (f64, PathBuf)) {
+        self.report.rows.push(row);
+        self.more.push(more);
+    }
+
+    /// How the command ends: as its worst row.
+    pub(super) fn ending(&self) -> Ending {
+        let has = |which| self.report.rows.iter().any(|row| ending(row) == which);
+        if self.report.leans() {
+            return Ending::Different;
+        }
+        let endings = [Ending::Different, Ending::Undecidable, Ending::Unlike];
+        endings.into_iter().find(|which| has(*which)).unwrap_or(Ending::Good)
+    }
+
+    /// The report as `docs/conformance.schema.json` describes it.
+    pub(super) fn json(&self, command: &str) -> Result<String> {
+        let rules = self.report.rows.iter().zip(&self.more);
+        let rules = rules.map(|(row, (seconds, folder))| {
+            let judged = row.judged.as_ref().ok();
+            let cause = row.cause();
+            json!({
+                "rule": row.rule.name,
+                "tests": row.rule.tests,
+                "outcome": row.word(),
+                "why": (!cause.is_empty()).then_some(cause),
+                "looks_like": judged.and_then(|judged| judged.cause.as_ref()),
+                "sharper": judged.and_then(|judged| judged.sharper.as_ref()),
+                "seconds": seconds,
+                "folder": folder.display().to_string(),
+                "verdict": judged.map(verdict),
+            })
+        });
+        let rules: Vec<Value> = rules.collect();
+        let shifts = self.report.shifts();
+        let shifts = shifts.iter().flat_map(|(rounding, shifts)| {
+            LIMITS.iter().zip(shifts).map(|pair| {
+                json!({
+                    "promise": rounding.word(),
+                    "alarms": pair.1.alarms(),
+                    "shift": JsonShift::new(pair),
+                })
+            })
+        });
+        let shifts: Vec<Value> = shifts.collect();
+        let counts = Report::words().into_iter();
+        let counts = counts.map(|word| (word.to_owned(), json!(self.report.count(word))));
+        let json = json!({
+            "splatref": env!("CARGO_PKG_VERSION"),
+            "method": self.report.method,
+            "command": command,
+            "right": self.report.is_right(),
+            "counts": counts.collect::<serde_json::Map<_, _>>(),
+            "rules": rules,
+            "shifts": shifts,
+        });
+        let text = serde_json::to_string_pretty(&json);
+        text.map(|text| text + "\n").map_err(|error| Error::Invalid(error.to_string()))
+    }
+
+    /// The report as JUnit XML: a test case for each rule, and one for the bias of all.
+    pub(super) fn junit(&self) -> String {
+        let Report { method, rows } = &self.report;
+        let leans = self.report.leans();
+        let tests = rows.len() + 1;
+        let failures = self.report.count("wrong") + usize::from(leans);
+        let errors = rows.len() - self.report.count("wrong") - self.report.count("right");
+        let seconds: f64 = self.more.iter().map(|(seconds, _)| seconds).sum();
+        let counts = format!(
+            "tests=\"{tests}\" failures=\"{failures}\" errors=\"{errors}\" time=\"{seconds:.3}\""
+        );
+        let mut xml = format!(
+            "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {counts}>\n\
+             <testsuite name=\"splatref conformance {method}\" {counts}>\n"
+        );
+        for (row, (seconds, _)) in rows.iter().zip(&self.more) {
+            let (name, why) = (&row.rule.name, escaped(&row.cause()));
+            let tag = match row.word() {
+                "right" => String::new(),
+                "wrong" => format!("<failure type=\"wrong\" message=\"{why}\"/>"),
+                word => format!("<error type=\"{word}\" message=\"{why}\"/>"),
+            };
+            let _ = writeln!(
+                xml,
+                "<testcase classname=\"splatref.{method}\" name=\"{name}\" time=\"{seconds:.3}\">{tag}\
+                 </testcase>"
+            );
+        }
+        let bias = match leans {
+            true => {
+                "<failure type=\"wrong\" message=\"the undecided decisions of all rules lean to \
+                     one side\"/>"
+            }
+            false => "",
+        };
+        let _ = writeln!(
+            xml,
+            "<testcase classname=\"splatref.{method}\" name=\"all rules together\" time=\"0\">{bias}\
+             </testcase>\n</testsuite>\n</testsuites>"
+        );
+        xml
+    }
+}
+
+/// Text for an attribute of XML; characters that XML cannot hold become `?`.
+fn escaped(text: &str) -> String {
+    let mut out = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            '&' => out.push_str("&amp;"),
+            '<' => out.push_str("&lt;"),
+            '>' => out.push_str("&gt;"),
+            '"' => out.push_str("&quot;"),
+            '\u{fffe}' | '\u{ffff}' => out.push('?'),
+            c if c.is_control() => out.push('?'),
+            c => out.push(c),
+        }
+    }
+    out
+}

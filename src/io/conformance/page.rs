@@ -1,0 +1,99 @@
+//! The page of a case: what it tests, and what the renderer must leave.
+
+use crate::method::{PlaneRow, Stage};
+use crate::setting::Fields;
+use crate::splat::record::{SplatRecord, shared_numbers};
+use crate::verdict::conformance::{Case, Rule};
+use std::fmt::Write;
+
+const FILES: &[[&str; 2]] = &[
+    ["scene.toml", "the scene file, for `splatref render` and `splatref verify`"],
+    ["scene.json", "camera, settings, lights and material as plain numbers"],
+    ["surfels.ply", "the surfels"],
+    [
+        "positions.npy, normals.npy, radii.npy",
+        "the surfels as arrays; colors.npy, opacities.npy, half_axes.npy, prefiltered.npy if the \
+         scene has them",
+    ],
+];
+
+/// The text of `README.md`.
+pub(super) fn text(
+    rule: &Rule,
+    case: &Case,
+    planes: &[(&'static Stage, Vec<&'static PlaneRow>)],
+) -> String {
+    let mut page = format!("# {}: {}\n\n{}\n\n", case.method.name(), rule.name, rule.tests);
+    // Writing into a string cannot fail.
+    let _ = draw(&mut page, case).and_then(|()| leave(&mut page, planes));
+    page.push_str(
+        "\n## Look closer\n\nRun these in this folder; `client.exr` is your file.\n\n```sh\n\
+         splatref render scene.toml --stages -o reference.exr\n\
+         splatref verify scene.toml client.exr\n\
+         splatref explain scene.toml X Y --client client.exr\n```\n",
+    );
+    page
+}
+
+fn draw(page: &mut String, case: &Case) -> std::fmt::Result {
+    let Case { scene, camera, method, .. } = case;
+    writeln!(page, "## Draw\n\n| file | what it holds |\n|---|---|")?;
+    for [name, what] in FILES {
+        writeln!(page, "| {name} | {what} |")?;
+    }
+    for (_, draws) in &case.meshes {
+        let word = draws.word();
+        writeln!(page, "| {word}.ply, {word}-*.npy | {word}; numbered after the surfels |")?;
+    }
+    if scene.surfels.groups().is_some() {
+        let what = "pairs of a surfel and a group that it is drawn into";
+        writeln!(page, "| members.npy | {what}; scene.json has the scale of each group's radii |")?;
+    }
+    if method.splats().is_some() {
+        let what = "the visible splats, projected; use them to leave out your own projection";
+        writeln!(page, "| records.bin | {what} |")?;
+    }
+    writeln!(
+        page,
+        "\nMatrices are by rows and multiply column vectors. Depth is the distance along the view direction."
+    )?;
+    writeln!(page, "\n| setting | value |\n|---|---|")?;
+    for (name, value) in method.values() {
+        writeln!(page, "| {name} | {} |", value.text())?;
+    }
+    for (name, value) in method.settings_in_scene(scene, camera) {
+        writeln!(page, "| {name} | {value} |")?;
+    }
+    let Some(splats) = method.splats() else { return Ok(()) };
+    let size = SplatRecord::SIZE;
+    writeln!(
+        page,
+        "\nA record has {size} bytes, little-endian:\n\n| offset | field | type |\n|---|---|---|"
+    )?;
+    for (name, offset, kind) in SplatRecord::FIELDS {
+        writeln!(page, "| {offset} | {name} | {kind} |")?;
+    }
+    let shared = shared_numbers(camera, &splats.kernel);
+    let shared: Vec<String> = shared.iter().map(|(name, v)| format!("{name} = {v:?}")).collect();
+    writeln!(page, "\nAll records share {}.", shared.join(", "))
+}
+
+fn leave(
+    page: &mut String,
+    planes: &[(&'static Stage, Vec<&'static PlaneRow>)],
+) -> std::fmt::Result {
+    writeln!(
+        page,
+        "\n## Leave\n\nWrite these channels into the EXR, as 32-bit floats or 32-bit unsigned integers. \
+         The picture `R G B` alone gets a verdict; each further plane makes it sharper. In a name, \
+         `#` stands for a digit of the number of a group, a layer or a level.\n\n\
+         | stage | channels | what they hold |\n|---|---|---|"
+    )?;
+    for (stage, rows) in planes {
+        for row in rows {
+            let channels = row.holds.channels(row.name).join(" ");
+            writeln!(page, "| {} | `{channels}` | {} |", stage.name, row.meaning)?;
+        }
+    }
+    Ok(())
+}

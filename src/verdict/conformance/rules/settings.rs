@@ -1,0 +1,113 @@
+//! Rules about settings: each at a value that is not its default; and the large scenes.
+
+use super::layers::layers;
+use super::meshes::square;
+use super::{Of, Row, SettingRow};
+use crate::source::Shape;
+use crate::verdict::conformance::sketch::Sketch;
+
+const VORONOI: Of = Of::Only(&["single-pass", "transparent-hq"]);
+const LAYERS: Of = Of::Only(&["transparent", "transparent-hq"]);
+const HQ: Of = Of::Only(&["transparent-hq"]);
+const PEELING: Of = Of::Only(&["peeling"]);
+const PYRAMID: Of = Of::Only(&["pyramid"]);
+const TEMPLATE: Of = Of::Only(&["template"]);
+
+/// Three tilted discs under a wide lens, at different depths.
+fn tilts(s: &mut Sketch) {
+    s.tilted([-1.4, 0.9, 1.0], 0.8, [0.8, 0.3, 0.7]);
+    s.tilted([1.1, 0.7, 0.5], 1.0, [-0.9, 0.6, 0.6]);
+    s.tilted([0.2, -1.0, -0.5], 1.1, [0.2, -0.9, 0.5]);
+}
+
+/// Discs in steps of depth.
+fn steps(s: &mut Sketch) {
+    for i in 0..6_u8 {
+        let step = f32::from(i);
+        s.tilted([0.5 * step - 1.3, 0.2 * step - 0.6, -0.3 * step], 0.8, [0.3, 0.1, 1.0]);
+    }
+}
+
+fn ball(s: &mut Sketch) {
+    s.shape(Shape::Sphere, 80, 2.0);
+}
+
+fn veiled_ball(s: &mut Sketch) {
+    ball(s);
+    s.veil(0.5);
+}
+
+fn glass(s: &mut Sketch) {
+    veiled_ball(s);
+    s.sky = true;
+}
+
+fn mesh(s: &mut Sketch) {
+    square(s, [[-1.71, -1.23, 0.5], [1.37, -1.09, -0.5], [1.63, 1.11, -0.4], [-1.43, 1.31, 0.6]]);
+    s.disc([0.3, 0.2, 0.1], 0.9);
+}
+
+pub(super) const ROWS: &[SettingRow] = &[
+    SettingRow { of: Of::Splats, name: "outline", value: "perspective", draw: tilts },
+    SettingRow { of: Of::Splats, name: "outline", value: "raycast", draw: tilts },
+    SettingRow { of: Of::Splats, name: "cutoff", value: "1", draw: tilts },
+    SettingRow { of: Of::Splats, name: "cutoff", value: "3", draw: tilts },
+    SettingRow { of: Of::Splats, name: "low_pass", value: "0", draw: tilts },
+    SettingRow { of: Of::Splats, name: "low_pass", value: "2", draw: tilts },
+    SettingRow { of: Of::Splats, name: "epsilon", value: "0.1", draw: steps },
+    SettingRow { of: Of::Splats, name: "epsilon", value: "0.2", draw: steps },
+    SettingRow { of: Of::Only(&["deferred"]), name: "second", value: "off", draw: ball },
+    SettingRow { of: VORONOI, name: "depth", value: "plain", draw: ball },
+    SettingRow { of: Of::Groups, name: "bins", value: "3", draw: ball },
+    SettingRow { of: Of::Groups, name: "bins", value: "200", draw: ball },
+    SettingRow { of: LAYERS, name: "bin_edges", value: "common", draw: veiled_ball },
+    SettingRow { of: LAYERS, name: "holes", value: "background", draw: veiled_ball },
+    SettingRow { of: HQ, name: "refraction", value: "0.66,0.67,0.68", draw: glass },
+    SettingRow {
+        of: HQ,
+        name: "bends",
+        value: "single",
+        draw: |s| {
+            glass(s);
+            s.set("refraction", "0.75");
+        },
+    },
+    SettingRow { of: PEELING, name: "peel", value: "1", draw: |s| layers(s, 5, 0.5) },
+    SettingRow { of: PEELING, name: "peel", value: "3", draw: |s| layers(s, 5, 0.5) },
+    SettingRow { of: PYRAMID, name: "weights", value: "box", draw: ball },
+    SettingRow { of: PYRAMID, name: "occluded", value: "outside", draw: |s| s.scatter(60, 0.5) },
+    SettingRow { of: PYRAMID, name: "subpixel_bits", value: "0", draw: mesh },
+    SettingRow { of: PYRAMID, name: "subpixel_bits", value: "3", draw: mesh },
+    SettingRow { of: TEMPLATE, name: "template", value: "3", draw: |s| s.scatter(60, 0.5) },
+    SettingRow { of: TEMPLATE, name: "template", value: "7", draw: ball },
+    SettingRow { of: TEMPLATE, name: "levels", value: "radius", draw: ball },
+    SettingRow { of: TEMPLATE, name: "levels", value: "covering", draw: ball },
+    SettingRow {
+        of: TEMPLATE,
+        name: "levels",
+        value: "diameter",
+        draw: |s| {
+            ball(s);
+            s.set("template", "3");
+        },
+    },
+    SettingRow { of: TEMPLATE, name: "falloff", value: "gaussian", draw: ball },
+];
+
+/// The large scenes, which every method has.
+pub(super) const LARGE: &[Row] = &[
+    Row {
+        name: "large-cluster",
+        tests: "All rules together: 32 spheres of 5,000 surfels, 320 x 240 pixels.",
+        of: Of::All,
+        draw: |s| s.large(Shape::Cluster),
+        otherwise: |s| s.grow(1.01),
+    },
+    Row {
+        name: "large-torus",
+        tests: "All rules together: a torus of 5,000 surfels, 320 x 240 pixels.",
+        of: Of::All,
+        draw: |s| s.large(Shape::Torus),
+        otherwise: |s| s.grow(1.01),
+    },
+];

@@ -1,0 +1,109 @@
+//! Every case is right by its own reference, and wrong by a renderer that does not keep its rule.
+
+use super::*;
+use crate::setting::{Fields, Words};
+use crate::verdict::Outcome;
+use crate::verdict::client::Rounding;
+use std::collections::BTreeSet;
+
+fn methods() -> impl Iterator<Item = &'static str> {
+    Method::all().into_iter().map(|method| method.name())
+}
+
+/// splatref, with what it draws in place of a case.
+fn drawn(case: &Case, exec: &Exec) -> Client {
+    let session = case.session(exec).unwrap();
+    Client::from(&session.define::<f32>(&case.camera, true).unwrap().frame)
+}
+
+#[test]
+fn every_method_has_25_small_rules_with_names_of_their_own() {
+    for method in methods() {
+        let rules = Rule::all(method).unwrap();
+        let names: BTreeSet<&str> = rules.iter().map(|rule| rule.name.as_str()).collect();
+        assert_eq!(names.len(), rules.len(), "{method}: a name stands twice");
+        let named = |name: &&str| {
+            name.bytes().all(|c| c.is_ascii_lowercase() || c.is_ascii_digit() || b".-".contains(&c))
+        };
+        assert!(names.iter().all(named), "{names:?}");
+        let small = rules.iter().filter(|rule| !rule.large).count();
+        assert!(small >= 25 && rules.len() >= small + 2, "{method}: {small} of {}", rules.len());
+        assert!(rules.iter().all(|rule| rule.tests.ends_with('.')), "{method}");
+    }
+    assert!(Rule::all("wea").is_err());
+}
+
+#[test]
+fn every_setting_has_a_rule() {
+    // Culling has rules of its own, a preset sets other settings, and the last two change only the
+    // frames after the first.
+    let others = ["cull", "kernel", "flags", "share"];
+    for mut method in Method::all() {
+        let rules = Rule::all(method.name()).unwrap();
+        let name = method.name();
+        method.fields(&mut |field| {
+            let of = |rule: &Rule| {
+                matches!(rule.varies, Varies::Setting(setting, _) if setting == field.name)
+            };
+            let found = others.contains(&field.name) || rules.iter().any(of);
+            assert!(found, "{name}: no rule for `{}`; add one to rules/settings.rs", field.name);
+        });
+    }
+}
+
+/// What is wrong with the rules of a method, under these promises.
+fn flaws(method: &str, large: bool, promises: &[Rounding], exec: &Exec) -> Vec<String> {
+    let rules = Rule::all(method).unwrap().into_iter().filter(|rule| rule.large == large);
+    let mut flaws = Vec::new();
+    for rule in rules {
+        let (case, broken) = (rule.case(exec).unwrap(), rule.broken(exec).unwrap());
+        let most = if large { (5100, 320) } else { (100, 64) };
+        let size = case.camera.size();
+        if case.scene.surfels.len() > most.0 || size.iter().any(|&side| side > most.1) {
+            flaws.push(format!("{method} {}: too large", rule.name));
+        }
+        let (own, other) = (drawn(&case, exec), drawn(&broken, exec));
+        for &rounding in promises {
+            for (client, wanted) in [(&own, Outcome::Right), (&other, Outcome::Wrong)] {
+                let client = Client { rounding, ..client.clone() };
+                let session = case.session(exec).unwrap();
+                let verdict = case.verify(&session, &client, Verdict::BUDGET).unwrap();
+                if verdict.outcome() != wanted {
+                    let fault = verdict.first_wrong().and_then(|stage| stage.worst.as_ref());
+                    flaws.push(format!(
+                        "{method} {} {rounding:?}: {:?}, not {wanted:?}: {} of {}, {fault:?}",
+                        rule.name,
+                        verdict.outcome(),
+                        verdict.undecided,
+                        verdict.covered
+                    ));
+                }
+            }
+        }
+    }
+    flaws
+}
+
+#[test]
+fn a_case_is_right_and_is_wrong_if_its_rule_is_broken() {
+    let exec = Exec::new(0, 32).unwrap();
+    let promises = [Rounding::default()];
+    let flaws = methods().flat_map(|method| flaws(method, false, &promises, &exec));
+    let flaws: Vec<String> = flaws.collect();
+    assert!(flaws.is_empty(), "{}", flaws.join("\n"));
+}
+
+#[test]
+#[ignore = "slow: .ci/run runs it"]
+fn so_it_is_under_every_promise_and_if_it_is_large() {
+    let exec = Exec::new(0, 32).unwrap();
+    let promises: Vec<Rounding> = Rounding::WORDS.iter().map(|(_, rounding)| *rounding).collect();
+    let flaws = methods().flat_map(|method| {
+        [false, true]
+            .into_iter()
+            .flat_map(|large| flaws(method, large, &promises, &exec))
+            .collect::<Vec<_>>()
+    });
+    let flaws: Vec<String> = flaws.collect();
+    assert!(flaws.is_empty(), "{}", flaws.join("\n"));
+}
