@@ -68,8 +68,11 @@ fn draw(session: &Session<'_>, camera: &Camera) -> Frame<Lawful> {
     }
 }
 
+/// A name, and whether a plane is handed in.
+type Part = (&'static str, fn(&str) -> bool);
+
 /// What a client may hand in: all planes, those of the picture, or one of these.
-const PARTS: [(&str, fn(&str) -> bool); 7] = [
+const PARTS: [Part; 7] = [
     ("all planes", |_| true),
     ("the picture", |plane| {
         let stages = ["group", "level", "pull", "push", "layer"];

@@ -72,7 +72,7 @@ impl Inputs {
 
     /// The inputs of one case, from its draws.
     pub(super) fn replay(draws: &[Draw], odd: bool) -> Self {
-        Self { source: Source::Again(draws.to_vec().into_iter()), drawn: Vec::new(), odd }
+        Self { source: Source::Again(Vec::from(draws).into_iter()), drawn: Vec::new(), odd }
     }
 
     /// Begins a case.

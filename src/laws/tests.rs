@@ -220,7 +220,10 @@ fn broken_blending_is_caught() {
         Blend { color: color.map(|c| c + trace), ..below.over(a, color) }
     };
     breaks(over::wall(&shines, &layers, [1.0; 3], &[]), "nothing shines through");
+}
 
+#[test]
+fn broken_blending_from_the_front_is_caught() {
     let of = |op: fn(Under<f32>, f32, [f32; 3]) -> Under<f32>| under(&op);
     breaks(
         of(|above, alpha, color| Under { alpha: above.alpha + alpha, ..above.under(alpha, color) }),

@@ -34,8 +34,11 @@ pub(crate) type Draws = fn(&mut dyn FnMut(Picture<'_>));
 const PROMISES: [(&str, Rounding); 3] =
     [("gpu", Rounding::Gpu), ("precise", Rounding::Precise), ("ieee", Rounding::Ieee)];
 
+/// A name, and whether a plane is handed in.
+type Part = (&'static str, fn(&str) -> bool);
+
 /// What a client hands in.
-const PARTS: [(&str, fn(&str) -> bool); 3] = [
+const PARTS: [Part; 3] = [
     ("all planes", |_| true),
     ("colour, depth and id", |plane| ["", "Z", "id"].contains(&plane)),
     ("colour", str::is_empty),

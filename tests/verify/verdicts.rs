@@ -271,7 +271,8 @@ fn errors_to_one_side_are_unlike_those_of_a_right_renderer() {
         }
         session.verify(&camera, &Client::from(&frame), 1.0).unwrap().outcome()
     };
-    let outcomes: Vec<Outcome> = (0..12).map(|k| outcome(1.0 + 3e-6 * 2.0_f32.powi(k))).collect();
+    let outcomes: Vec<Outcome> =
+        (0..12_u8).map(|k| outcome(1.0 + 3e-6 * f32::from(1_u16 << k))).collect();
     assert_eq!(outcomes[0], Outcome::Right, "{outcomes:?}");
     assert!(outcomes.contains(&Outcome::Unlike), "{outcomes:?}");
     assert_eq!(outcomes[11], Outcome::Wrong, "{outcomes:?}");
