@@ -211,8 +211,8 @@ change of one line. A *cell* is a bug in a scene where it changes a bit of some 
 fused products or coarse division, that is not called right; each promise is asked about the variants that keep it. A rule compares
 the picture with that of the plain implementation.
 
-The verdict looks at the whole picture with all its decisions, so that it also misses what a right renderer may do: under `gpu` a bug that
-moves a limit by less than rounding may. The last line of each section lists such bugs, with the scenes that find them.
+A verdict misses bugs that move a limit by less than the rounding that the promise grants; the last lines of each section list what is
+missed. From colour, depth and id alone, a picture of `pyramid` or `template` is undecidable, so nothing is found.
 
 The test that writes this page: `cargo test --release --test all -- --ignored matrix`.
 ";
