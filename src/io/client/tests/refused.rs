@@ -100,7 +100,7 @@ fn values_of_the_wrong_type() {
         ("planes = 1", "planes is 1; give a table"),
         ("planes.Z = 1.5", "planes.Z is 1.5; give a table, or the path of a file"),
         ("depth = \"t\"", "depth is \"t\"; give a table"),
-        ("profile = \"GPU\"", "profile is \"GPU\"; give one of \"gpu\", \"ieee\""),
+        ("profile = \"GPU\"", "profile is \"GPU\"; give one of \"gpu\", \"precise\", \"ieee\""),
         ("ties = true", "ties is true; give one of \"lowest\", \"last\", \"any\""),
         ("accumulator = \"f64\"", "accumulator is \"f64\"; give one of \"f32\", \"f16\""),
         ("origin = []", "origin is an array of 0; give one of \"top-left\", \"bottom-left\""),
