@@ -5,6 +5,7 @@ use crate::verify::client::{Bug, Habit, How, records, render};
 use crate::verify::matrix::Picture;
 use splatref::frame::{Exec, Samples};
 use splatref::method::{Method, Session};
+use splatref::number::Real;
 use splatref::splat::Epsilon;
 use splatref::verdict::causes::likely_cause;
 use splatref::verdict::client::{Client, Rounding, Ties};
@@ -276,7 +277,7 @@ fn errors_to_one_side_are_unlike_those_of_a_right_renderer() {
     // An error grows as its part does, so one verdict tells which part is an error of one bound.
     let coarse = judge(&|_| 1e-3);
     let errors = coarse.stages.last().unwrap().errors.values();
-    let outcome = |error: f32| judge(&|i| 1e-3 * error / errors[i].max(1.0)).outcome();
+    let outcome = |error: f32| judge(&|i| 1e-3 * error / errors[i].at_least(1.0)).outcome();
     let outcomes = [0.25, 0.75, 1.5].map(outcome);
     assert_eq!(outcomes, [Outcome::Right, Outcome::Unlike, Outcome::Wrong]);
 }

@@ -6,6 +6,7 @@ use splatref::io::client::Description;
 use splatref::verdict::client::{Client, Rounding};
 use splatref::verdict::conformance::{Case, Renderer};
 use splatref::{Error, Result};
+use std::ffi::OsString;
 use std::fs::{self, File};
 use std::io::{self, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
@@ -62,10 +63,8 @@ impl Renderer for Program<'_> {
 
 impl Program<'_> {
     fn start(&self, scene: &Path, picture: &Path, log: &Path) -> Result<Child> {
-        let text = |path: &Path| path.to_string_lossy().into_owned();
-        let fill =
-            |word: &String| word.replace("{scene}", &text(scene)).replace("{out}", &text(picture));
-        let words: Vec<String> = self.words.iter().map(fill).collect();
+        let places = [("{scene}", scene), ("{out}", picture)];
+        let words: Vec<OsString> = self.words.iter().map(|word| filled(word, places)).collect();
         let file = File::create(log).map_err(|source| Error::io(log, source))?;
         let copy = file.try_clone().map_err(|source| Error::io(log, source))?;
         let started = Command::new(&words[0])
@@ -95,6 +94,22 @@ impl Program<'_> {
             thread::sleep(GLANCE);
         }
     }
+}
+
+/// A word of the command with paths in place of placeholders. A path may have bytes that are no text.
+fn filled(word: &str, places: [(&str, &Path); 2]) -> OsString {
+    let (mut filled, mut rest) = (OsString::new(), word);
+    let first = |rest: &str| {
+        let found = places.map(|(name, path)| Some((rest.find(name)?, name.len(), path)));
+        found.into_iter().flatten().min_by_key(|(at, ..)| *at)
+    };
+    while let Some((at, length, path)) = first(rest) {
+        filled.push(&rest[..at]);
+        filled.push(path);
+        rest = &rest[at + length..];
+    }
+    filled.push(rest);
+    filled
 }
 
 /// Removes a file, if it exists.
@@ -171,5 +186,16 @@ mod tests {
         assert_eq!(words, ["./mine", "{scene}/a b", "it's", "", "{out}x"]);
         assert!(split("mine 'a {scene}").unwrap_err().contains("not closed"));
         assert!(split("mine {out}").unwrap_err().contains("{scene}"));
+    }
+
+    #[cfg(unix)]
+    #[test]
+    fn paths_keep_their_bytes() {
+        use std::os::unix::ffi::OsStringExt;
+        let scene = PathBuf::from(OsString::from_vec(b"a\xff {out}".to_vec()));
+        let places = [("{scene}", &*scene), ("{out}", Path::new("o.exr"))];
+        let word = filled("-i={scene}/s,{out}!", places).into_vec();
+        assert_eq!(word, b"-i=a\xff {out}/s,o.exr!");
+        assert_eq!(filled("plain", places), "plain");
     }
 }
