@@ -20,6 +20,7 @@
 mod cases;
 mod client;
 mod client_is_right;
+#[cfg(feature = "cli")]
 mod conformance;
 mod empty_pixels;
 mod groups;
