@@ -73,9 +73,7 @@ impl Verdict {
             None => Ok(()),
         }
     }
-}
 
-impl Verdict {
     /// Checks the names of the stages, because a verdict on other stages judges something else.
     fn check_stages(&self) -> std::result::Result<(), String> {
         let methods = Method::all();
@@ -165,9 +163,10 @@ fn verdict(path: &Path) -> Result<(String, Verdict)> {
         |what: String| Error::format(path, format!("not a verdict of `verify --json`: {what}"));
     let json = |error: serde_json::Error| no_verdict(error.to_string());
     let all: Map<String, Value> = serde_json::from_str(&text).map_err(json)?;
-    let verdict: Verdict = serde_json::from_str(&text).map_err(json)?;
     let [fields, _] = report::fields();
-    check_fields(&all, &fields).map_err(no_verdict)?;
+    let unknown = check_fields(&all, &fields);
+    let verdict: Verdict = serde_json::from_value(Value::Object(all)).map_err(json)?;
+    unknown.map_err(no_verdict)?;
     verdict.check().map_err(no_verdict)?;
     Ok((text, verdict))
 }

@@ -69,6 +69,15 @@ pub(crate) fn input<P: Profile>(plane: &StoredPlane<'_, f64>, at: (u32, u32)) ->
     read(value, plane.storage).unwrap_or_else(|| plane.ball(at))
 }
 
+/// The same, but a 0 where nothing is drawn has no radius, as in [`StoredPlane::ball_where`].
+pub(crate) fn input_where<P: Profile>(
+    plane: &StoredPlane<'_, f64>,
+    at: (u32, u32),
+    is_empty: bool,
+) -> Ball<P> {
+    if plane.is_nothing(at, is_empty) { Ball::exact(0.0) } else { input(plane, at) }
+}
+
 /// The three numbers that the next stage reads at a pixel.
 #[inline]
 pub(crate) fn inputs<P: Profile>(

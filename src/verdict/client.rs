@@ -167,6 +167,18 @@ impl StoredPlane<'_, f64> {
         let value = *self.plane.at(x, y);
         known(value, self.storage.radius(value))
     }
+
+    /// The same, but a 0 where nothing is drawn has no radius, because every format holds it exactly.
+    #[inline(always)]
+    pub(crate) fn ball_where<P: Profile>(&self, at: (u32, u32), is_empty: bool) -> Ball<P> {
+        if self.is_nothing(at, is_empty) { Ball::exact(0.0) } else { self.ball(at) }
+    }
+
+    /// Whether this is the 0 of a pixel where nothing is drawn.
+    #[inline(always)]
+    pub(super) fn is_nothing(&self, (x, y): (u32, u32), is_empty: bool) -> bool {
+        is_empty && *self.plane.at(x, y) == 0.0
+    }
 }
 
 impl StoredPlane<'_, [f64; 3]> {

@@ -1,7 +1,7 @@
 //! The planes of a record that a client hands in. One table, the record's planes, says how to find,
 //! judge and read them.
 
-use super::checks::{Report, input, inputs, number, triple, whole};
+use super::checks::{Report, input_where, inputs, number, triple, whole};
 use super::client::{Client, StoredPlane};
 use crate::frame::{NO_ID, Plane};
 use crate::method::projection::SampleKind;
@@ -148,10 +148,6 @@ impl<'a> RecordPlanes<'a> {
         record: &mut T,
     ) {
         let empty = self.is_empty(at);
-        let number = |plane: &StoredPlane<'_, f64>| match *plane.plane.at(at.0, at.1) {
-            0.0 if empty => Ball::ZERO,
-            _ => input(plane, at),
-        };
         let numbers = |plane: &StoredPlane<'_, [f64; 3]>| match *plane.plane.at(at.0, at.1) {
             [0.0, 0.0, 0.0] if empty => [Ball::ZERO; 3],
             _ => inputs(plane, at),
@@ -173,7 +169,9 @@ impl<'a> RecordPlanes<'a> {
                     let kind = SampleKind::ALL.get(usize::from(*plane.plane.at(at.0, at.1)));
                     *of(record) = kind.copied().unwrap_or_default();
                 }
-                (AnyStored::Scalar(plane), Part::Number(of)) => *of(record) = number(plane),
+                (AnyStored::Scalar(plane), Part::Number(of)) => {
+                    *of(record) = input_where(plane, at, empty);
+                }
                 (AnyStored::Triple(plane), Part::Triple(of)) => *of(record) = numbers(plane),
                 (AnyStored::Triple(plane), Part::Direction(of)) => {
                     let [x, y, z] = numbers(plane);

@@ -1,8 +1,7 @@
 //! Verify the pictures of a session.
 
 use super::client::{Client, Rounding};
-use super::{Check, Verdict};
-use super::{table, unlike};
+use super::{Check, Verdict, table, unlike};
 use crate::error::{Error, Result};
 use crate::method::session::{Making, Names, named};
 use crate::method::{Method, Session};
@@ -20,10 +19,13 @@ impl Session<'_> {
     /// the camera's, or if there are records for another method than `ewa`; else as
     /// [`Session::render`].
     pub fn verify(&self, camera: &Camera, client: &Client, budget: f64) -> Result<Verdict> {
-        self.verify_as(self.method(), camera, client, budget)
+        let mut verdict = self.verify_as(self.method(), camera, client, budget)?;
+        verdict.unlike = unlike::found(client, self.scene().surfels.len(), &verdict.stages);
+        Ok(verdict)
     }
 
-    /// Judges as [`Session::verify`] does, but with another method for the same scene and groups.
+    /// Judges as [`Session::verify`] does, but with another method for the same scene and groups, and
+    /// without asking whether the errors are usual.
     pub(crate) fn verify_as(
         &self,
         method: &Method,
@@ -36,14 +38,11 @@ impl Session<'_> {
         self.ask(camera, Making::Verdict)?;
         let names = self.numbers();
         let client = &*numbered(names.as_ref(), self.method(), client)?;
-        let mut verdict = match client.rounding {
+        let verdict = match client.rounding {
             Rounding::Gpu => table::verify::<Gpu>(method, &job, client, budget),
             Rounding::Precise => table::verify::<Precise>(method, &job, client, budget),
             Rounding::Ieee => table::verify::<Ieee>(method, &job, client, budget),
         }?;
-        if self.scene().surfels.len() > unlike::FEW {
-            verdict.unlike = unlike::found(client, &verdict.stages);
-        }
         Ok(verdict.renumbered(|index| named(names.as_ref(), index)))
     }
 

@@ -6,15 +6,21 @@
 //! that right renderers leave.
 //!
 //! Right renderers are simulated: `tests/lawful.rs` draws pictures by all methods in a number whose
-//! operations are as inexact as the promise allows, as a coin decides or always to one side. Only
-//! errors of rounding count: a pixel without an error says nothing, and where a decision is open, an
-//! interval is as wide as the decision. So pixels with an error of 0, pixels with an error of 1, the
-//! end of an interval, and pixels with a [doubt](super::Doubt) are left out. A stage with fewer than
-//! 100 others is not tested, neither is a scene of at most 100 surfels, because all pixels of a splat
-//! share the roundings of its projection, and neither is a client that stores a plane in another format than f32,
-//! because what its format loses fills the intervals. Under the promises `precise` and `ieee` nothing
-//! is tested: their intervals are hardly wider than the errors of right renderers. For the same reason a client that hands in its
-//! records is not tested: the `exp` of a software driver alone fills the bounds of its weights.
+//! operations are as inexact as the promise allows, as a coin decides or always to one side.
+//!
+//! Only errors of rounding count. Left out are pixels with an error of 0, with an error of 1, the end
+//! of an interval, and with a [doubt](super::Doubt): where a decision is open, an interval is as wide
+//! as the decision. Nothing is tested
+//!
+//! - in a stage with fewer than 100 other pixels;
+//! - in a scene of at most 100 surfels, or of objects, because all pixels of a splat share the
+//!   roundings of its projection;
+//! - if the client stores a plane in another format than `f32`, because what the format loses fills
+//!   the intervals;
+//! - if the client hands in its records, because the `exp` of a software driver alone fills the
+//!   bounds of its weights;
+//! - under the promises `precise` and `ieee`, whose intervals are hardly wider than the errors of right
+//!   renderers.
 
 use super::client::{Client, Rounding};
 use super::findings::StageVerdict;
@@ -36,11 +42,14 @@ pub struct Unlike {
 /// The quantiles that are tested.
 const QUANTILES: [f64; 2] = [0.5, 0.99];
 
-/// The fewest pixels whose quantiles are tested, and the most surfels of a scene that is not tested.
-pub(super) const FEW: usize = 100;
+/// The fewest pixels whose quantiles are tested.
+const FEWEST_PIXELS: usize = 100;
+
+/// The most surfels of a scene that is not tested.
+const FEW_SURFELS: usize = 100;
 
 /// The largest usual errors in bounds of each stage under `gpu`, at each of [`QUANTILES`].
-/// `Decided:` 1.5 times the largest of 36 simulated pictures of each of four scenes by each method,
+/// `Decided:` 1.5 times the largest of 12 simulated pictures of each of four scenes by each method,
 /// and of all lawful variants of the second implementations in all scenes of `tests/verify`; at most
 /// 1, from where an error is wrong by itself.
 const USUAL: [(&str, [f64; 2]); 17] = [
@@ -63,10 +72,13 @@ const USUAL: [(&str, [f64; 2]); 17] = [
     ("shading", [0.43, 0.83]),
 ];
 
-/// The stages of a right picture whose errors are unlike those of right renderers.
-pub(super) fn found(client: &Client, stages: &[StageVerdict]) -> Vec<Unlike> {
-    // The intervals of the other promises are hardly wider than what right renderers leave.
-    if client.rounding != Rounding::Gpu || !client.stores_singles() || client.records.is_some() {
+/// The stages of a right picture of so many surfels whose errors are unlike those of right renderers.
+pub(super) fn found(client: &Client, surfels: usize, stages: &[StageVerdict]) -> Vec<Unlike> {
+    let tested = surfels > FEW_SURFELS
+        && client.rounding == Rounding::Gpu
+        && client.stores_singles()
+        && client.records.is_none();
+    if !tested {
         return Vec::new();
     }
     let mut unlike = Vec::new();
@@ -92,7 +104,7 @@ impl StageVerdict {
         let of_rounding =
             all.filter(|(error, doubts)| **doubts == 0 && **error > 0.0 && **error < 1.0);
         let mut errors: Vec<f32> = of_rounding.map(|(error, _)| *error).collect();
-        if errors.len() < FEW {
+        if errors.len() < FEWEST_PIXELS {
             return None;
         }
         errors.sort_unstable_by(f32::total_cmp);
@@ -137,7 +149,7 @@ mod tests {
     fn errors_are_compared_at_the_median_and_near_the_end() {
         let usual = USUAL.iter().find(|(name, _)| *name == "shading").unwrap().1[1];
         let client = Client::new(Frame::new(20, 10));
-        let gpu = |error: &dyn Fn(u32) -> f32| found(&client, &[stage("shading", error)]);
+        let gpu = |error: &dyn Fn(u32) -> f32| found(&client, 101, &[stage("shading", error)]);
         assert_eq!(gpu(&|i| i as f32 / 200.0 * 0.4), []);
         // A few large errors are usual, and the ends of intervals are no errors of rounding.
         assert_eq!(gpu(&|i| if i == 0 { 0.9 } else { 0.1 }), []);
@@ -147,7 +159,8 @@ mod tests {
         let [unlike] = gpu(&|_| 0.5)[..] else { panic!("the median") };
         assert_eq!((unlike.quantile, unlike.error), (0.5, 0.5));
         let halves = Client { accumulator: Storage::Half, ..client.clone() };
-        assert_eq!(found(&halves, &[stage("shading", |_| 0.5)]), []);
+        assert_eq!(found(&halves, 101, &[stage("shading", |_| 0.5)]), []);
+        assert_eq!(found(&client, 100, &[stage("shading", |_| 0.5)]), []);
         // So few pixels may be anything.
         assert_eq!(gpu(&|i| if i < 99 { 0.9 } else { 0.0 }), []);
     }

@@ -185,8 +185,5 @@ fn finish(args: &Args, folder: &Path, tried: &Tried) -> Ended {
         Pending::write(path, |file| file.write_all(text.as_bytes()))
     });
     files.collect::<Result<Vec<_>>>()?.into_iter().try_for_each(Pending::put)?;
-    Ok(match tried.ending() {
-        Ending::Unlike if args.strict => Ending::Different,
-        ending => ending,
-    })
+    Ok(tried.ending().or_strict(args.strict))
 }

@@ -4,6 +4,7 @@ use crate::cli::Ending;
 use crate::cli::verify::report::{JsonShift, JsonStage};
 use serde_json::{Value, json};
 use splatref::setting::Word;
+use splatref::study::chart::escaped;
 use splatref::verdict::Outcome;
 use splatref::verdict::conformance::{Judged, Report, Row};
 use splatref::verdict::shift::LIMITS;
@@ -32,14 +33,9 @@ fn verdict(judged: &Judged) -> Value {
     })
 }
 
-/// How the command ends because of a row.
+/// How the command ends because of a row; a renderer that failed is as a wrong one.
 fn ending(row: &Row) -> Ending {
-    match row.outcome() {
-        None | Some(Outcome::Wrong) => Ending::Different,
-        Some(Outcome::Undecidable) => Ending::Undecidable,
-        Some(Outcome::Unlike) => Ending::Unlike,
-        Some(Outcome::Right) => Ending::Good,
-    }
+    row.outcome().unwrap_or(Outcome::Wrong).into()
 }
 
 impl Tried {
@@ -149,21 +145,4 @@ impl Tried {
         );
         xml
     }
-}
-
-/// Text for an attribute of XML; characters that XML cannot hold become `?`.
-fn escaped(text: &str) -> String {
-    let mut out = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            '&' => out.push_str("&amp;"),
-            '<' => out.push_str("&lt;"),
-            '>' => out.push_str("&gt;"),
-            '"' => out.push_str("&quot;"),
-            '\u{fffe}' | '\u{ffff}' => out.push('?'),
-            c if c.is_control() => out.push('?'),
-            c => out.push(c),
-        }
-    }
-    out
 }

@@ -15,9 +15,9 @@ use splatref::io::scene_file::{FileKind, Number, OutputSettings, SceneFile};
 use splatref::method::Session;
 use splatref::scene::Camera;
 use splatref::setting::Words;
+use splatref::verdict::Verdict;
 use splatref::verdict::causes::likely_cause;
 use splatref::verdict::client::{Client, Rounding};
-use splatref::verdict::{Outcome, Verdict};
 use splatref::{Error, Result};
 use std::io::Write;
 use std::path::PathBuf;
@@ -114,13 +114,7 @@ fn judge(args: &Args) -> Ended {
         write(args, (&seen, &client), (|| errors(camera, &verdict), page), &exec)
     })?;
     seen.lines(args, &client).iter().for_each(say);
-    Ok(match verdict.outcome() {
-        Outcome::Right => Ending::Good,
-        Outcome::Unlike if args.strict => Ending::Different,
-        Outcome::Unlike => Ending::Unlike,
-        Outcome::Wrong => Ending::Different,
-        Outcome::Undecidable => Ending::Undecidable,
-    })
+    Ok(Ending::from(verdict.outcome()).or_strict(args.strict))
 }
 
 /// Writes the requested files; all are complete before any replaces an old file.

@@ -108,7 +108,7 @@ impl Session<'_> {
         frame: &mut Frame<R>,
         mut store: impl FnMut(&Stage, &mut Frame<R>),
     ) -> Result<()> {
-        self.ask(job.camera, Making::Define { number: 4, stages: true })?;
+        self.ask(job.camera, Making::Define { number: size_of::<R>() as u64, stages: true })?;
         for stage in self.method.stages().iter().filter(|stage| !stage.leaves.is_empty()) {
             let levels = self.method.levels(job, stage.name);
             let parts =

@@ -62,6 +62,24 @@ pub trait Profile: Copy + Send + Sync + 'static {
     fn terms_of(lanes: &Self::TermLanes, lane: usize) -> Self::Terms;
 }
 
+/// The parts of a [`Profile`] that adds terms in the written order: a ball remembers none of them.
+macro_rules! no_terms {
+    () => {
+        type Terms = ();
+        const NO_SUM: () = ();
+        #[inline(always)]
+        fn choose(_truth: bool, _yes: (), _no: ()) {}
+        type TermLanes = ();
+        const NO_SUMS: () = ();
+        #[inline(always)]
+        fn put_terms(_lanes: &mut (), _lane: usize, _terms: ()) {}
+        #[inline(always)]
+        fn terms_of(_lanes: &(), _lane: usize) {}
+    };
+}
+#[cfg(test)]
+pub(super) use no_terms;
+
 /// IEEE 754, the definition of the crate: each operation rounds once, to nearest. A product may be
 /// fused with the sum that it goes into.
 #[derive(Clone, Copy, Debug)]
@@ -71,8 +89,7 @@ pub struct Ieee;
 const HALF_DENORMAL: f64 = f32::from_bits(1) as f64 * 0.500_001;
 
 impl Profile for Ieee {
-    type Terms = ();
-    const NO_SUM: () = ();
+    no_terms!();
     const ROUNDS_TO_NEAREST: bool = true;
     const ROUNDS_ALL_TO_NEAREST: bool = true;
     const FLUSHES: bool = false;
@@ -93,14 +110,6 @@ impl Profile for Ieee {
         // A sum below the normal numbers is exact.
         Ball::new(middle, Ball::<Self>::reach(middle, a.radius + b.radius, 1.0, 0.0))
     }
-    #[inline(always)]
-    fn choose(_truth: bool, _yes: (), _no: ()) {}
-    type TermLanes = ();
-    const NO_SUMS: () = ();
-    #[inline(always)]
-    fn put_terms(_lanes: &mut (), _lane: usize, _terms: ()) {}
-    #[inline(always)]
-    fn terms_of(_lanes: &(), _lane: usize) {}
 }
 
 /// IEEE 754 for sums and products, and what a device has for the rest: between [`Ieee`] and [`Gpu`].
@@ -112,8 +121,7 @@ impl Profile for Ieee {
 pub struct Precise;
 
 impl Profile for Precise {
-    type Terms = ();
-    const NO_SUM: () = ();
+    no_terms!();
     const ROUNDS_TO_NEAREST: bool = true;
     const ROUNDS_ALL_TO_NEAREST: bool = false;
     const FLUSHES: bool = true;
@@ -133,14 +141,6 @@ impl Profile for Precise {
     fn sum(middle: f64, [a, b]: [&Ball<Self>; 2]) -> Ball<Self> {
         Ball::new(middle, Ball::<Self>::reach(middle, a.radius + b.radius, 1.0, Self::TINY))
     }
-    #[inline(always)]
-    fn choose(_truth: bool, _yes: (), _no: ()) {}
-    type TermLanes = ();
-    const NO_SUMS: () = ();
-    #[inline(always)]
-    fn put_terms(_lanes: &mut (), _lane: usize, _terms: ()) {}
-    #[inline(always)]
-    fn terms_of(_lanes: &(), _lane: usize) {}
 }
 
 /// What WGSL and Vulkan publish for `f32`. An ulp is at most 2 u of its number.

@@ -147,12 +147,7 @@ impl<'a> BluePlanes<'a> {
 
     /// The weight of a pixel, in the same way.
     pub(super) fn seen<P: Profile>(&self, at: (u32, u32), shown: Ball<P>) -> Ball<P> {
-        let read = |plane: StoredPlane<'_, f64>| {
-            // Every format holds the 0 of an empty pixel exactly.
-            let nothing = *plane.plane.at(at.0, at.1) == 0.0 && shown.contains(0.0);
-            if nothing { Ball::ZERO } else { plane.ball(at) }
-        };
-        self.weight.map_or(shown, read)
+        self.weight.map_or(shown, |plane| plane.ball_where(at, shown.contains(0.0)))
     }
 
     /// Checks the colour of the picture.

@@ -193,21 +193,19 @@ impl Case {
     /// As [`Session::verify`].
     pub fn judge(&self, client: &Client, budget: f64, exec: &Exec) -> Result<Judged> {
         let session = self.session(exec)?;
-        let verdict = self.verify(&session, client, budget)?;
+        let verdict = session.verify(&self.camera, client, budget)?;
         let cause = likely_cause(&session, &self.camera, client, &verdict)?;
         let sharper = self.sharper(&verdict, exec)?;
         Ok(Judged { verdict, cause, sharper, rounding: client.rounding })
     }
 
-    /// The verdict on a client.
-    fn verify(&self, session: &Session<'_>, client: &Client, budget: f64) -> Result<Verdict> {
-        session.verify(&self.camera, client, budget)
-    }
-
     /// What to hand in next: of the first stage that is not judged as a whole, the planes or the
     /// levels that the client lacks.
     fn sharper(&self, verdict: &Verdict, exec: &Exec) -> Result<Option<String>> {
-        for (stage, rows) in self.planes(exec)? {
+        let lacks = |stage: &StageVerdict| stage.planes.is_empty() || !stage.missing.is_empty();
+        // Which planes there are is only known once the case is drawn.
+        let planes = if verdict.stages.iter().any(lacks) { self.planes(exec)? } else { Vec::new() };
+        for (stage, rows) in planes {
             let judged = verdict.stages.iter().find(|judged| judged.stage == stage.name);
             let Some(StageVerdict { planes, missing, .. }) = judged else { continue };
             if let Some(missing) = missing.first() {

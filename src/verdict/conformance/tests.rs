@@ -67,7 +67,7 @@ fn flaws(method: &str, large: bool, promises: &[Rounding], exec: &Exec) -> Vec<S
             for (client, wanted) in [(&own, Outcome::Right), (&other, Outcome::Wrong)] {
                 let client = Client { rounding, ..client.clone() };
                 let session = case.session(exec).unwrap();
-                let verdict = case.verify(&session, &client, Verdict::BUDGET).unwrap();
+                let verdict = session.verify(&case.camera, &client, Verdict::BUDGET).unwrap();
                 if verdict.outcome() != wanted {
                     let fault = verdict.first_wrong().and_then(|stage| stage.worst.as_ref());
                     flaws.push(format!(

@@ -12,8 +12,8 @@ use crate::number::ball::Profile;
 use crate::number::{Ball, MapInline, Real, Truth};
 use crate::scene::Surfels;
 use crate::verdict::checks::{
-    Report, Shading, Surface, anything, input, inputs, least_wrong, number, only_fitting, triple,
-    whole, widened,
+    Report, Shading, Surface, anything, input_where, inputs, least_wrong, number, only_fitting,
+    triple, whole, widened,
 };
 use crate::verdict::client::{Storage, StoredPlane};
 use crate::verdict::marks::Marks;
@@ -108,10 +108,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         let client_planes = self.client_planes;
         // Where nothing is, every format holds an opacity of exactly 0.
         let empty = matches!(all(sums), [Sums { count: 0, .. }]);
-        let read = |plane: &StoredPlane<'_, f64>| match *plane.plane.at(at.0, at.1) {
-            0.0 if empty => Ball::ZERO,
-            _ => input(plane, at),
-        };
+        let read = |plane: &StoredPlane<'_, f64>| input_where(plane, at, empty);
         if let (Some(opacity), Some(color)) = (&client_planes.opacity, &client_planes.shaded) {
             return (read(opacity), inputs(color, at));
         }
@@ -253,9 +250,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         at: (u32, u32),
         sums: Option<&Sums<Ball<P>>>,
     ) -> Ball<P> {
-        let empty = sums.is_some_and(|sums| sums.count == 0);
-        let nothing = empty && *plane.plane.at(at.0, at.1) == 0.0;
-        if nothing { Ball::ZERO } else { plane.ball(at) }
+        plane.ball_where(at, sums.is_some_and(|sums| sums.count == 0))
     }
 
     /// The sum of the weights as the average reads it.

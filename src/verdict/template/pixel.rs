@@ -15,7 +15,8 @@ use crate::number::ball::Profile;
 use crate::number::{Ball, MapInline, Real};
 use crate::splat::View;
 use crate::verdict::checks::{
-    Report, Shading, Surface, anything, input, inputs, least_wrong, number, triple, widened,
+    Report, Shading, Surface, anything, input, input_where, inputs, least_wrong, number, triple,
+    widened,
 };
 use crate::verdict::client::StoredPlane;
 use crate::verdict::marks::Marks;
@@ -135,10 +136,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     fn check_shading(&self, at: (u32, u32), own: &Gathered<Ball<P>>, report: &mut Report<'_>) {
         let client_planes = self.client_planes;
         // Where nothing was gathered, every format holds a weight of exactly 0.
-        let read = |plane: StoredPlane<'_, f64>| match *plane.plane.at(at.0, at.1) {
-            0.0 if own.count == 0 => Ball::ZERO,
-            _ => input(&plane, at),
-        };
+        let read = |plane: StoredPlane<'_, f64>| input_where(&plane, at, own.count == 0);
         let weight = client_planes.weight_copy.map_or(own.weight, read);
         if let Some(plane) = &client_planes.shaded {
             let depth = || normalization::depth(own);

@@ -5,6 +5,7 @@ pub(crate) mod lawful;
 mod light;
 mod scenes;
 
+use super::profile::no_terms;
 use super::*;
 use crate::frame::Exec;
 use crate::number::random::bits;
@@ -95,8 +96,7 @@ macro_rules! twin {
         #[derive(Clone, Copy)]
         struct $name;
         impl Profile for $name {
-            type Terms = ();
-            const NO_SUM: () = ();
+            no_terms!();
             const ROUNDS_TO_NEAREST: bool = true;
             const ROUNDS_ALL_TO_NEAREST: bool = true;
             const FLUSHES: bool = false;
@@ -114,11 +114,6 @@ macro_rules! twin {
             fn sum(middle: f64, [a, b]: [&Ball<Self>; 2]) -> Ball<Self> {
                 Ball::rounded(middle, a.radius + b.radius, $sum, 0.0)
             }
-            fn choose(_truth: bool, _yes: (), _no: ()) {}
-            type TermLanes = ();
-            const NO_SUMS: () = ();
-            fn put_terms(_lanes: &mut (), _lane: usize, _terms: ()) {}
-            fn terms_of(_lanes: &(), _lane: usize) {}
         }
     };
 }
