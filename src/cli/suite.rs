@@ -113,12 +113,12 @@ pub(super) fn run(args: &Args) -> Ended {
         let Verdict { outcome, promise, .. } = &verdict;
         let first = *seen.entry(text).or_insert(path);
         if std::ptr::eq(first, path.as_path()) {
-            say(format!("{outcome:<12} {promise:<5} {}", path.display()));
+            say(format!("{outcome:<12} {promise:<7} {}", path.display()));
             verdicts.push(verdict);
         } else {
             let (path, first) = (path.display(), first.display());
             say(format!(
-                "{:<12} {promise:<5} {path}: the same verdict as {first}, counted once",
+                "{:<12} {promise:<7} {path}: the same verdict as {first}, counted once",
                 "again"
             ));
         }
@@ -133,7 +133,7 @@ pub(super) fn run(args: &Args) -> Ended {
             let alarms = shift.alarms();
             leans |= alarms;
             let word = if alarms { "WRONG" } else { "" };
-            say(format!("{word:<12} {promise:<5} {}", leaning(*limit, shift)));
+            say(format!("{word:<12} {promise:<7} {}", leaning(*limit, shift)));
         }
     }
     Ok(if leans || any("wrong") {

@@ -129,6 +129,10 @@ pub struct Client {
     pub ties: Ties,
     /// The end of the visible band that is assumed for the client.
     pub(crate) band: Band,
+    /// The format of the depths that the client's depth test compares, if it is not that of the
+    /// planes that store depth: a depth buffer of 24 bits, for example, beside depths in a colour
+    /// target. Two fragments whose stored depths may be equal count as equally near.
+    pub depth_test: Storage,
     /// The format of the attribute pass's sums between two additions.
     pub accumulator: Storage,
     /// The splats that the client has projected, in ascending surfel index. The later stages are
@@ -241,6 +245,7 @@ impl Client {
             rounding: Rounding::default(),
             ties: Ties::default(),
             band: Band::default(),
+            depth_test: Storage::Single,
             accumulator: Storage::Single,
             records: None,
             unknown: Vec::new(),

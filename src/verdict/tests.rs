@@ -315,3 +315,64 @@ fn ids_of_objects_change_no_verdict() {
         assert_eq!(outcome(&objects), outcome(&plain), "{method:?}");
     }
 }
+
+/// Of two discs, 1e-4 apart, a client keeps the farther one.
+#[test]
+fn a_depth_test_in_few_digits_may_keep_the_farther_of_two() {
+    use crate::method::{blue, deferred, ewa, peeling, single_pass, template};
+    use crate::splat::{Epsilon, SplatSettings};
+    use glam::{DVec3, Vec3};
+    let discs = |depths: &[f32], colors: &[Vec3]| {
+        let cloud = Cloud {
+            position: depths.iter().map(|z| Vec3::new(0.1, 0.03, *z)).collect(),
+            normal: Some(vec![Vec3::Z; depths.len()]),
+            radius: Some(vec![0.5; depths.len()]),
+            color: Some(colors.to_vec()),
+            groups: Some(Groups::new(vec![0; depths.len()], Vec::new(), vec![1.0]).unwrap()),
+            ..Cloud::default()
+        };
+        Scene::unlit("discs", Surfels::new(cloud).unwrap().0)
+    };
+    let both = discs(&[0.0, 1e-4], &[Vec3::X, Vec3::Y]);
+    let farther = discs(&[0.0], &[Vec3::X]);
+    let pose = crate::scene::Pose { eye: DVec3::Z * 4.0, target: DVec3::ZERO, up: DVec3::Y };
+    let camera = Camera::new(24, 20, pose, Lens::FieldOfView(30.0)).unwrap();
+    let splats = SplatSettings { epsilon: Epsilon::World(0.0), ..SplatSettings::default() };
+    let methods: [Method; 6] = [
+        ewa::Settings { ..splats }.into(),
+        single_pass::Settings { splats, depth: single_pass::DepthTest::Plain }.into(),
+        template::Settings::default().into(),
+        peeling::Settings { splats, ..Default::default() }.into(),
+        blue::Settings::default().into(),
+        deferred::Settings { splats, ..Default::default() }.into(),
+    ];
+    let exec = Exec::sequential();
+    // 2^-16 of z between 1 and 100 is 2.4e-4 at a depth of 4, and 2^-24 of it is 1e-6.
+    let buffer = |step| Storage::DepthBuffer { step, near: 1.0, far: 100.0 };
+    for method in methods {
+        let session = Session::new(&both, method, &exec).unwrap();
+        let kept = Session::new(&farther, method, &exec).unwrap();
+        let frame = kept.define::<f32>(&camera, true).unwrap().frame;
+        for (depth_test, right) in [
+            (Storage::Single, false),
+            (buffer(1.0 / 16_777_215.0), false),
+            (buffer(1.0 / 65_535.0), true),
+        ] {
+            let mut client = Client::from(&frame);
+            client.depth_test = depth_test;
+            let found = session.verify(&camera, &client, 1.0).unwrap();
+            let wrong = wrong(&found);
+            assert_eq!(wrong.is_none(), right, "{} {depth_test:?} {wrong:?}", method.name());
+            // The depth that a pixel keeps is no less exact.
+            for plane in &mut client.frame_mut().planes {
+                if let (true, Samples::Scalar(plane)) =
+                    (plane.name.ends_with('Z'), &mut plane.samples)
+                {
+                    plane.values_mut().iter_mut().for_each(|depth| *depth += 5e-5);
+                }
+            }
+            let found = session.verify(&camera, &client, 1.0).unwrap();
+            assert!(found.first_wrong().is_some(), "{} {depth_test:?}", method.name());
+        }
+    }
+}

@@ -61,7 +61,7 @@ impl Browser {
         }
         let screen = json!({ "width": width, "height": height, "deviceScaleFactor": 1, "mobile": width < 600 });
         self.ask(&session, "Emulation.setDeviceMetricsOverride", screen);
-        let address = format!("file://{}", path.display());
+        let address = format!("file://{}", path.display()).replace(' ', "%20");
         self.ask(&session, "Page.navigate", json!({ "url": address }));
         let mut page = Page { browser: self, session };
         page.wait(&format!(

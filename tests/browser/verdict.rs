@@ -172,3 +172,40 @@ fn a_comparison_is_looked_at() {
     page.wait("document.getElementById('read').textContent.includes('DIFFERENT; difference ')");
     page.finish();
 }
+
+#[test]
+fn a_suite_is_looked_at() {
+    let Some(mut browser) = Browser::start() else { return };
+    let folder = tempfile::tempdir().unwrap();
+    let command = format!(
+        "'{}' render {{scene}}/scene.toml --stages -o {{out}} --epsilon 1r",
+        env!("CARGO_BIN_EXE_splatref")
+    );
+    let suite = ["conformance", "ewa", "--only", "rim,ball", "-o", "my suite"];
+    let report = ["--command", &command, "--report", "page.html"];
+    splatref(folder.path(), 1, &[&suite[..], &report].concat());
+    assert!(!folder.path().join("my suite/ewa/rim/verdict.html").exists(), "right");
+    for [width, height] in [[1280, 900], [390, 844]] {
+        let mut page = browser.open(&folder.path().join("page.html"), [width, height]);
+        page.wait("document.readyState === 'complete'");
+        assert!(fits(&mut page), "at {width}");
+        let words = "[...document.querySelectorAll('td.word')].map(of => of.textContent).join()";
+        assert_eq!(page.text(words), "right,wrong");
+        assert!(page.text("document.body.textContent").contains("; looks like epsilon is half"));
+        let drawn = "String([...document.images].every(of => of.naturalWidth > 8))";
+        assert_eq!(
+            (page.text(drawn), page.text("String(document.images.length)")),
+            ("true".into(), "4".into())
+        );
+
+        // The wrong rule leads to its numbers.
+        let link = page.text("document.querySelector('tbody a').href");
+        assert!(link.ends_with("/my%20suite/ewa/ball/verdict.html"), "{link}");
+        page.finish();
+        let verdict = folder.path().join("my suite/ewa/ball/verdict.html");
+        let mut page = browser.open(&verdict, [width, height]);
+        page.wait("document.body.dataset.ready === '1 0 side'");
+        assert!(text(&mut page, "says").contains("WRONG in"));
+        page.finish();
+    }
+}

@@ -181,7 +181,7 @@ fn verdicts_of_a_suite_are_added() {
     let output = splatref(at.path(), &["suite", "a.json", "b.json"]);
     let said = String::from_utf8(output.stdout).unwrap();
     assert_eq!(output.status.code(), Some(1), "{said}");
-    assert!(said.contains("WRONG        ieee  cut-off: 200 undecided decisions"), "{said}");
+    assert!(said.contains("WRONG        ieee    cut-off: 200 undecided decisions"), "{said}");
     // So it is under every promise.
     for (word, _) in Rounding::WORDS {
         for (name, covered) in [("a.json", 2), ("b.json", 3)] {

@@ -5,7 +5,7 @@
 use splatref::frame::Exec;
 use splatref::io::scene_file::SceneFile;
 use splatref::method::{Method, Session};
-use splatref::scene::{Scene, Surfels};
+use splatref::scene::{Camera, Scene, Surfels};
 use splatref::setting::{Fields, Value};
 use splatref::verdict::Outcome;
 use splatref::verdict::client::{Client, Rounding};
@@ -70,6 +70,35 @@ fn in_perspective_an_epsilon_a_little_off_is_wrong() {
         let expected = if right { Outcome::Right } else { Outcome::Wrong };
         assert_eq!(outcome, expected, "{epsilon}, {promise:?}");
         assert!(stage.is_none_or(|stage| stage == "attributes"), "{epsilon}, {stage:?}");
+    }
+}
+
+/// From inside, with centres beside the near plane, in front of it and behind.
+#[test]
+fn from_inside_a_near_plane_a_little_off_is_wrong() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("golden/ewa_ladder_inside.toml");
+    let exec = Exec::sequential();
+    let ready = SceneFile::open(&path).unwrap().ready(&exec, &|_, _, _| ()).unwrap();
+    let session = Session::new(&ready.loaded.scene, ready.method, &exec).unwrap();
+    // The number that separates two centres is exposed where nothing rounds.
+    let all = [Rounding::Ieee, Rounding::Precise, Rounding::Gpu];
+    for (near, outcome, promises) in [
+        (0.5, Outcome::Right, &all[..]),
+        (0.5_f32.next_up(), Outcome::Wrong, &all[..1]),
+        (0.5_f32.next_down(), Outcome::Wrong, &all[..1]),
+        (0.500_002, Outcome::Wrong, &all[..]),
+        (0.499_998, Outcome::Wrong, &all[..]),
+    ] {
+        let camera = Camera { near, ..ready.camera };
+        let frame = session.define::<f32>(&camera, true).unwrap().frame;
+        for &promise in promises {
+            let mut client = Client::from(&frame);
+            client.rounding = promise;
+            let verdict = session.verify(&ready.camera, &client, 0.02).unwrap();
+            assert_eq!(verdict.outcome(), outcome, "{near}, {promise:?}");
+            let stage = verdict.first_wrong().map(|stage| stage.stage);
+            assert!(stage.is_none_or(|stage| stage == "visibility"), "{near}, {stage:?}");
+        }
     }
 }
 

@@ -15,8 +15,8 @@ use std::thread;
 use std::time::{Duration, Instant};
 
 /// The files that a command may write, and the file with what it printed.
-pub(super) const PICTURE: &str = "client.exr";
-pub(super) const DESCRIPTION: &str = "client.toml";
+const PICTURE: &str = "client.exr";
+const DESCRIPTION: &str = "client.toml";
 const LOG: &str = "client.log";
 
 /// How often a command with a time limit is looked at.
@@ -25,6 +25,12 @@ const GLANCE: Duration = Duration::from_millis(10);
 const END: u64 = 1 << 16;
 /// The most of a line that the report quotes, in characters.
 const LONGEST: usize = 160;
+
+/// The scene in a folder and what a command left there, as words of a command line.
+pub(super) fn files(folder: &Path) -> [String; 2] {
+    let left = [DESCRIPTION, PICTURE].into_iter().find(|name| folder.join(name).exists());
+    ["scene.toml", left.unwrap_or(PICTURE)].map(|name| words::quoted(folder.join(name).as_os_str()))
+}
 
 /// A command that draws the scene in a folder.
 pub(super) struct Program<'a> {

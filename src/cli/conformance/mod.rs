@@ -1,14 +1,15 @@
 //! `splatref conformance`: runs a renderer on the suite of a method, and reports on every rule.
 
 mod command;
+mod page;
 mod report;
 
 use super::options::{ExecOptions, method};
 use super::verify::{rounding, share};
-use super::words::quoted;
 use super::{Ended, Ending, output, progress, say};
 use command::{Program, split};
-use report::Tried;
+use page::Shown;
+use report::{Run, Tried};
 use splatref::frame::Exec;
 use splatref::io::conformance::write;
 use splatref::io::replace::Pending;
@@ -74,6 +75,9 @@ pub(super) struct Args {
     /// Write the report as JUnit XML
     #[arg(long, value_name = "FILE.xml")]
     junit: Option<PathBuf>,
+    /// Write a page that shows every rule; each that is not right links to the page of its verdict
+    #[arg(long, value_name = "FILE.html")]
+    report: Option<PathBuf>,
     #[command(flatten)]
     exec: ExecOptions,
 }
@@ -90,9 +94,10 @@ fn suite(args: &Args) -> Ended {
         rules.iter().for_each(|rule| say(format!("{:<width$}  {}", rule.name, rule.tests)));
         return Ok(Ending::Good);
     }
-    args.json.iter().chain(&args.junit).try_for_each(|path| output::check_folder(path))?;
-    if let (Some(json), Some(junit)) = (&args.json, &args.junit) {
-        output::check_two(json, junit)?;
+    let outputs: Vec<&PathBuf> = args.json.iter().chain(&args.junit).chain(&args.report).collect();
+    for (i, path) in outputs.iter().enumerate() {
+        output::check_folder(path)?;
+        outputs[..i].iter().try_for_each(|other| output::check_two(other, path))?;
     }
     let exec = args.exec.exec()?;
     let folder = args.output.join(args.method);
@@ -153,11 +158,18 @@ fn try_all(
         let drawn = program.draw(&case);
         let seconds = start.elapsed().as_secs_f64();
         let name = rule.name.clone();
-        let judged = drawn.and_then(|client| case.judge(&client, args.budget, exec));
+        let mut shown = Shown::default();
+        let judged = drawn.and_then(|client| {
+            let judged = case.judge(&client, args.budget, exec)?;
+            if args.report.is_some() {
+                shown = page::rule((&case, &client, &judged), &place, exec)?;
+            }
+            Ok(judged)
+        });
         drop(steps);
         let row = Row::new(rule, judged);
         say(format!("{name:<width$}  {row}"));
-        tried.push(row, (seconds, place));
+        tried.push(row, Run { seconds, folder: place, shown });
     }
     Ok(tried)
 }
@@ -168,19 +180,14 @@ fn finish(args: &Args, folder: &Path, tried: &Tried) -> Ended {
     report.summary().iter().for_each(say);
     let wrong = report.rows.iter().find(|row| row.outcome() == Some(Outcome::Wrong));
     if let Some(row) = wrong {
-        let place = folder.join(&row.rule.name);
-        let file = |name: &str| quoted(place.join(name).as_os_str());
-        let client = if place.join(command::DESCRIPTION).exists() {
-            command::DESCRIPTION
-        } else {
-            command::PICTURE
-        };
-        say(format!("look closer: splatref verify {} {}", file("scene.toml"), file(client)));
+        let [scene, client] = command::files(&folder.join(&row.rule.name));
+        say(format!("look closer: splatref verify {scene} {client}"));
     }
     let command = args.command.as_deref().unwrap_or_default();
     let json = args.json.as_ref().map(|path| (path, tried.json(command)));
     let junit = args.junit.as_ref().map(|path| (path, Ok(tried.junit())));
-    let files = json.into_iter().chain(junit).map(|(path, text)| {
+    let page = args.report.as_ref().map(|path| (path, page::html(tried, path, command)));
+    let files = json.into_iter().chain(junit).chain(page).map(|(path, text)| {
         let text = text?;
         Pending::write(path, |file| file.write_all(text.as_bytes()))
     });

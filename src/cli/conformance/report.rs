@@ -1,5 +1,6 @@
 //! The report as JSON and as JUnit XML.
 
+use super::page::Shown;
 use crate::cli::Ending;
 use crate::cli::verify::report::{JsonShift, JsonStage};
 use serde_json::{Value, json};
@@ -15,8 +16,16 @@ use std::path::PathBuf;
 /// The report, with what the program knows beside it.
 pub(super) struct Tried {
     pub(super) report: Report,
-    /// For each row: seconds of the command, and the folder of the scene.
-    more: Vec<(f64, PathBuf)>,
+    /// What the program knows of each row.
+    pub(super) runs: Vec<Run>,
+}
+
+/// A run of the command.
+pub(super) struct Run {
+    pub(super) seconds: f64,
+    /// The folder of the scene.
+    pub(super) folder: PathBuf,
+    pub(super) shown: Shown,
 }
 
 /// A verdict in the words of `verify --json`.
@@ -40,12 +49,12 @@ fn ending(row: &Row) -> Ending {
 
 impl Tried {
     pub(super) fn new(method: &str) -> Self {
-        Self { report: Report::new(method), more: Vec::new() }
+        Self { report: Report::new(method), runs: Vec::new() }
     }
 
-    pub(super) fn push(&mut self, row: Row, more: (f64, PathBuf)) {
+    pub(super) fn push(&mut self, row: Row, run: Run) {
         self.report.rows.push(row);
-        self.more.push(more);
+        self.runs.push(run);
     }
 
     /// How the command ends: as its worst row.
@@ -60,8 +69,8 @@ impl Tried {
 
     /// The report as `docs/conformance.schema.json` describes it.
     pub(super) fn json(&self, command: &str) -> Result<String> {
-        let rules = self.report.rows.iter().zip(&self.more);
-        let rules = rules.map(|(row, (seconds, folder))| {
+        let rules = self.report.rows.iter().zip(&self.runs);
+        let rules = rules.map(|(row, Run { seconds, folder, .. })| {
             let judged = row.judged.as_ref().ok();
             let cause = row.cause();
             json!({
@@ -110,7 +119,7 @@ impl Tried {
         let tests = rows.len() + 1;
         let failures = self.report.count("wrong") + usize::from(leans);
         let errors = rows.len() - self.report.count("wrong") - self.report.count("right");
-        let seconds: f64 = self.more.iter().map(|(seconds, _)| seconds).sum();
+        let seconds: f64 = self.runs.iter().map(|run| run.seconds).sum();
         let counts = format!(
             "tests=\"{tests}\" failures=\"{failures}\" errors=\"{errors}\" time=\"{seconds:.3}\""
         );
@@ -118,7 +127,7 @@ impl Tried {
             "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {counts}>\n\
              <testsuite name=\"splatref conformance {method}\" {counts}>\n"
         );
-        for (row, (seconds, _)) in rows.iter().zip(&self.more) {
+        for (row, Run { seconds, .. }) in rows.iter().zip(&self.runs) {
             let (name, why) = (&row.rule.name, escaped(&row.cause()));
             let tag = match row.word() {
                 "right" => String::new(),

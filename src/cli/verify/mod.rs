@@ -104,24 +104,29 @@ fn judge(args: &Args) -> Ended {
         Ok((verdict, likely))
     })?;
     let seen = report::Seen::new(&session, camera, (&verdict, likely))?;
+    let replay: report::Replay<'_> = &|pixel| args.replay(pixel);
     progress::during("writing", || {
         let page = || {
-            let (facts, replay) = (seen.facts(args, &client), &|pixel| args.replay(pixel));
+            let facts = seen.facts(replay, &client);
             let (client, number, seen) = (&client, file.output.number, &seen);
             let (session, exec) = (&session, &exec);
             page::Judged { session, camera, number, client, seen, facts, replay, exec }.report()
         };
-        write(args, (&seen, &client), (|| errors(camera, &verdict), page), &exec)
+        let json = || seen.json(replay, &client);
+        write(args, (|| errors(camera, &verdict), json, page), &exec)
     })?;
-    seen.lines(args, &client).iter().for_each(say);
+    seen.lines(replay, &client).iter().for_each(say);
     Ok(Ending::from(verdict.outcome()).or_strict(args.strict))
 }
 
 /// Writes the requested files; all are complete before any replaces an old file.
 fn write(
     args: &Args,
-    (seen, client): (&report::Seen<'_>, &Client),
-    (errors, page): (impl FnOnce() -> Result<Frame<f32>>, impl FnOnce() -> Result<Report>),
+    (errors, json, page): (
+        impl FnOnce() -> Result<Frame<f32>>,
+        impl FnOnce() -> Result<String>,
+        impl FnOnce() -> Result<Report>,
+    ),
     exec: &Exec,
 ) -> Result<()> {
     let compression = OutputSettings::default().compression;
@@ -131,7 +136,7 @@ fn write(
     };
     let json = match &args.json {
         Some(path) => {
-            let text = seen.json(args, client)?;
+            let text = json()?;
             Some(Pending::write(path, |file| file.write_all(text.as_bytes()))?)
         }
         None => None,

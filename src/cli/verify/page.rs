@@ -1,6 +1,6 @@
 //! The page of a verdict: its stages as tabs, and the decisions at the worst pixels.
 
-use super::report::{Seen, judged};
+use super::report::{Replay, Seen, judged};
 use crate::cli::page::{
     CheckRow, Explained, Kind, LISTED, Mark, Measure, Report, Shown, Tab, worst,
 };
@@ -28,8 +28,7 @@ pub(in crate::cli) struct Judged<'a> {
     pub(in crate::cli) seen: &'a Seen<'a>,
     /// The lines of the report.
     pub(in crate::cli) facts: Vec<(String, String)>,
-    /// The command that explains a pixel.
-    pub(in crate::cli) replay: &'a (dyn Fn((u32, u32)) -> String + Sync),
+    pub(in crate::cli) replay: Replay<'a>,
     pub(in crate::cli) exec: &'a Exec,
 }
 

@@ -1,6 +1,5 @@
 //! Prints a verdict in about ten lines, or as JSON.
 
-use super::Args;
 use crate::cli::report::short;
 use serde::{Deserialize, Serialize};
 use splatref::Result;
@@ -21,6 +20,9 @@ pub(in crate::cli) struct Seen<'a> {
     heaviest: Vec<(u32, f64)>,
 }
 
+/// Gives the command that explains a pixel.
+pub(in crate::cli) type Replay<'a> = &'a (dyn Fn((u32, u32)) -> String + Sync);
+
 /// How many surfels of a pixel are named.
 const NAMED: usize = 5;
 
@@ -38,14 +40,18 @@ impl<'a> Seen<'a> {
     }
 
     /// The lines of the report.
-    pub(super) fn lines(&self, args: &Args, client: &Client) -> Vec<String> {
-        let facts = self.facts(args, client).into_iter();
+    pub(super) fn lines(&self, replay: Replay<'_>, client: &Client) -> Vec<String> {
+        let facts = self.facts(replay, client).into_iter();
         let lines = facts.map(|(label, text)| format!("{label:<14} {text}"));
         lines.chain([self.ending()]).collect()
     }
 
     /// Labels and texts: the report without its last line.
-    pub(super) fn facts(&self, args: &Args, client: &Client) -> Vec<(String, String)> {
+    pub(in crate::cli) fn facts(
+        &self,
+        replay: Replay<'_>,
+        client: &Client,
+    ) -> Vec<(String, String)> {
         let Self { verdict, method, likely, heaviest } = self;
         let mut lines = vec![labelled("client", planes(client, method))];
         let promise = format!("{}, {}", client.rounding.word(), client.rounding.promise());
@@ -70,7 +76,7 @@ impl<'a> Seen<'a> {
             if let Some(likely) = likely {
                 lines.push(labelled("looks like", likely));
             }
-            lines.push(labelled("replay", args.replay((x, y))));
+            lines.push(labelled("replay", replay((x, y))));
         } else if let Some(next) = next(verdict) {
             lines.push(labelled("sharper", next));
         }
@@ -110,7 +116,7 @@ impl<'a> Seen<'a> {
     }
 
     /// The report as JSON, for other programs.
-    pub(super) fn json(&self, args: &Args, client: &Client) -> Result<String> {
+    pub(super) fn json(&self, replay: Replay<'_>, client: &Client) -> Result<String> {
         let Self { verdict, method, likely, heaviest } = self;
         let json = Json {
             outcome: verdict.outcome().word(),
@@ -122,7 +128,7 @@ impl<'a> Seen<'a> {
             first_wrong: verdict.first_wrong().map(|stage| stage.stage),
             looks_like: likely.as_deref(),
             heaviest: heaviest.clone(),
-            replay: worst(verdict).map(|worst| args.replay(worst.pixel)),
+            replay: worst(verdict).map(|worst| replay(worst.pixel)),
             stages: verdict.stages.iter().map(JsonStage::new).collect(),
             unlike: verdict.unlike.iter().map(JsonUnlike::new).collect(),
             shifts: LIMITS.iter().zip(&verdict.shifts).map(JsonShift::new).collect(),

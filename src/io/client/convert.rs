@@ -3,7 +3,7 @@
 use super::files::Kind;
 use super::format::{F16_LOSS, F32_STEP, Format, Loss};
 use super::numbers::Numbers;
-use super::parse::{Encoding, Meaning, PlaneKeys};
+use super::parse::{DepthKeys, Encoding, Meaning, PlaneKeys};
 use super::wanted::Wanted;
 use crate::frame::{NO_ID, Plane, Samples};
 use crate::io::Reason;
@@ -248,30 +248,16 @@ fn depths(keys: &PlaneKeys, numbers: Scaled) -> Reason<(Vec<Vec<f64>>, Storage)>
     if keys.range.is_some() && meaning != Meaning::T {
         return Err(format!("`range` does not apply to {}: remove it", meaning.word()));
     }
-    let (near, far) = ends(keys, meaning)?;
+    let (near, far) = ends(&keys.depth, meaning, "depth")?;
     let format = numbers.format;
-    let (empty, storage) = match meaning {
-        Meaning::T => (f64::INFINITY, numbers.storage),
-        Meaning::Inverse => (0.0, inverse(1.0, format)),
-        Meaning::NearOver => (0.0, inverse(near, format)),
-        Meaning::ZBuffer => {
-            // For floats, take the step near 1, because nearly all of a depth buffer lies there.
-            let step = match (format, format.codes()) {
-                (_, Some(codes)) => 1.0 / codes,
-                (Format::F16, _) => F16_LOSS.relative,
-                _ => F32_STEP,
-            };
-            (1.0, Storage::DepthBuffer { step, near, far })
-        }
-        Meaning::ReversedZ => {
-            let storage = match format.codes() {
-                Some(codes) => Storage::DepthBuffer { step: 1.0 / codes, near, far },
-                // v is at most scale / t, so the relative error of a float is no larger.
-                None => inverse(1.0 / (1.0 / near - 1.0 / far), format),
-            };
-            (0.0, storage)
-        }
-        Meaning::Linear => (1.0, linear(near, far, format)),
+    let storage = match meaning {
+        Meaning::T => numbers.storage,
+        _ => depth_storage(meaning, (near, far), format),
+    };
+    let empty = match meaning {
+        Meaning::T => f64::INFINITY,
+        Meaning::Inverse | Meaning::NearOver | Meaning::ReversedZ => 0.0,
+        Meaning::ZBuffer | Meaning::Linear => 1.0,
     };
     let empty = numbers.stored.nearest(keys.empty.unwrap_or(empty));
     let slope = 1.0 / near - 1.0 / far;
@@ -287,6 +273,52 @@ fn depths(keys: &PlaneKeys, numbers: Scaled) -> Reason<(Vec<Vec<f64>>, Storage)>
     Ok((components, storage))
 }
 
+/// How exactly depths are stored that mean something else than t.
+fn depth_storage(meaning: Meaning, (near, far): (f64, f64), format: Format) -> Storage {
+    match (meaning, format.codes()) {
+        (Meaning::T, _) => format.storage(1.0),
+        (Meaning::Inverse, _) => inverse(1.0, format),
+        (Meaning::NearOver, _) => inverse(near, format),
+        (Meaning::ZBuffer | Meaning::ReversedZ, Some(codes)) => {
+            Storage::DepthBuffer { step: 1.0 / codes, near, far }
+        }
+        // For floats, take the step near 1, because nearly all of a depth buffer lies there.
+        (Meaning::ZBuffer, None) => {
+            let step = if format == Format::F16 { F16_LOSS.relative } else { F32_STEP };
+            Storage::DepthBuffer { step, near, far }
+        }
+        // v is at most scale / t, so the relative error of a float is no larger.
+        (Meaning::ReversedZ, None) => inverse(1.0 / (1.0 / near - 1.0 / far), format),
+        (Meaning::Linear, _) => linear(near, far, format),
+    }
+}
+
+/// How exactly a depth test compares depths: as `format` stores them, and as `f32` computes them
+/// from t.
+pub(super) fn depth_test(format: Format, keys: DepthKeys) -> Reason<Storage> {
+    let meaning = keys.meaning.unwrap_or_default();
+    let refused = |what: String| format!("depth-test: {what}");
+    let ends = ends(&keys, meaning, "depth-test").map_err(refused)?;
+    if format.codes().is_none() && !matches!(format, Format::F32 | Format::F16) {
+        return Err(refused(format!("format is {}; give f32, f16 or unorm", format.word())));
+    }
+    if meaning == Meaning::T && format.codes().is_some() {
+        let what = format!("format is {}, which holds 0 to 1; give a `meaning`", format.word());
+        return Err(refused(what));
+    }
+    let (relative, step) = (DIVISION.relative, DIVISION.relative);
+    Ok(match depth_storage(meaning, ends, format) {
+        Storage::DepthBuffer { step: own, near, far } => {
+            Storage::DepthBuffer { step: own + step, near, far }
+        }
+        Storage::Inverse { scale, relative: own, least } => {
+            Storage::Inverse { scale, relative: own.at_least(relative), least }
+        }
+        Storage::Steps(own) => Storage::Steps(own + step * ends.0.at_least(ends.1)),
+        other => other,
+    })
+}
+
 /// Maps a number from [0, 1] to its range, if there is one.
 #[inline]
 fn ranged(v: f64, range: Option<[f64; 2]>) -> f64 {
@@ -294,16 +326,16 @@ fn ranged(v: f64, range: Option<[f64; 2]>) -> f64 {
 }
 
 /// The depths that 0 and 1 stand for, as far as a meaning has them.
-fn ends(keys: &PlaneKeys, meaning: Meaning) -> Reason<(f64, f64)> {
-    let far = || keys.depth.far.ok_or("far");
-    let found = match (meaning, keys.depth.near.ok_or("near")) {
+fn ends(keys: &DepthKeys, meaning: Meaning, table: &str) -> Reason<(f64, f64)> {
+    let far = || keys.far.ok_or("far");
+    let found = match (meaning, keys.near.ok_or("near")) {
         (Meaning::T | Meaning::Inverse, _) => return Ok((1.0, f64::INFINITY)),
         (Meaning::NearOver, near) => near.map(|near| (near, f64::INFINITY)),
         (_, near) => near.and_then(|near| Ok((near, far()?))),
     };
     let word = meaning.word();
     let (near, far) = found
-        .map_err(|key| format!("meaning is {word}, which needs `{key}`: give it in [depth]"))?;
+        .map_err(|key| format!("meaning is {word}, which needs `{key}`: give it in [{table}]"))?;
     let can_be = match meaning {
         Meaning::Linear => near != far && near.is_finite() && far.is_finite(),
         _ => near > 0.0 && near < far,

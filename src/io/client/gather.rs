@@ -60,6 +60,7 @@ pub(super) fn client(
     client.rounding = sidecar.rounding;
     client.accumulator = sidecar.accumulator;
     client.ties = sidecar.ties;
+    client.depth_test = sidecar.depth_test;
     client.unknown = unknown;
     client.records = sidecar.records.as_deref().map(records::read).transpose()?;
     Ok(client)

@@ -22,6 +22,7 @@
 //! | `records` | a path | the projected splats, [`Client::records`]: records of 96 bytes as `splatref project` writes them ([`SplatRecord`](crate::splat::record::SplatRecord)), one for each drawn surfel, in any order |
 //! | `size` | \[width, height\] | size of raw files; by default the size of the other planes, or of the camera's picture |
 //! | `[depth]` | `meaning`, `near`, `far` | defaults for every plane of depths |
+//! | `[depth-test]` | `format`, `meaning`, `near`, `far` | the depths that the client's depth test compares, if they are not those of the planes, [`Client::depth_test`]; see below |
 //! | `[planes.NAME]` | the table below; a path alone is its `file` | a plane by its name in [`crate::method::planes`]; the picture is `RGB`. Quote a name that has a dot: `[planes."visibility.Z"]`. A colour may be called `resolved` or `"resolved.RGB"` |
 //!
 //! Paths are relative to the TOML file. The reader refuses unknown keys, and keys that mean nothing
@@ -90,6 +91,18 @@
 //! the division, to the precision that shading languages promise. `far` may be `inf`, except for
 //! `"linear"`. A depth buffer under an orthographic camera is `"linear"` too; there n may lie
 //! behind f. A surface at the far end that has the number of an empty pixel counts as empty.
+//!
+//! # Depth tests
+//!
+//! A renderer may test depths in a depth buffer and store them in a color target. Describe the depth
+//! buffer in `[depth-test]`: its `format` (`f32`, the default, `f16` or unorm) and the `meaning` of
+//! its numbers, with `near` and `far` if the meaning needs them. The planes of depths keep a
+//! description of their own.
+//!
+//! The test may take two fragments for equally near if their numbers are at most two steps apart.
+//! A step is that of the table above, and 2^-21 more for computing the number from t in `f32`. The
+//! same holds for the limit of visible depths and for the end of a peeled layer. Voronoi-enhanced
+//! depths are bins, and no format changes which bin is nearer.
 //!
 //! # Normals
 //!

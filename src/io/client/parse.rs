@@ -1,5 +1,6 @@
 //! Parse the text of a TOML file into a [`Sidecar`].
 
+use super::convert;
 use super::format::Format;
 use super::keys::Keys;
 use crate::error::{Error, Result};
@@ -20,6 +21,7 @@ pub(super) struct Sidecar {
     /// The file of the projected splats.
     pub(super) records: Option<PathBuf>,
     pub(super) depth: DepthKeys,
+    pub(super) depth_test: Storage,
     /// The planes, by their names in the file.
     pub(super) planes: Vec<(String, PlaneKeys)>,
 }
@@ -125,6 +127,7 @@ impl Sidecar {
             size: None,
             records: None,
             depth: DepthKeys::default(),
+            depth_test: Storage::Single,
             planes: Vec::new(),
         }
     }
@@ -152,11 +155,16 @@ impl Sidecar {
 
     fn of_keys(mut keys: Keys) -> Reason<Self> {
         let mut depth = keys.table("depth")?;
+        let mut test = keys.table("depth-test")?;
         let planes = keys.table("planes")?.tables()?.into_iter();
         let planes = planes.map(|(name, keys)| Ok((name, PlaneKeys::of_keys(keys)?)));
         let read = Self {
             planes: planes.collect::<Reason<_>>()?,
             depth: DepthKeys::of_keys(&mut depth)?,
+            depth_test: convert::depth_test(
+                test.word("format")?.unwrap_or(Format::F32),
+                DepthKeys::of_keys(&mut test)?,
+            )?,
             file: keys.path("file")?,
             rounding: keys.word("profile")?.unwrap_or_default(),
             accumulator: match keys.word("accumulator")?.unwrap_or(Accumulator::F32) {
@@ -169,6 +177,7 @@ impl Sidecar {
             records: keys.path("records")?,
         };
         depth.done()?;
+        test.done()?;
         keys.done()?;
         if read.planes.is_empty() && read.file.is_none() {
             return Err("no plane; give a `file`, or a table such as [planes.Z]".into());

@@ -40,6 +40,19 @@ pub fn pending_frame(path: &Path, frame: &Frame<f32>) -> Result<Option<Pending>>
     pending(path, color, frame.scalar("A").ok(), straight).map(Some)
 }
 
+/// The bytes of the PNG that [`write_frame`] writes; `None` if the frame has no colour.
+///
+/// # Errors
+/// [`Error::Invalid`] if the frame has no pixel.
+pub fn encode_frame(frame: &Frame<f32>) -> Result<Option<Vec<u8>>> {
+    let Ok(color) = frame.color("") else { return Ok(None) };
+    let preview = Preview::new(color, frame.scalar("A").ok(), straight)?;
+    let mut bytes = Vec::new();
+    let encoded = preview.encode(&mut bytes);
+    encoded.map_err(|error| Error::Invalid(format!("the PNG: {error}")))?;
+    Ok(Some(bytes))
+}
+
 /// Divides a colour over black by its alpha.
 fn straight(value: f32, alpha: f32) -> f32 {
     if alpha > 0.0 && alpha < 1.0 { value / alpha } else { value }
@@ -59,42 +72,65 @@ pub fn write(path: &Path, color: &Plane<[f32; 3]>, alpha: Option<&Plane<f32>>) -
     pending(path, color, alpha, |value, _| value)?.put()
 }
 
-/// Does all of [`write()`] except to put the file in its place. `value` maps each value of `color`
-/// and its alpha, if there is alpha.
+/// Does all of [`write()`] except to put the file in its place; `value` as for [`Preview::new`].
 fn pending(
     path: &Path,
     color: &Plane<[f32; 3]>,
     alpha: Option<&Plane<f32>>,
     value: impl Fn(f32, f32) -> f32,
 ) -> Result<Pending> {
-    let (width, height) = (color.width(), color.height());
-    if width == 0 || height == 0 {
-        return Err(Error::Invalid(format!(
-            "a PNG cannot hold {width} x {height} pixels; render at least one"
-        )));
-    }
-    if alpha.is_some_and(|a| (a.width(), a.height()) != (width, height)) {
-        return Err(Error::Invalid(format!(
-            "the alpha of a PNG must be {width} x {height} pixels"
-        )));
-    }
-    let srgb = Srgb::new();
-    let (pixels, kind) = match alpha {
-        None => {
-            let pixels = color.values().as_flattened().iter().map(|&v| srgb.encode(v)).collect();
-            (pixels, ExtendedColorType::Rgb8)
+    let preview = Preview::new(color, alpha, value)?;
+    Pending::write(path, |file| preview.encode(file))
+}
+
+/// The codes of a picture.
+struct Preview {
+    pixels: Vec<u8>,
+    size: [u32; 2],
+    kind: ExtendedColorType,
+}
+
+impl Preview {
+    /// The codes of a picture. `value` maps each value of `color` and its alpha, if there is alpha.
+    fn new(
+        color: &Plane<[f32; 3]>,
+        alpha: Option<&Plane<f32>>,
+        value: impl Fn(f32, f32) -> f32,
+    ) -> Result<Self> {
+        let (width, height) = (color.width(), color.height());
+        if width == 0 || height == 0 {
+            return Err(Error::Invalid(format!(
+                "a PNG cannot hold {width} x {height} pixels; render at least one"
+            )));
         }
-        Some(alpha) => {
-            let mut pixels = vec![0; 4 * color.values().len()];
-            let values = color.values().iter().zip(alpha.values());
-            for (pixel, (color, &a)) in pixels.as_chunks_mut().0.iter_mut().zip(values) {
-                let [r, g, b] = color.map_inline(|v| srgb.encode(value(v, a)));
-                *pixel = [r, g, b, quantize(f64::from(a), 255) as u8];
+        if alpha.is_some_and(|a| (a.width(), a.height()) != (width, height)) {
+            return Err(Error::Invalid(format!(
+                "the alpha of a PNG must be {width} x {height} pixels"
+            )));
+        }
+        let srgb = Srgb::new();
+        let (pixels, kind) = match alpha {
+            None => {
+                let pixels =
+                    color.values().as_flattened().iter().map(|&v| srgb.encode(v)).collect();
+                (pixels, ExtendedColorType::Rgb8)
             }
-            (pixels, ExtendedColorType::Rgba8)
-        }
-    };
-    Pending::write(path, |file| encode(file, &pixels, [width, height], kind))
+            Some(alpha) => {
+                let mut pixels = vec![0; 4 * color.values().len()];
+                let values = color.values().iter().zip(alpha.values());
+                for (pixel, (color, &a)) in pixels.as_chunks_mut().0.iter_mut().zip(values) {
+                    let [r, g, b] = color.map_inline(|v| srgb.encode(value(v, a)));
+                    *pixel = [r, g, b, quantize(f64::from(a), 255) as u8];
+                }
+                (pixels, ExtendedColorType::Rgba8)
+            }
+        };
+        Ok(Self { pixels, size: [width, height], kind })
+    }
+
+    fn encode(&self, file: &mut impl io::Write) -> io::Result<()> {
+        encode(file, &self.pixels, self.size, self.kind)
+    }
 }
 
 /// Writes codes of 8 bits as they are: red, green and blue of each pixel, from the top row on.

@@ -79,7 +79,8 @@ fn values(record: &Record, figures: &[&str]) -> Vec<Option<f64>> {
 }
 
 /// A PNG as a data URL.
-fn inline(png: &[u8]) -> String {
+#[must_use]
+pub fn inline(png: &[u8]) -> String {
     format!("data:image/png;base64,{}", STANDARD.encode(png))
 }
 

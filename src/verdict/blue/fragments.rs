@@ -12,6 +12,7 @@ use crate::number::{Ball, MapInline, Real, Truth};
 use crate::scene::Scene;
 use crate::splat::View;
 use crate::verdict::checks::Surface;
+use crate::verdict::client::Storage;
 use crate::verdict::marks::counted;
 use crate::verdict::projection::AllPolygons;
 use crate::verdict::shift::{CUT_OFF, OpenDecision};
@@ -86,6 +87,7 @@ impl<'a, P: Profile> Fragments<'a, P> {
     pub(super) fn of_tile(
         &self,
         (tile, rect): (usize, &Rect),
+        depth_test: Storage,
         keeps: impl Fn((u32, u32)) -> u32,
     ) -> Vec<Vec<PossibleFragment<P>>> {
         let mut found: Vec<Vec<PossibleFragment<P>>> = counted(*rect).map(|_| Vec::new()).collect();
@@ -124,8 +126,9 @@ impl<'a, P: Profile> Fragments<'a, P> {
             let front = lying.copied().reduce(|a, b| if most(&b) < most(&a) { b } else { a });
             if let Some(front) = front {
                 let own = keeps(at);
-                let behind =
-                    |may: &PossibleFragment<P>| decide::before(front.depth, may.depth).certainly();
+                let behind = |may: &PossibleFragment<P>| {
+                    decide::before(front.depth, depth_test.tested(may.depth)).certainly()
+                };
                 found.retain(|may| may.id == own || !behind(may));
             }
         }

@@ -119,7 +119,9 @@ impl<'a, P: Profile> Judge<'a, P> {
     /// Marks the wrong pixels of a rectangle in a tile.
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
         let mut counts = Counts::default();
-        let all = self.fragments.of_tile((tile, &rect), |at| self.client_planes.id(at));
+        let all = self
+            .fragments
+            .of_tile((tile, &rect), self.client_planes.depth_test, |at| self.client_planes.id(at));
         for ((pixel, at), own) in counted(rect).zip(&all) {
             let doubts = self.judge_pixel((pixel, at), own, marks);
             counts.covered += u64::from(!own.is_empty());
@@ -157,6 +159,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         }
         let depth = self.client_planes.depth.map(|plane| plane.ball(at));
         let depth = depth.or(best.map(|best| best.surface.depth)).unwrap_or(Ball::INFINITY);
+        let depth = self.client_planes.depth_test.tested(depth);
         let id = match says {
             PixelContent::Id(id) => id,
             _ => best.map_or(NO_ID, |best| best.id),
@@ -187,7 +190,8 @@ impl<'a, P: Profile> Judge<'a, P> {
         front: Option<&PossibleFragment<P>>,
     ) -> Vec<PixelSurface<P>> {
         let hidden = |may: &PossibleFragment<P>| {
-            front.is_some_and(|front| decide::before(front.depth, may.depth).certainly())
+            let depth = self.client_planes.depth_test.tested(may.depth);
+            front.is_some_and(|front| decide::before(front.depth, depth).certainly())
         };
         let takes = |may: &PossibleFragment<P>| match says {
             PixelContent::Empty => false,

@@ -6,11 +6,12 @@ use crate::method::surface::{ALPHA, DEPTH, SHADED};
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
 use crate::verdict::checks::{Report, Surface, number, triple, whole};
-use crate::verdict::client::{Client, StoredPlane, Ties};
+use crate::verdict::client::{Client, Storage, StoredPlane, Ties};
 
 /// The planes of a client; each may be missing.
 pub(super) struct BluePlanes<'a> {
     pub(super) ties: Ties,
+    pub(super) depth_test: Storage,
     color: Option<StoredPlane<'a, [f64; 3]>>,
     offset: Option<StoredPlane<'a, f64>>,
     pub(super) depth: Option<StoredPlane<'a, f64>>,
@@ -58,6 +59,7 @@ impl<'a> BluePlanes<'a> {
     pub(super) fn new(client: &'a Client) -> Self {
         Self {
             ties: client.ties,
+            depth_test: client.depth_test,
             color: client.triple(&COLOR),
             offset: client.scalar(&OFFSET),
             depth: client.scalar(&DEPTH),

@@ -1,7 +1,9 @@
 //! How a client stores a plane, and how much of a value that loses.
 
-use crate::number::Real;
+use crate::number::ball::{Ball, Profile};
 use crate::number::srgb;
+use crate::number::{MapInline, Real};
+use crate::verdict::checks::widened;
 
 /// The storage format of a plane: it says how far a stored value may lie from the computed one.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -118,11 +120,38 @@ impl Storage {
             }
         }
     }
+
+    /// A depth as a test in this format compares it with others: all depths whose stored number may
+    /// be the same. Both the depth and the other were stored, so both may be off.
+    pub(crate) fn tested<P: Profile>(self, depth: Ball<P>) -> Ball<P> {
+        if self == Self::Single {
+            return depth;
+        }
+        let ends = [depth.middle - depth.radius, depth.middle + depth.radius];
+        let [a, b] = ends.map_inline(|end| {
+            let once = self.radius(end);
+            once + self.radius(end - once).at_least(self.radius(end + once))
+        });
+        widened(depth, a.at_least(b))
+    }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_test_takes_depths_two_steps_apart_for_equal() {
+        use crate::number::ball::Ieee;
+        let tested = |storage: Storage, depth| storage.tested(Ball::<Ieee>::exact(depth)).radius;
+        assert_eq!(tested(Storage::Single, 3.0), 0.0);
+        assert_eq!(tested(Storage::Steps(0.25), 3.0), 0.5);
+        assert_eq!(tested(Storage::Steps(0.25), f64::INFINITY), 0.0, "an empty pixel");
+        let buffer = Storage::DepthBuffer { step: 1e-3, near: 1.0, far: 100.0 };
+        let z = |t: f64| 100.0 * (t - 1.0) / (t * 99.0);
+        let other = 5.0 + tested(buffer, 5.0);
+        assert!((2e-3..2.1e-3).contains(&(z(other) - z(5.0))), "{}", z(other) - z(5.0));
+    }
 
     #[test]
     fn what_a_format_may_lose() {

@@ -168,7 +168,8 @@ fn judge<P: Profile>(
     let first = client_planes::visibility(client);
     let (visible, visibility) = scene.visible(&flagged, &first, watch);
     let epsilon = scene.epsilon();
-    let limits = visible.map(|nearest| decide::limit(nearest.depth, epsilon));
+    let limits =
+        visible.map(|nearest| client.depth_test.tested(decide::limit(nearest.depth, epsilon)));
 
     let (indices, selected) = scene.indices(client, &limits, watch);
 
@@ -354,8 +355,11 @@ impl<P: Profile> LaterPasses<'_, P> {
         let [first, rest @ ..] = marks;
         let beside = beside(self.ground, (tile, &rect));
         let nearest = self.nearest((tile, &rect), &beside, first);
+        let (depth_test, epsilon) = (self.client_planes.depth_test, self.chosen.epsilon);
+        let limits: Vec<_> =
+            nearest.iter().map(|nearest| nearest.tested(depth_test, epsilon)).collect();
         let sums =
-            sums::continuations(&self.chosen, self.surfels, &nearest, (tile, &rect), &mut rest[0]);
+            sums::continuations(&self.chosen, self.surfels, &limits, (tile, &rect), &mut rest[0]);
         let (mut covered, mut shifts) = (0, ShiftSums::default());
         for (pixel, at) in counted(rect) {
             let sums = sums.continuations(pixel);

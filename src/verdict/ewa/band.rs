@@ -8,25 +8,31 @@ use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Projection;
 use crate::splat::View;
-use crate::verdict::client::Band;
+use crate::verdict::client::{Band, Storage};
 use crate::verdict::marks::counted;
 use std::borrow::Cow;
 
 /// The inputs of a pixel's limit, beside its nearest fragment.
 pub(super) struct Bands<'a, P: Profile> {
     band: Band,
+    depth_test: Storage,
     epsilon: Ball<P>,
     radii: &'a [f32],
     view: View<Ball<P>>,
 }
 
 impl<'a, P: Profile> Bands<'a, P> {
-    pub(super) fn new(job: &Job<'a>, band: Band, epsilon: Ball<P>) -> Self {
+    pub(super) fn new(
+        job: &Job<'a>,
+        (band, depth_test): (Band, Storage),
+        epsilon: Ball<P>,
+    ) -> Self {
         // Under an orthographic camera nearness is -t, and all rays are parallel.
         let flat = job.camera.projection == Projection::Orthographic;
         let same = flat && matches!(band, Band::OfNearness(_) | Band::AlongRay);
         let band = if same { Band::Depth } else { band };
-        Self { band, epsilon, radii: job.scene.surfels.radius(), view: View::new(job.camera) }
+        let (radii, view) = (job.scene.surfels.radius(), View::new(job.camera));
+        Self { band, depth_test, epsilon, radii, view }
     }
 
     /// Moves the nearest fragments of a rectangle, so that epsilon behind them is the end of the
@@ -36,12 +42,15 @@ impl<'a, P: Profile> Bands<'a, P> {
         nearest: &'n [Nearest<P>],
         rect: &Rect,
     ) -> Cow<'n, [Nearest<P>]> {
-        if self.band == Band::Depth {
+        if self.band == Band::Depth && self.depth_test == Storage::Single {
             return Cow::Borrowed(nearest);
         }
         let at = counted(*rect).map(|(_, at)| at);
         let pixels = nearest.iter().zip(at);
-        Cow::Owned(pixels.map(|(nearest, at)| self.of_pixel(*nearest, at)).collect())
+        let of_pixel = |(nearest, at): (&Nearest<P>, _)| {
+            self.of_pixel(*nearest, at).tested(self.depth_test, self.epsilon)
+        };
+        Cow::Owned(pixels.map(of_pixel).collect())
     }
 
     fn of_pixel(&self, nearest: Nearest<P>, (x, y): (u32, u32)) -> Nearest<P> {

@@ -12,7 +12,7 @@ use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
 use crate::splat::{Shared, Splat, fragment};
-use crate::verdict::client::Ties;
+use crate::verdict::client::{Storage, Ties};
 use crate::verdict::marks::{Marks, PixelMarks};
 use crate::verdict::{Doubt, Fault};
 
@@ -23,6 +23,16 @@ pub(crate) struct Nearest<P: Profile> {
     pub(crate) depth: Ball<P>,
     /// The surfel, if the client names it.
     pub(crate) id: Option<u32>,
+}
+
+impl<P: Profile> Nearest<P> {
+    /// The nearest fragment from which a test in this format finds the limit of visible depths.
+    pub(crate) fn tested(self, depth_test: Storage, epsilon: Ball<P>) -> Self {
+        match depth_test {
+            Storage::Single => self,
+            _ => Self { depth: depth_test.tested(self.depth + epsilon) - epsilon, ..self },
+        }
+    }
 }
 
 /// A polygon, which is no splat and has no id, but may be nearest.
@@ -81,6 +91,9 @@ pub(super) struct Certificate<'a, P: Profile> {
     surfels: &'a Surfels,
     others: &'a [Vec<Other<P>>],
     claims: Vec<Claim<P>>,
+    /// For each pixel, the depth that others are compared with: the claim's, as inexact as the
+    /// client's depth test.
+    tested: Vec<Ball<P>>,
     /// For each pixel, the least nearness that may be before the client's fragment. Fragments that
     /// certainly are farther are skipped. +inf where the client says nothing.
     least: Vec<f64>,
@@ -95,12 +108,15 @@ impl<'a, P: Profile> Certificate<'a, P> {
     ) -> Self {
         let mut claims = claims(splats, others, client_planes, tile);
         bound_open(splats, &mut claims, tile);
-        let least = |claim: &Claim<P>| match claim.open {
+        let depth_test = client_planes.depth_test;
+        let tested: Vec<_> =
+            claims.iter().map(|claim| depth_test.tested(claim.nearest.depth)).collect();
+        let least = |(claim, tested): (&Claim<P>, &Ball<P>)| match claim.open {
             true => f64::INFINITY,
-            false => least_nearness(&splats.shared, claim.nearest.depth),
+            false => least_nearness(&splats.shared, *tested),
         };
-        let least = claims.iter().map(least).collect();
-        Self { client_planes, surfels, others, claims, least }
+        let least = claims.iter().zip(&tested).map(least).collect();
+        Self { client_planes, surfels, others, claims, tested, least }
     }
 
     /// The nearest fragments that later passes use.
@@ -127,7 +143,7 @@ impl<'a, P: Profile> Certificate<'a, P> {
         let farther = fragment.most_near() < self.least[pixel];
         if !(claim.open || farther || fragment.is_of(claim.nearest.id)) {
             let (against, mut marks) = (Rival { fragment, t }, marks.at(pixel));
-            against.judge(claim, &mut marks);
+            against.judge(self.tested[pixel], &mut marks);
             against.judge_tie(claim, (self.client_planes.ties, self.surfels), &mut marks);
         }
     }
@@ -137,7 +153,7 @@ impl<'a, P: Profile> Certificate<'a, P> {
         for (pixel, claim) in self.claims.iter().enumerate().filter(|(_, claim)| !claim.open) {
             claim.judge(self.client_planes, &mut marks.at(pixel));
             others_of(self.others, pixel).iter().for_each(|other| {
-                other.judge(claim, &mut marks.at(pixel));
+                other.judge(self.tested[pixel], &mut marks.at(pixel));
             });
         }
     }
@@ -286,8 +302,7 @@ impl<P: Profile> Claim<P> {
 
 impl<P: Profile> Other<P> {
     /// Checks whether the polygon certainly is nearer than the client's fragment, or may be.
-    fn judge(&self, claim: &Claim<P>, pixel: &mut PixelMarks<'_>) {
-        let depth = claim.nearest.depth;
+    fn judge(&self, depth: Ball<P>, pixel: &mut PixelMarks<'_>) {
         let nearer = decide::before(self.depth, depth);
         if self.lies && nearer.certainly() {
             pixel.found(self.depth.distance(depth), || Fault::Hidden {
@@ -319,8 +334,8 @@ struct Rival<'a, P: Profile> {
 
 impl<P: Profile> Rival<'_, P> {
     /// Checks whether the fragment certainly is nearer than the client's, or may be.
-    fn judge(&self, claim: &Claim<P>, pixel: &mut PixelMarks<'_>) {
-        let (fragment, depth) = (self.fragment, claim.nearest.depth);
+    fn judge(&self, depth: Ball<P>, pixel: &mut PixelMarks<'_>) {
+        let fragment = self.fragment;
         let nearer = decide::before(self.t, depth);
         if fragment.drawn && (fragment.inside & nearer).certainly() {
             // The fault is as certain as the less certain of the two decisions.

@@ -19,6 +19,7 @@ pub(crate) struct ClientPlanes<'a> {
     pub(crate) id: Option<StoredPlane<'a, u32>>,
     pub(crate) ties: Ties,
     pub(crate) band: Band,
+    pub(crate) depth_test: Storage,
     /// The sums of the attribute pass. The weight may come from the picture.
     pub(crate) weight: Option<StoredPlane<'a, f64>>,
     pub(crate) normal_sum: Option<StoredPlane<'a, [f64; 3]>>,
@@ -82,6 +83,7 @@ impl<'a> ClientPlanes<'a> {
             id: own.or(other),
             ties: client.ties,
             band: client.band,
+            depth_test: client.depth_test,
             weight: sum,
             normal_sum: client.triple(normal),
             color_sum: client.triple(color),

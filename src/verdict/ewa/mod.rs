@@ -120,7 +120,7 @@ impl<'a, P: Profile> Judge<'a, P> {
             Some(records) => records::project(job, settings, records),
             None => swift::project(job, settings),
         };
-        let bands = Bands::new(job, client_planes.band, splats.epsilon);
+        let bands = Bands::new(job, (client_planes.band, client_planes.depth_test), splats.epsilon);
         let pixels = PixelJudge::new(job, client_planes);
         let right = RightPixels::new(job, client_planes);
         Self { surfels: &job.scene.surfels, client_planes, splats, bands, pixels, right }

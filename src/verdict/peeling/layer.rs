@@ -96,7 +96,7 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
             let nothing = stored.middle == f64::INFINITY;
             found.covered |= !nothing;
             layers += u32::from(layers as usize == layer && !nothing);
-            limit = band_end(stored, self.epsilon);
+            limit = client_planes.depth_test.tested(band_end(stored, self.epsilon));
             let all = match nothing {
                 true => Some(vec![Sums::NONE]),
                 false => self.sums(&beyond, (t, limit), id, pixel),
@@ -279,11 +279,12 @@ impl<P: Profile> Nearest<'_, '_, P> {
         let t = own.unwrap_or_else(|| meant.map_or(Ball::INFINITY, |(_, one)| one.fragment.t));
         self.check_own(t, meant, pixel);
         let surfel = meant.map(|(_, one)| one.fragment.surfel).filter(|_| self.id.is_some());
+        let tested = self.judge.client_planes.depth_test.tested(t);
         for other in beyond.iter().filter(|other| Some(other.fragment.surfel) != surfel) {
             let fragment = other.fragment;
-            let before = decide::before(fragment.t, t);
+            let before = decide::before(fragment.t, tested);
             if other.certainly() && before.certainly() {
-                let error = fragment.t.distance(t).at_most(other.margin);
+                let error = fragment.t.distance(tested).at_most(other.margin);
                 pixel.found(error, || Fault::LeftOut {
                     surfel: fragment.surfel,
                     rim: fragment.rim,

@@ -28,6 +28,7 @@ pub(super) struct PeelingPlanes<'a> {
     /// The most layers a pixel may have.
     pub(super) most: u32,
     pub(super) ties: Ties,
+    pub(super) depth_test: Storage,
     pub(super) accumulator: Storage,
     /// The picture.
     pub(super) shaded: Option<StoredPlane<'a, [f64; 3]>>,
@@ -51,6 +52,7 @@ impl<'a> PeelingPlanes<'a> {
             number: client.count(&LAYERS),
             most: settings.layers,
             ties: client.ties,
+            depth_test: client.depth_test,
             accumulator: client.accumulator,
             shaded: client.triple(&SHADED),
             alpha: client.scalar(&ALPHA),

@@ -7,7 +7,7 @@ use crate::method::projection::PixelSample;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
-use crate::verdict::client::Ties;
+use crate::verdict::client::{Storage, Ties};
 use crate::verdict::marks::PixelMarks;
 use crate::verdict::{Doubt, Fault};
 
@@ -16,6 +16,7 @@ pub(super) struct Claim<P: Profile> {
     pub(super) says: PixelContent,
     /// The client's depth, if the client hands it in.
     depth: Option<Ball<P>>,
+    depth_test: Storage,
     /// Among the candidates that certainly lie in the pixel, the one whose greatest depth is least.
     pub(super) front: Option<(u32, Ball<P>)>,
     /// Among the samples that the client may mean, the one that errs least, and its error.
@@ -25,7 +26,8 @@ pub(super) struct Claim<P: Profile> {
 impl<P: Profile> Claim<P> {
     pub(super) fn new(planes: &SamplePlanes<'_>, at: (u32, u32), unclear: &[u32]) -> Self {
         let depth = planes.depth.map(|plane| plane.ball(at));
-        Self { says: planes.says(at, unclear), depth, front: None, best: None }
+        let (says, depth_test) = (planes.says(at, unclear), planes.depth_test);
+        Self { says, depth, depth_test, front: None, best: None }
     }
 
     /// Adds a candidate that certainly lies in the pixel.
@@ -38,7 +40,8 @@ impl<P: Profile> Claim<P> {
 
     /// Whether the client may mean this candidate.
     pub(super) fn may_mean(&self, one: &Candidate<'_, P>) -> bool {
-        let hidden = || self.front.is_some_and(|(_, t)| decide::before(t, one.depth()).certainly());
+        let depth = self.depth_test.tested(one.depth());
+        let hidden = || self.front.is_some_and(|(_, t)| decide::before(t, depth).certainly());
         match self.says {
             PixelContent::Id(id) => id == one.id(),
             PixelContent::Some(kind) => {
@@ -97,7 +100,7 @@ impl<P: Profile> Claim<P> {
             }
         }
         if let (Some((surfel, t)), true) = (self.front, self.says != PixelContent::Nothing) {
-            let depth = self.depth();
+            let depth = self.tested();
             if self.says != PixelContent::Id(surfel) && decide::before(t, depth).certainly() {
                 let (error, depth, found) = (t.distance(depth), t.middle, depth.middle);
                 // A sample has no rim.
@@ -107,6 +110,11 @@ impl<P: Profile> Claim<P> {
     }
 
     /// The depth that other candidates are compared with.
+    fn tested(&self) -> Ball<P> {
+        self.depth_test.tested(self.depth())
+    }
+
+    /// The depth of the client's sample.
     fn depth(&self) -> Ball<P> {
         let of_sample = || self.best.map_or(anywhere(), |(_, sample)| sample.depth);
         match self.says {
@@ -138,7 +146,7 @@ impl<P: Profile> Claim<P> {
 
     /// Marks the doubts about a candidate that may be in front.
     pub(super) fn doubt(&self, one: &Candidate<'_, P>, pixel: &mut PixelMarks<'_>) {
-        let nearer = decide::before(one.depth(), self.depth());
+        let nearer = decide::before(one.depth(), self.tested());
         let own = self.best.is_some_and(|(_, sample)| sample.id == one.id());
         if !own && nearer.possibly() {
             pixel.doubt(Doubt::Nearer, !nearer.certainly());

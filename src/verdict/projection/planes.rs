@@ -8,7 +8,7 @@ use crate::number::Ball;
 use crate::number::ball::Profile;
 use crate::scene::Scene;
 use crate::verdict::checks::{Report, whole};
-use crate::verdict::client::{Client, StoredPlane, Ties};
+use crate::verdict::client::{Client, Storage, StoredPlane, Ties};
 use crate::verdict::planes::RecordPlanes;
 
 /// The planes of the projection; each may be missing.
@@ -16,6 +16,7 @@ use crate::verdict::planes::RecordPlanes;
 pub(crate) struct SamplePlanes<'a> {
     scene: &'a Scene,
     pub(super) ties: Ties,
+    pub(super) depth_test: Storage,
     planes: RecordPlanes<'a>,
     pub(super) depth: Option<StoredPlane<'a, f64>>,
     id: Option<StoredPlane<'a, u32>>,
@@ -60,7 +61,8 @@ impl<'a> SamplePlanes<'a> {
         (planes, kind): (RecordPlanes<'a>, Option<StoredPlane<'a, u8>>),
     ) -> Self {
         let (depth, id) = (planes.depths(), planes.ids());
-        Self { scene, ties: client.ties, planes, depth, id, kind }
+        let Client { ties, depth_test, .. } = *client;
+        Self { scene, ties, depth_test, planes, depth, id, kind }
     }
 
     /// The names of the planes that are there.

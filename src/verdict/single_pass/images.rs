@@ -12,7 +12,7 @@ use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, MapInline, Real, Truth};
 use crate::scene::Surfels;
 use crate::verdict::checks::{Report, number};
-use crate::verdict::client::{StoredPlane, Ties};
+use crate::verdict::client::{Client, Storage, StoredPlane, Ties};
 use crate::verdict::marks::PixelMarks;
 use crate::verdict::{Doubt, Fault};
 
@@ -46,15 +46,18 @@ pub(super) struct Images<'a, P: Profile> {
     surfels: &'a Surfels,
     planes: &'a [ImagePlanes<'a>],
     ties: Ties,
+    depth_test: Storage,
 }
 
 impl<'a, P: Profile> Images<'a, P> {
     pub(super) fn new(
         fragments: &'a GroupFragments<'a, P>,
         surfels: &'a Surfels,
-        (planes, ties): (&'a [ImagePlanes<'a>], Ties),
+        planes: &'a [ImagePlanes<'a>],
+        client: &Client,
     ) -> Self {
-        Self { fragments, surfels, planes, ties }
+        let Client { ties, depth_test, .. } = *client;
+        Self { fragments, surfels, planes, ties, depth_test }
     }
 
     /// Marks wrong images at a pixel, and returns the samples that each group may keep.
@@ -216,14 +219,14 @@ impl<P: Profile> Group<'_, P> {
     }
 
     /// The key that others are compared with: the client's, else the least of the candidate's.
+    /// Voronoi-enhanced depths are bins already, whatever format tests depths.
     fn key(&self, candidate: Candidate<'_, P>) -> Ball<P> {
         let own = || candidate.map_or(Ball::INFINITY, |fragment| fragment.keys.least());
-        let stored = if self.images.fragments.voronoi() {
-            self.voronoi()
-        } else {
-            self.planes.depth.as_ref()
-        };
-        stored.map_or_else(own, |plane| plane.ball(self.at))
+        if self.images.fragments.voronoi() {
+            return self.voronoi().map_or_else(own, |plane| plane.ball(self.at));
+        }
+        let depth = self.planes.depth.map_or_else(own, |plane| plane.ball(self.at));
+        self.images.depth_test.tested(depth)
     }
 
     /// The plane of Voronoi-enhanced depths, if the depth test uses it.

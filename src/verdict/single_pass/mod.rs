@@ -213,8 +213,7 @@ impl<'a, P: Profile> Judge<'a, P> {
     ) -> Vec<PixelFindings<P>> {
         let said = |group: usize, at| self.images[group].surfel(at);
         let fragments = self.fragments.of_row(tile, &row, said);
-        let images =
-            Images::new(&self.fragments, self.surfels, (&self.images, self.of.client.ties));
+        let images = Images::new(&self.fragments, self.surfels, &self.images, self.of.client);
         let of_pixel = |(column, at)| {
             let pixel = above * row.columns() + column;
             let samples = images.judge(at, &fragments.at(column), &mut geometry.at(pixel));

@@ -47,6 +47,7 @@ taken! {
         "ewa_epsilon_zero",
         "ewa_f64",
         "ewa_ladder_affine",
+        "ewa_ladder_inside",
         "ewa_ladder_perspective",
         "ewa_ladder_raycast",
         "ewa_near_plane",

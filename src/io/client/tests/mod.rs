@@ -91,6 +91,8 @@ fn the_example_of_the_documentation_is_read() {
     assert_eq!((read.rounding, read.ties), (Rounding::Gpu, Ties::Last));
     assert_eq!((read.accumulator, read.upwards), (Storage::Half, true));
     assert_eq!((read.size, read.depth.far), (Some([4, 3]), Some(f64::INFINITY)));
+    let step = 1.0 / 16_777_215.0 + 1.0 / 2_097_152.0;
+    assert_eq!(read.depth_test, Storage::DepthBuffer { step, near: 0.1, far: 100.0 });
     let names: Vec<&str> = read.planes.iter().map(|(name, _)| name.as_str()).collect();
     assert_eq!(names, ["A", "RGB", "Z", "attributes.normal", "id"]);
     let id = &read.planes[4].1;

@@ -18,7 +18,7 @@ fn what_is_no_file_of_planes() {
         ("\n\nsize = ", "line 3: "),
         (
             "planes.Z = \"a.raw\"\ngamma = 2",
-            "mine.toml: unknown key `gamma`; the keys are depth, planes, file, profile, accumulator, \
+            "mine.toml: unknown key `gamma`; the keys are depth, depth-test, planes, file, profile, accumulator, \
              ties, origin, size",
         ),
         (
@@ -185,6 +185,18 @@ fn what_no_rule_covers() {
         let line = at.refusal(&format!("[planes.{plane}]\nfile = \"a.raw\"\n{keys}"));
         let place = format!(": planes.{plane}: {why}");
         assert!(line.contains(&place), "{line}");
+    }
+    for (keys, why) in [
+        (
+            "meaning = \"z-buffer\"\nnear = 1",
+            "meaning is z-buffer, which needs `far`: give it in [depth-test]",
+        ),
+        ("format = \"unorm16\"", "format is unorm16, which holds 0 to 1; give a `meaning`"),
+        ("format = \"u32\"", "format is u32; give f32, f16 or unorm"),
+        ("width = 3", "unknown key `width`"),
+    ] {
+        let line = at.refusal(&format!("[depth-test]\n{keys}\n[planes.Z]\nfile = \"a.raw\""));
+        assert!(line.contains(&format!(": depth-test: {why}")), "{line}");
     }
 }
 
