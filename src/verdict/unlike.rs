@@ -8,6 +8,11 @@
 //! Right renderers are simulated: `tests/lawful.rs` draws pictures by all methods in a number whose
 //! operations are as inexact as the promise allows, as a coin decides or always to one side.
 //!
+//! A false alarm is rarer than one in 10^4 pictures. In each of these scenes the limit of every stage lies
+//! at least six standard deviations above the mean over the pictures that a coin decides (a slow test of
+//! `tests/lawful.rs`). A normal distribution exceeds that in 10^-9 of all cases, and a picture has at most
+//! 14 limits. This says nothing about renderers whose errors are not independent.
+//!
 //! Only errors of rounding count. Left out are pixels with an error of 0, with an error of 1, the end
 //! of an interval, and with a [doubt](super::Doubt): where a decision is open, an interval is as wide
 //! as the decision. Nothing is tested
@@ -50,20 +55,21 @@ const FEW_SURFELS: usize = 100;
 
 /// The largest usual errors in bounds of each stage under `gpu`, at each of [`QUANTILES`].
 /// `Decided:` 1.5 times the largest of 12 simulated pictures of each of four scenes by each method,
-/// and of all lawful variants of the second implementations in all scenes of `tests/verify`; at most
-/// 1, from where an error is wrong by itself.
+/// and of all lawful variants of the second implementations in all scenes of `tests/verify`; more
+/// where that is less than six standard deviations above the mean; at most 1, from where an error is
+/// wrong by itself.
 const USUAL: [(&str, [f64; 2]); 17] = [
-    ("projection", [0.38, 0.91]),
-    ("visibility", [0.19, 0.44]),
+    ("projection", [0.38, 0.97]),
+    ("visibility", [0.26, 0.44]),
     ("indices", [0.17, 0.52]),
     ("difference", [0.1, 0.45]),
     ("attributes", [0.06, 0.31]),
     ("geometry", [0.71, 1.0]),
     ("discs", [0.09, 0.29]),
-    ("layers", [0.19, 0.44]),
+    ("layers", [0.4, 0.44]),
     ("nearest", [0.27, 0.62]),
     ("pull", [0.88, 1.0]),
-    ("push", [0.41, 1.0]),
+    ("push", [0.43, 1.0]),
     ("reconstruction", [0.22, 0.54]),
     ("normalization", [0.47, 1.0]),
     ("compositing", [0.75, 1.0]),
@@ -83,16 +89,27 @@ pub(super) fn found(client: &Client, surfels: usize, stages: &[StageVerdict]) ->
     }
     let mut unlike = Vec::new();
     for stage in stages.iter().filter(|stage| stage.wrong == 0) {
-        let Some((_, usual)) = USUAL.iter().find(|(name, _)| *name == stage.stage) else {
-            continue;
-        };
+        let Some(limits) = Unlike::limits(stage.stage) else { continue };
         let Some(errors) = stage.quantiles(QUANTILES) else { continue };
-        let all = QUANTILES.into_iter().zip(errors).zip(*usual);
-        unlike.extend(all.filter(|((_, error), usual)| error > usual).map(
-            |((quantile, error), usual)| Unlike { stage: stage.stage, quantile, error, usual },
-        ));
+        let beyond = limits.into_iter().zip(errors).filter(|((_, usual), error)| error > usual);
+        unlike.extend(beyond.map(|((quantile, usual), error)| Unlike {
+            stage: stage.stage,
+            quantile,
+            error,
+            usual,
+        }));
     }
     unlike
+}
+
+impl Unlike {
+    /// The quantiles that are tested in a stage, each with the largest error that is usual; none for
+    /// a stage that is not tested.
+    #[must_use]
+    pub fn limits(stage: &str) -> Option<[(f64, f64); 2]> {
+        let (_, [median, end]) = USUAL.iter().find(|(name, _)| *name == stage)?;
+        Some([(QUANTILES[0], *median), (QUANTILES[1], *end)])
+    }
 }
 
 impl StageVerdict {

@@ -140,3 +140,35 @@ fn help_tells_every_setting() {
     let group = help("group");
     Setting::of([("", GroupChoice::ALONE)]).iter().for_each(|row| tells(&group, row));
 }
+
+/// What becomes of the surfel that a client names, whether or not it reaches the pixel.
+#[test]
+fn explain_tells_the_fate_of_the_clients_surfel() {
+    let at = TempDir::new().unwrap();
+    let scene = ["sphere", "--count", "400", "--size", "48x36"];
+    let client = |id: u32| {
+        use splatref::frame::{Frame, Plane, Samples};
+        use splatref::io::exr;
+        let frame = Frame::<f32>::new(48, 36)
+            .with("id", Samples::Index(Plane::filled(48, 36, id)))
+            .unwrap();
+        exr::write(&at.path().join("mine.exr"), &frame, "").unwrap();
+        let words = ["explain", scene[0], "24", "18", "--client", "mine.exr"];
+        succeeds(at.path(), &[&words[..], &scene[1..]].concat())
+    };
+    let mut found = [0; 2];
+    for id in (0..400).step_by(40) {
+        let said = client(id);
+        let of = format!("the client's surfel {id} ");
+        let line = said.lines().find_map(|line| line.trim().strip_prefix(&of)).expect("a line");
+        if line.starts_with("has q ") {
+            // No surfel that is named at random reaches the middle of the picture.
+            assert!(line.contains(" > 4 here, and depth "), "{line}");
+            found[0] += 1;
+        } else if line == "is not drawn: its back is seen, and culling is on" {
+            found[1] += 1;
+        }
+    }
+    assert!(found[0] > 0 && found[1] > 0, "{found:?}");
+    assert!(client(4000).contains("the client's surfel 4000 does not exist: there are 400"));
+}

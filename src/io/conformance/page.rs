@@ -12,8 +12,8 @@ const FILES: &[[&str; 2]] = &[
     ["surfels.ply", "the surfels"],
     [
         "positions.npy, normals.npy, radii.npy",
-        "the surfels as arrays; colors.npy, opacities.npy, half_axes.npy, prefiltered.npy if the \
-         scene has them",
+        "the surfels as arrays; colors.npy, opacities.npy, half_axes.npy (two vectors a surfel), prefiltered.npy \
+         if the scene has them",
     ],
 ];
 
@@ -25,7 +25,9 @@ pub(super) fn text(
 ) -> String {
     let mut page = format!("# {}: {}\n\n{}\n\n", case.method.name(), rule.name, rule.tests);
     // Writing into a string cannot fail.
-    let _ = draw(&mut page, case).and_then(|()| leave(&mut page, planes));
+    let _ = specification(&mut page, case)
+        .and_then(|()| draw(&mut page, case))
+        .and_then(|()| leave(&mut page, planes));
     page.push_str(
         "\n## Look closer\n\nRun these in this folder; `client.exr` is your file.\n\n```sh\n\
          splatref render scene.toml --stages -o reference.exr\n\
@@ -33,6 +35,24 @@ pub(super) fn text(
          splatref explain scene.toml X Y --client client.exr\n```\n",
     );
     page
+}
+
+/// Where the formulas are.
+fn specification(page: &mut String, case: &Case) -> std::fmt::Result {
+    let Case { scene, method, .. } = case;
+    let module = method.name().replace('-', "_");
+    let mut pages = vec![format!("`splatref::method::{module}`")];
+    if method.splats().is_some() {
+        pages.push("`splatref::splat::project` and `splatref::splat::Footprint`".into());
+    }
+    if !scene.lights.is_empty() {
+        pages.push("`splatref::shade`".into());
+    }
+    if scene.environment.is_some() {
+        pages.push("`splatref::scene::environment`".into());
+    }
+    let pages = pages.join(", ");
+    writeln!(page, "The specification, in splatref's rustdoc: {pages}.\n")
 }
 
 fn draw(page: &mut String, case: &Case) -> std::fmt::Result {
@@ -87,6 +107,9 @@ fn leave(
         "\n## Leave\n\nWrite these channels into the EXR, as 32-bit floats or 32-bit unsigned integers. \
          The picture `R G B` alone gets a verdict; each further plane makes it sharper. In a name, \
          `#` stands for a digit of the number of a group, a layer or a level.\n\n\
+         Instead of an EXR you can leave NPY files, with a `client.toml` that names them. There a plane \
+         has one name for all of its channels:\n\n```toml\n[planes]\nRGB = \"color.npy\"\n\
+         Z = \"depth.npy\"\n```\n\n\
          | stage | channels | what they hold |\n|---|---|---|"
     )?;
     for (stage, rows) in planes {

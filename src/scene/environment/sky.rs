@@ -22,6 +22,14 @@ pub const TOWARDS_SUN: [f32; 3] = [-2.0, 3.0, 6.0];
 
 /// Linear RGB radiance from the unit direction (x, y, z).
 ///
+/// | constant | value |
+/// |---|---|
+/// | `ZENITH` | (0.125, 0.25, 0.625) |
+/// | `HORIZON` | (0.75, 0.8125, 0.875) |
+/// | `GROUND` | (0.1875, 0.15625, 0.125) |
+/// | `SUN` | (24, 20, 16) |
+/// | `GLOW` | (0.75, 0.625, 0.375) |
+///
 /// S(a) = (a a)(3 - 2 a), with a brought into [0, 1]. T(a) is the Chebyshev polynomial of degree
 /// 32, computed by doing a <- 2 (a a) - 1 five times:
 ///
@@ -75,6 +83,20 @@ mod tests {
     use crate::number::elementary::{cos, pow, sin};
     use crate::number::random;
     use std::f64::consts::PI;
+
+    #[test]
+    fn the_page_has_the_constants() {
+        let page = include_str!("sky.rs");
+        for (name, [r, g, b]) in [
+            ("ZENITH", ZENITH),
+            ("HORIZON", HORIZON),
+            ("GROUND", GROUND),
+            ("SUN", SUN),
+            ("GLOW", GLOW),
+        ] {
+            assert!(page.contains(&format!("/// | `{name}` | ({r}, {g}, {b}) |")), "{name}");
+        }
+    }
 
     fn directions(seed: u64, count: u64) -> impl Iterator<Item = Vector3<f64>> {
         (0..count).map(move |i| {
