@@ -3,7 +3,7 @@
 use super::camera::{CameraOptions, replace};
 use super::rows::{OfGroups, OfMethods, OfNumber, RowOptions};
 use splatref::frame::Exec;
-use splatref::io::scene_file::{EnvironmentChoice, SceneFile, Source};
+use splatref::io::scene_file::{Choice, EnvironmentChoice, SceneFile, Source};
 use splatref::io::scene_file::{check_mipmaps, check_opacity, check_prefix};
 use splatref::method::Method;
 use splatref::{Error, Result};
@@ -211,8 +211,12 @@ impl SceneOptions {
         // Without options the settings are the file's own, and so is the error.
         let given = self.method.is_some() || !self.settings.chosen.is_empty();
         let method = if given { usage(method)? } else { method? };
-        if let (Some(_), Some(default)) = (self.method, method.grouping()) {
-            file.groups.settings = file.groups.settings.fitting(default);
+        if self.method.is_some() {
+            // As the settings: what means nothing to the new method is forgotten.
+            file.groups.settings = match method.grouping() {
+                Some(default) => file.groups.settings.fitting(default),
+                None => Choice::default(),
+            };
         }
         if !self.groups.chosen.is_empty() && method.grouping().is_none() {
             let what = format!(

@@ -140,3 +140,33 @@ fn help_tells_every_setting() {
     let group = help("group");
     Setting::of([("", GroupChoice::ALONE)]).iter().for_each(|row| tells(&group, row));
 }
+
+#[test]
+fn settings_that_the_method_does_not_use_are_said() {
+    let at = TempDir::new().unwrap();
+    let said = |text: &str, more: &[&str]| {
+        let model = "[[model]]\nshape = \"sphere\"\ncount = 50\n";
+        fs::write(at.path().join("s.toml"), format!("{model}{text}")).unwrap();
+        let render = ["render", "s.toml", "-o", "o.exr", "--size", "32x24"];
+        let output = splatref(at.path(), &[&render[..], more].concat());
+        assert_eq!(output.status.code(), Some(0));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let groups = "[groups]\ncount = 2\n";
+    let found = said(groups, &[]);
+    assert!(
+        found.starts_with("splatref: warning: s: [groups] has no effect, because the method ewa")
+    );
+    assert_eq!(found.lines().count(), 1);
+    assert_eq!(said(groups, &["--method", "transparent"]), "");
+    let found = said("", &["--mipmaps", "3"]);
+    assert!(found.contains("mipmaps have no effect, because the method ewa draws none"), "{found}");
+    assert_eq!(said("mipmaps = 3\n[method]\nname = \"deferred\"\n", &[]), "");
+    assert_eq!(said("", &["--mipmaps", "0"]), "");
+    // A near plane counts for every method and camera: in front of it, nothing is drawn.
+    for method in ["ewa", "pyramid", "template", "blue", "peeling", "single-pass"] {
+        assert_eq!(said("[camera]\nnear = 100\n", &["--method", method]), "");
+        let image = exr::read(&at.path().join("o.exr")).unwrap();
+        assert!(floats(&image, "Z").iter().all(|z| z.is_infinite()), "{method}");
+    }
+}
