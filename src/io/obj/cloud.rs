@@ -30,7 +30,7 @@ pub(super) fn cloud(mut statements: Statements, with_materials: bool) -> Reason<
     }
     let (color, opacity, more) = std::mem::take(&mut statements.colors).finish(count)?;
     let mut warnings = more;
-    cut(&mut statements);
+    warnings.extend(cut(&mut statements));
     if with_materials {
         warnings.extend(find_materials(&mut statements));
     } else {
@@ -50,17 +50,19 @@ pub(super) fn cloud(mut statements: Statements, with_materials: bool) -> Reason<
     Ok(Cloud { warnings, ..cloud })
 }
 
-/// Cuts polygons into ears where the fan leaves them.
-fn cut(statements: &mut Statements) {
+/// Cuts polygons into ears where the fan leaves them. Returns what is to be said.
+fn cut(statements: &mut Statements) -> Option<String> {
+    let mut budget = polygon::Budget::new();
     for &[start, corners] in &statements.polygons {
         let (start, corners) = (start as usize, corners as usize);
         let fan = &mut statements.triangles[start..start + corners - 2];
         let places = polygon::corners(fan);
         let positions = places.iter().map(|corner| statements.position[corner[0] as usize]);
-        if let Some(ears) = polygon::ears(&positions.collect::<Vec<_>>()) {
+        if let Some(ears) = polygon::ears(&positions.collect::<Vec<_>>(), &mut budget) {
             polygon::recut(fan, &places, &ears);
         }
     }
+    budget.warning()
 }
 
 /// Replaces the names of the triangles' materials by the materials. Returns what is to be said.
