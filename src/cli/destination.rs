@@ -4,6 +4,7 @@ use super::options::SceneOptions;
 use super::output;
 use splatref::frame::{Exec, Frame};
 use splatref::index::seen::Seen;
+use splatref::io::client::{DepthConvention, DepthFile};
 use splatref::io::replace::Pending;
 use splatref::io::scene_file::{FileKind, OutputSettings, Ready, SceneFile};
 use splatref::io::state::{self, State};
@@ -23,6 +24,22 @@ pub(super) struct Destination<'a> {
     /// Where what the last frame saw goes, if it is kept.
     pub(super) keep_state: Option<&'a Path>,
     pub(super) options: &'a SceneOptions,
+    pub(super) depth: Option<Depth>,
+}
+
+/// A file of depths beside the picture.
+#[derive(Clone, Copy)]
+pub(super) struct Depth {
+    pub(super) file: DepthFile,
+    pub(super) convention: DepthConvention,
+}
+
+impl Depth {
+    /// The file, and the TOML file that describes it.
+    pub(super) fn places(self, picture: &Path) -> [PathBuf; 2] {
+        let kind = self.file.extension();
+        [kind, "toml"].map(|end| picture.with_extension(format!("depth.{end}")))
+    }
 }
 
 impl Destination<'_> {
@@ -36,6 +53,7 @@ impl Destination<'_> {
             Some(path) if matches!(FileKind::from_extension(path), Ok(FileKind::Exr)) => {
                 let path = named(path);
                 output::check(&path, self.scene, file)?;
+                self.check_depth(&path, file)?;
                 Ok(path)
             }
             Some(path) => {
@@ -47,9 +65,16 @@ impl Destination<'_> {
             None => {
                 let path = named(&Path::new(FOLDER).join(format!("{}.exr", file.name)));
                 output::check_unread(&path, self.scene, file)?;
+                self.check_depth(&path, file)?;
                 Ok(path)
             }
         }
+    }
+
+    /// Checks that the scene is not read from the files of the depths.
+    fn check_depth(&self, picture: &Path, file: &SceneFile) -> Result<()> {
+        let places = self.depth.iter().flat_map(|depth| depth.places(picture));
+        places.into_iter().try_for_each(|place| output::check_unread(&place, self.scene, file))
     }
 
     /// Writes the state after a frame, if `--keep-state` asks for it.
@@ -99,12 +124,13 @@ impl Destination<'_> {
     }
 }
 
-/// Writes a picture and its preview; both are complete before either replaces an old file.
+/// Writes a picture and its preview; both are complete before either replaces an old file. Then
+/// writes the depths, if they are wanted.
 pub(super) fn write(
     picture: &Path,
     frame: &Frame<f32>,
     text: impl Fn() -> String + Sync,
-    output: OutputSettings,
+    (output, depth): (OutputSettings, Option<Depth>),
     exec: &Exec,
 ) -> Result<()> {
     let (small, large) = exec.join(
@@ -113,5 +139,8 @@ pub(super) fn write(
     );
     let (small, large) = (small?, large?);
     large.put()?;
-    small.map_or(Ok(()), Pending::put)
+    small.map_or(Ok(()), Pending::put)?;
+    let Some(depth) = depth else { return Ok(()) };
+    let [file, description] = depth.places(picture);
+    depth.convention.write(&file, &description, frame.scalar("Z")?)
 }

@@ -14,6 +14,7 @@ pub(super) fn ready(file: &SceneFile, exec: &Exec) -> Result<Ready> {
     let steps = progress::Steps::new("loading");
     let ready = file.ready(exec, &|what, done, of| steps.show(what, done, of))?;
     drop(steps);
+    warn(&file.without_effect()?);
     warn(&ready.loaded.warnings);
     Ok(ready)
 }

@@ -22,7 +22,7 @@ Examples:
   splatref group sphere --groups 4 --extend add -o grouped.ply
   splatref render grouped.ply --method transparent")]
 pub(super) struct Args {
-    /// A .ply, an .obj, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster
+    /// A .ply, .obj, .las, .laz or .e57, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster
     scene: PathBuf,
     /// Write the surfels with their groups into this file
     #[arg(short, long, value_name = "FILE.ply")]

@@ -19,7 +19,7 @@ Examples:
   splatref info bunny.ply
   splatref info out/cluster.exr")]
 pub(super) struct Args {
-    /// A .ply, an .obj, a scene .toml, an .exr, or a folder that "splatref surfels" wrote
+    /// A .ply, .obj, .las, .laz or .e57, a scene .toml, an .exr, or a folder that "splatref surfels" wrote
     file: PathBuf,
 }
 
@@ -29,7 +29,7 @@ pub(super) fn run(args: &Args) -> Ended {
         return Ok(Ending::Good);
     }
     match FileKind::from_extension(&args.file)? {
-        FileKind::Ply | FileKind::Obj => points(&args.file)?,
+        FileKind::Ply | FileKind::Obj | FileKind::Las | FileKind::E57 => points(&args.file)?,
         FileKind::Toml => scene(&args.file)?,
         FileKind::Exr => picture(&args.file)?,
     }
@@ -58,6 +58,9 @@ fn points(path: &Path) -> Result<()> {
     ];
     let there: Vec<&str> = arrays.iter().filter(|(_, is)| *is).map(|(name, _)| *name).collect();
     line("has", if there.is_empty() { "positions only".into() } else { there.join(", ") });
+    for property in &cloud.properties {
+        line("property", property.name.escape_debug());
+    }
     for name in &cloud.textures {
         let name = name.escape_debug().to_string();
         line("texture", if name.is_empty() { "none for some polygons" } else { &name });

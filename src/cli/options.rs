@@ -3,7 +3,7 @@
 use super::camera::{CameraOptions, replace};
 use super::rows::{OfGroups, OfMethods, OfNumber, RowOptions};
 use splatref::frame::Exec;
-use splatref::io::scene_file::{EnvironmentChoice, SceneFile, Source};
+use splatref::io::scene_file::{Choice, EnvironmentChoice, SceneFile, Source};
 use splatref::io::scene_file::{check_mipmaps, check_opacity, check_prefix};
 use splatref::method::Method;
 use splatref::{Error, Result};
@@ -70,6 +70,10 @@ pub(super) struct SceneOptions {
     /// Replace the colours of a file by this texture: a .png, a .jpg or an .exr
     #[arg(long, value_name = "FILE", help_heading = "Shapes and models")]
     texture: Option<PathBuf>,
+    /// Colour the points of a file by this number of each, with the colour map viridis: x, y, z, or
+    /// a property of the file, such as intensity
+    #[arg(long, value_name = "PROPERTY", help_heading = "Shapes and models")]
+    color_by: Option<String>,
     /// Prefilter this many mip levels of colours for each surfel (method deferred); 0 drops the
     /// levels in a file
     #[arg(long, value_name = "LEVELS", help_heading = "Shapes and models")]
@@ -114,6 +118,7 @@ impl SceneOptions {
             (self.opacity.is_some(), "--opacity"),
             (self.prefix.is_some(), "--prefix"),
             (self.texture.is_some(), "--texture"),
+            (self.color_by.is_some(), "--color-by"),
             (self.mipmaps.is_some(), "--mipmaps"),
         ];
         match given.iter().find(|(given, _)| *given) {
@@ -128,19 +133,21 @@ impl SceneOptions {
         }
     }
 
-    /// Sets the prefix and the texture of every model; each must be a file.
+    /// Sets the prefix, the texture and the colouring of every model; each must be a file.
     fn choose_of_files(&self, file: &mut SceneFile) -> Result<()> {
         usage(self.prefix.map_or(Ok(()), check_prefix))?;
-        let what = match (self.prefix, &self.texture) {
-            (None, None) => return Ok(()),
-            (Some(_), _) => "--prefix applies to the points of a file",
-            (None, Some(_)) => "--texture applies to a file",
+        let what = match (self.prefix, &self.texture, &self.color_by) {
+            (None, None, None) => return Ok(()),
+            (Some(_), _, _) => "--prefix applies to the points of a file",
+            (None, Some(_), _) => "--texture applies to a file",
+            (None, None, Some(_)) => "--color-by applies to a file",
         };
         for model in file.all_models_mut() {
             match &mut model.source {
-                Source::File { prefix, texture, .. } => {
+                Source::File { prefix, texture, color_by, .. } => {
                     replace(prefix, self.prefix);
                     replace(texture, self.texture.clone());
+                    replace(color_by, self.color_by.clone());
                 }
                 other => {
                     return Err(Error::Usage(format!(
@@ -211,8 +218,12 @@ impl SceneOptions {
         // Without options the settings are the file's own, and so is the error.
         let given = self.method.is_some() || !self.settings.chosen.is_empty();
         let method = if given { usage(method)? } else { method? };
-        if let (Some(_), Some(default)) = (self.method, method.grouping()) {
-            file.groups.settings = file.groups.settings.fitting(default);
+        if self.method.is_some() {
+            // As the settings: what means nothing to the new method is forgotten.
+            file.groups.settings = match method.grouping() {
+                Some(default) => file.groups.settings.fitting(default),
+                None => Choice::default(),
+            };
         }
         if !self.groups.chosen.is_empty() && method.grouping().is_none() {
             let what = format!(

@@ -7,6 +7,7 @@ use super::{Ended, Ending, output, progress, report, say};
 use splatref::compare::metrics::METRICS;
 use splatref::io::replace::write_atomically;
 use splatref::io::scene_file::{GroupChoice, MethodChoice};
+use splatref::method::Method;
 use splatref::setting::Setting;
 use splatref::study::plan::{Budget, Known as Row, choose};
 use splatref::study::run::Loss;
@@ -120,7 +121,13 @@ fn print(args: &Args, budget: Budget, candidates: &[Candidate], rows: &[Row]) ->
         format!("splatref render {}{}", own_options(&candidates[best]), candidates[best].options),
     );
     if let Some(path) = &args.output {
-        let text = candidates[best].file.text(path)?;
+        let mut file = candidates[best].file.clone();
+        // What the method does not draw would only be warned of.
+        if !matches!(file.method.method()?, Method::Deferred(_)) {
+            let levels = file.all_models_mut().map(|model| &mut model.mipmaps);
+            levels.for_each(|levels| *levels = levels.filter(|levels| *levels == 0));
+        }
+        let text = file.text(path)?;
         write_atomically(path, |file| file.write_all(text.as_bytes()))?;
         report::line("wrote", path.display());
     }

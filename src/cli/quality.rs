@@ -24,7 +24,7 @@ Examples:
   splatref surfels bunny.ply -o random.ply --sampler random
   splatref quality greedy.ply random.ply --prefix 1000,5000,10000 -o violins.svg --spectrum")]
 pub(super) struct Args {
-    /// Points in their order: a .ply or .obj for each order
+    /// Points in their order: a .ply, .obj, .las, .laz or .e57 for each order
     #[arg(required = true)]
     files: Vec<PathBuf>,
     /// Measure the first N points; several numbers measure several prefixes [default: all that
@@ -82,8 +82,9 @@ impl Args {
     fn check(&self) -> Result<()> {
         let refused = |path: &Path, what| Err(Error::Usage(format!("{}: {what}", path.display())));
         for path in self.files.iter().chain(&self.of) {
-            if !matches!(FileKind::from_extension(path), Ok(FileKind::Ply | FileKind::Obj)) {
-                return refused(path, "points are read from a .ply or an .obj; give one");
+            if !FileKind::from_extension(path).is_ok_and(FileKind::is_model) {
+                let what = "points are read from a .ply, .obj, .las, .laz or .e57; give one";
+                return refused(path, what);
             }
         }
         if let Some(few) = self.prefix.iter().find(|prefix| **prefix < 2) {

@@ -1,15 +1,16 @@
 //! `splatref render`: renders a scene into an EXR and a PNG.
 
-use super::destination::{Destination, write};
+use super::destination::{Depth, Destination, write};
 use super::options::{ExecOptions, SceneOptions};
 use super::rows::{OfFiles, RowOptions};
 use super::sequence::{self, Frames};
 use super::{Ended, Ending, draw, progress, report};
-use splatref::Result;
 use splatref::frame::Exec;
+use splatref::io::client::{DepthConvention, DepthFile};
 use splatref::io::provenance;
 use splatref::io::scene_file::{OutputSettings, Ready, SceneFile};
 use splatref::method::{Method, Picture, Session};
+use splatref::{Error, Result};
 use std::borrow::Cow;
 use std::ops::Range;
 use std::path::PathBuf;
@@ -25,9 +26,10 @@ Examples:
   splatref render scene.toml --number f64 --epsilon 1.5r
   splatref render scene.toml --frames 0..60 -o out/walk.exr
   splatref render scan.ply --cameras transforms.json --view r_12
-  splatref render bunny.ply --turntable 60 -o out/turn.exr")]
+  splatref render bunny.ply --turntable 60 -o out/turn.exr
+  splatref render bunny.ply --write-depth png --depth-as t,1000 -o bunny.exr")]
 pub(super) struct Args {
-    /// A .ply, an .obj, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster,
+    /// A .ply, .obj, .las, .laz or .e57, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster,
     /// or tree (with --method pyramid)
     #[arg(default_value = "cluster", hide_default_value = false)]
     scene: PathBuf,
@@ -47,6 +49,14 @@ pub(super) struct Args {
     #[arg(long, value_name = "A..B|all", value_parser = sequence::frames,
         conflicts_with_all = ["repeat", "frame"])]
     frames: Option<Frames>,
+    /// Write the depth too: 16-bit codes into NAME.depth.png, or floats into NAME.depth.npy. Beside it,
+    /// NAME.depth.toml says how it is stored; `verify` reads that
+    #[arg(long, value_name = "png|npy", value_parser = depth_file)]
+    write_depth: Option<DepthFile>,
+    /// Store the depth t as t, 1/t, near/t,NEAR, z-buffer,NEAR,FAR, reversed-z,NEAR,FAR or
+    /// linear,NEAR,FAR; in a PNG t,SCALE has SCALE codes for each world unit [--write-depth npy: t]
+    #[arg(long, value_name = "CONVENTION", requires = "write_depth")]
+    depth_as: Option<String>,
     /// Write the state after the last frame, for --state (method deferred)
     #[arg(long, value_name = "FILE")]
     keep_state: Option<PathBuf>,
@@ -56,7 +66,22 @@ pub(super) struct Args {
     pub(super) options: SceneOptions,
 }
 
+/// Parses the kind of a file of depths.
+fn depth_file(text: &str) -> std::result::Result<DepthFile, String> {
+    let all = [DepthFile::Png, DepthFile::Npy];
+    all.into_iter().find(|file| file.extension() == text).ok_or("give png or npy".into())
+}
+
 impl Args {
+    /// The file of depths, if one is wanted.
+    fn depth(&self) -> Result<Option<Depth>> {
+        let Some(file) = self.write_depth else { return Ok(None) };
+        let text = self.depth_as.as_deref().unwrap_or("t");
+        let convention = DepthConvention::parse(file, text)
+            .map_err(|what| Error::Usage(format!("--depth-as: {what}")))?;
+        Ok(Some(Depth { file, convention }))
+    }
+
     /// The frames to render as a sequence; `None` for one picture.
     fn sequence(&self, file: &SceneFile) -> Option<Range<u32>> {
         match &self.frames {
@@ -81,6 +106,7 @@ pub(super) fn run(args: &Args) -> Ended {
         output: args.output.as_deref(),
         keep_state: args.keep_state.as_deref(),
         options: &args.options,
+        depth: args.depth()?,
     };
     if let Some(frames) = args.sequence(&file) {
         file.check_frame(frames.end - 1)?;
@@ -107,7 +133,7 @@ pub(super) fn run(args: &Args) -> Ended {
     destination.make_folder()?;
     progress::during("writing", || -> Result<()> {
         let text = || provenance::text(scene, groups.as_ref(), camera, method, file.output);
-        write(&picture, &drawing.frame, text, file.output, &exec)
+        write(&picture, &drawing.frame, text, (file.output, destination.depth), &exec)
     })?;
     let (writing, tally, seen) = (writing.elapsed(), drawing.tally, drawing.seen.clone());
     drop(drawing);
@@ -126,6 +152,9 @@ pub(super) fn run(args: &Args) -> Ended {
     report::time("total", vec![start.elapsed()]);
     report::line("files", picture.display());
     report::line("", preview.display());
+    if let Some(depth) = destination.depth {
+        depth.places(&picture).iter().for_each(|place| report::line("", place.display()));
+    }
     Ok(Ending::Good)
 }
 

@@ -5,7 +5,7 @@ use glam::{DVec3, Vec3};
 use splatref::frame::Exec;
 use splatref::index::grouping::GroupCoverage;
 use splatref::index::seen::Seen;
-use splatref::io::scene_file::{Loaded, ModelReport, OutputSettings, SceneFile};
+use splatref::io::scene_file::{Colored, Loaded, ModelReport, OutputSettings, SceneFile};
 use splatref::method::Method;
 use splatref::method::session::Made;
 use splatref::scene::objects::detail::prefix::Estimate;
@@ -38,6 +38,7 @@ pub(super) fn scene(loaded: &Loaded) {
             }
         }
     }
+    loaded.models.iter().for_each(colored);
     line("  dropped", dropped(&loaded.dropped, loaded.dropped_primitives));
     offset(scene.offset);
     bounds(scene.bounds());
@@ -85,6 +86,7 @@ fn objects_of(loaded: &Loaded, objects: &Objects) {
     if geometries > MOST_LINES {
         line("  geometry", format!("and {} more", geometries - MOST_LINES));
     }
+    loaded.models.iter().for_each(colored);
     if objects.have_detail() {
         line("  in view", format!("{} surfels and nodes", objects.drawn_total()));
         if objects.objects().len() == 1
@@ -141,6 +143,17 @@ fn origin(model: &ModelReport) -> String {
         Origin::Zero => normals,
         other => format!("{normals}, radii {}", radii(other)),
     }
+}
+
+/// Prints the range of the numbers that colour a model, if numbers do.
+fn colored(model: &ModelReport) {
+    let Some(Colored { by, low, high, without }) = &model.colored else { return };
+    let name = &model.name;
+    let mut text = format!("{name} by {}, viridis from {low} to {high}", by.escape_debug());
+    if *without > 0 {
+        text += &format!("; {without} points without a finite number are grey");
+    }
+    line("  coloured", text);
 }
 
 /// Prints what was subtracted from the coordinates of the files, with every digit.

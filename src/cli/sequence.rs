@@ -1,6 +1,6 @@
 //! `splatref render --frames`: renders each frame of a sequence.
 
-use super::destination::{Destination, write};
+use super::destination::{Depth, Destination, write};
 use super::{Ended, Ending, draw, progress, report};
 use splatref::Result;
 use splatref::frame::Exec;
@@ -62,7 +62,7 @@ pub(super) fn render(
     let last = frames.end - 1;
     let all: Vec<_> = frames.zip(&places).collect();
     let show = |done: usize| steps.show("rendering", done as u64, all.len() as u64);
-    let output = file.output;
+    let output = (file.output, to.depth);
     if ready.is_still() {
         let mut session = times.of("preparing", || ready.session(exec, &|_, _, _| ()))?.0;
         for (done, (frame, path)) in all.iter().enumerate() {
@@ -85,7 +85,7 @@ pub(super) fn render(
     report::line("time", format!("{}, sums over {} frames", report::threads(exec), places.len()));
     times.0.into_iter().for_each(|(what, time)| report::time(what, vec![time]));
     report::time("total", vec![start.elapsed()]);
-    files(&places);
+    files(&places, to.depth);
     Ok(Ending::Good)
 }
 
@@ -94,7 +94,7 @@ fn one(
     session: &mut Session<'_>,
     camera: &Camera,
     path: &Path,
-    output: OutputSettings,
+    (output, depth): (OutputSettings, Option<Depth>),
     exec: &Exec,
     times: &mut Times,
 ) -> Result<Option<Seen>> {
@@ -102,14 +102,16 @@ fn one(
     let drawing = output.draw(session, camera)?;
     drawing.timings.iter().for_each(|(stage, time)| times.add(stage, *time));
     let text = || provenance::text(scene, groups.as_ref(), camera, &method, output);
-    times.of("writing", || write(path, &drawing.frame, text, output, exec))?;
+    times.of("writing", || write(path, &drawing.frame, text, (output, depth), exec))?;
     Ok(drawing.seen.clone())
 }
 
 /// Prints the first and the last of the files.
-fn files(places: &[PathBuf]) {
+fn files(places: &[PathBuf], depth: Option<Depth>) {
     let [Some(first), Some(last)] = [places.first(), places.last()] else { return };
-    for (label, end) in [("files", "exr"), ("", "png")] {
+    let depth = depth.map(|depth| format!("depth.{}", depth.file.extension()));
+    let ends = [Some("exr"), Some("png"), depth.as_deref()];
+    for (label, end) in ["files", "", ""].into_iter().zip(ends.into_iter().flatten()) {
         let [first, last] = [first, last].map(|path| path.with_extension(end));
         let (first, last) = (first.display(), last.display());
         let all = if places.len() == 1 { first.to_string() } else { format!("{first} to {last}") };

@@ -47,7 +47,7 @@ Examples:
   splatref surfels car.ply -o blue.ply --properties roughness,metallic
   splatref surfels scan.ply -o blue.ply --sampler greedy --start 3 --count 10000")]
 pub(super) struct Args {
-    /// A .ply or .obj with points or a mesh, or a scene .toml of meshes
+    /// A .ply, .obj, .las, .laz or .e57 with points or a mesh, or a scene .toml of meshes
     points: PathBuf,
     /// Write the ordered points, with every property of the file, into a PLY; or the hierarchy into
     /// a folder
@@ -296,10 +296,10 @@ impl Args {
         }
         let refused = |path: &Path, what| Err(Error::Usage(format!("{}: {what}", path.display())));
         let scene = matches!(FileKind::from_extension(&self.points), Ok(FileKind::Toml));
-        if !(scene
-            || matches!(FileKind::from_extension(&self.points), Ok(FileKind::Ply | FileKind::Obj)))
-        {
-            let what = "give points or a mesh as a .ply or an .obj, or a scene as a .toml";
+        let is_model = FileKind::from_extension(&self.points).is_ok_and(FileKind::is_model);
+        if !(scene || is_model) {
+            let what = "give points or a mesh as a .ply, .obj, .las, .laz or .e57, or a scene as a \
+                        .toml";
             return refused(&self.points, what);
         }
         if scene && self.texture.is_some() {

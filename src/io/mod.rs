@@ -8,6 +8,8 @@
 //! - [`cameras`]: read cameras from files of other programs.
 //! - [`ply`]: read and write point clouds and meshes.
 //! - [`obj`]: read meshes and points as text.
+//! - [`las`]: read point clouds of laser scanners, LAS and LAZ.
+//! - `e57`: read scans; needs the feature `cli`.
 //! - [`polygon`]: how the polygons of PLY and OBJ are cut into triangles.
 //! - [`texture`]: read textures of models.
 //! - [`environment`]: read environment maps from EXR files.
@@ -26,6 +28,7 @@
 //!
 //! Shared by all:
 //!
+//! - `far`: shift positions that `f32` would merge.
 //! - `guard`: turn a panic of a decoder into an error of its file.
 //! - `input`: open files to read.
 //! - `checksum`: notice damage in files of this crate.
@@ -36,11 +39,15 @@ mod checksum;
 pub mod client;
 #[cfg(feature = "cli")]
 pub mod conformance;
+#[cfg(feature = "cli")]
+pub mod e57;
 pub mod environment;
 pub mod exr;
+mod far;
 mod guard;
 pub mod hierarchy;
 mod input;
+pub mod las;
 pub mod npy;
 pub mod npz;
 pub mod obj;

@@ -23,7 +23,9 @@
 //!
 //! - The normal is 0 or not finite, for example because all corners are on one line.
 //! - The polygon crosses itself in the projection, so that step 4 finds no corner.
-//! - The polygon has more than 65536 corners, because the time grows with the square of their number.
+//! - Its ears take too long. The polygons of a file together may try 2^30 times whether a corner is in
+//!   a triangle, and 64 times more for each corner of a polygon that is cut into ears. A warning says
+//!   how many polygons stay uncut. Polygons of a million corners are cut, if few of them turn right.
 //!
 //! Corners that are not in one plane are cut as their projection is. The method is by Meisters,
 //! "Polygons have ears", 1975.
@@ -35,8 +37,30 @@ mod tests;
 use glam::{DVec3, Vec3};
 use std::cmp::Ordering;
 
-/// A polygon with more corners keeps its fan.
-const MOST_CORNERS: usize = 1 << 16;
+/// How much work the polygons of one file may take.
+pub(super) struct Budget {
+    /// How often it may still be tried whether a corner is in a triangle.
+    tries: u64,
+    /// Polygons that kept their fan because there were no tries left.
+    uncut: u64,
+}
+
+impl Budget {
+    pub(super) fn new() -> Self {
+        Self { tries: 1 << 30, uncut: 0 }
+    }
+
+    /// What is to be said, once all polygons are cut.
+    pub(super) fn warning(&self) -> Option<String> {
+        (self.uncut > 0).then(|| {
+            format!(
+                "{} polygons have so many corners that cutting them into ears would take too long; \
+                 they are drawn as fans, which is wrong where they are concave: triangulate them",
+                self.uncut
+            )
+        })
+    }
+}
 
 /// The corners of the polygon that was cut into this fan.
 pub(super) fn corners<T: Copy>(fan: &[[T; 3]]) -> Vec<T> {
@@ -52,8 +76,8 @@ pub(super) fn recut<T: Copy>(fan: &mut [[T; 3]], corners: &[T], ears: &[[u32; 3]
 }
 
 /// Cuts a polygon into ears; `None` if its fan stays.
-pub(super) fn ears(corners: &[Vec3]) -> Option<Vec<[u32; 3]>> {
-    if !(4..=MOST_CORNERS).contains(&corners.len()) {
+pub(super) fn ears(corners: &[Vec3], budget: &mut Budget) -> Option<Vec<[u32; 3]>> {
+    if corners.len() < 4 {
         return None;
     }
     let flat = project(corners)?;
@@ -61,7 +85,10 @@ pub(super) fn ears(corners: &[Vec3]) -> Option<Vec<[u32; 3]>> {
     if !(1..flat.len() - 1).any(wrong) {
         return None;
     }
-    ears::Cutter::new(&flat).cut()
+    budget.tries += 64 * corners.len() as u64;
+    let cut = ears::Cutter::new(&flat, &mut budget.tries).cut();
+    budget.uncut += u64::from(cut.is_none() && budget.tries == 0);
+    cut
 }
 
 /// A corner in the plane of the projection.

@@ -5,6 +5,7 @@
 //!
 //! - [`mod@derive`]: complete the normals, radii and colours that a file lacks.
 //! - [`mod@flatten`]: turn a scene of objects into a scene of surfels.
+//! - [`viridis`]: colour points by a number of each.
 //! - [`hybrid`]: draw a mesh as polygons on one side of a plane and as surfels on the other.
 //! - [`scatter`]: place many objects at random.
 //!
@@ -28,6 +29,7 @@ pub mod plant;
 pub mod procedural;
 pub mod sampler;
 pub mod scatter;
+pub mod viridis;
 
 pub use flatten::flatten;
 pub use procedural::Shape;

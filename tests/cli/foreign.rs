@@ -196,3 +196,69 @@ fn map_coordinates_have_one_offset_that_is_given_back() {
     let moved = ply::read(&at.path().join("moved.ply")).unwrap();
     assert!(moved.position == grouped.position && moved.offset.y == 0.0);
 }
+
+/// A LAS of point format 0: a grid of map coordinates, whose intensity grows along x.
+fn las() -> Vec<u8> {
+    let mut header = vec![0; 227];
+    let mut put = |at: usize, value: &[u8]| header[at..][..value.len()].copy_from_slice(value);
+    put(0, b"LASF");
+    put(24, &[1, 2]);
+    put(94, &227_u16.to_le_bytes());
+    put(96, &227_u32.to_le_bytes());
+    put(105, &20_u16.to_le_bytes());
+    put(107, &64_u32.to_le_bytes());
+    for axis in 0..3 {
+        put(131 + 8 * axis, &0.25_f64.to_le_bytes());
+    }
+    put(155, &635_000.1_f64.to_le_bytes());
+    let row = |i: i32| {
+        let mut row = [0; 20];
+        row[..4].copy_from_slice(&(i % 8).to_le_bytes());
+        row[4..8].copy_from_slice(&(i / 8).to_le_bytes());
+        row[12..14].copy_from_slice(&(100 + i as u16 % 8).to_le_bytes());
+        row
+    };
+    header.extend((0..64).flat_map(row));
+    header
+}
+
+#[test]
+fn scans_are_drawn_and_coloured_by_a_number_of_each_point() {
+    let at = TempDir::new().unwrap();
+    fs::write(at.path().join("scan.las"), las()).unwrap();
+    let told = succeeds(at.path(), &["info", "scan.las"]);
+    for what in ["points     64", "property   intensity", "  offset   (635", "neighbours"] {
+        assert!(told.contains(what), "{told}");
+    }
+    let (size, light) = (["--size", "32x24"], "light = []\n[[model]]\nfile = \"scan.las\"\n");
+    let render = |scene: &str, more: &[&str]| {
+        let told =
+            succeeds(at.path(), &[&["render", scene, "-o", "o.exr"], &size[..], more].concat());
+        (told, exr::read(&at.path().join("o.exr")).unwrap())
+    };
+    fs::write(at.path().join("by.toml"), format!("{light}color_by = \"intensity\"\n")).unwrap();
+    fs::write(at.path().join("plain.toml"), light).unwrap();
+    let (told, by) = render("by.toml", &[]);
+    assert!(told.contains("coloured scan by intensity, viridis from 100 to 107"), "{told}");
+    let (_, option) = render("plain.toml", &["--color-by", "intensity"]);
+    assert_eq!(option.channels, by.channels, "the option is the key");
+    // Intensity and x grow together.
+    let (told, place) = render("plain.toml", &["--color-by", "x"]);
+    assert!(told.contains("viridis from 635000."), "{told}");
+    assert_eq!(floats(&place, "R"), floats(&by, "R"));
+    let (_, grey) = render("plain.toml", &[]);
+    assert_ne!(grey.channels, by.channels);
+
+    let by = |file: &str, name: &str| {
+        fails(at.path(), &["render", file, "--color-by", name], if file == "torus" { 2 } else { 1 })
+    };
+    let found = by("scan.las", "gps");
+    assert!(found.contains("no property `gps`; the file has intensity, classification"), "{found}");
+    assert!(by("torus", "x").contains("--color-by applies to a file, but torus is not one"));
+    write(&at.path().join("c.ply"), &[&XYZ[..], &["uchar heat"]].concat(), &["0 0 0 5", "0 1 1 2"]);
+    let found = by("c.ply", "cold");
+    assert!(found.contains("has no number `cold`; it has x, y, z"), "{found}");
+    succeeds(at.path(), &["surfels", "scan.las", "-o", "o.ply", "--start", "3"]);
+    let text = fs::read(at.path().join("o.ply")).unwrap();
+    assert!(String::from_utf8_lossy(&text).contains("property float intensity\n"));
+}

@@ -161,6 +161,18 @@ fn follow(page: &str) {
             Step::Run(run) => run.check(at.path(), page),
         }
     }
+    // Pictures in the folder of a page are drawn by its commands.
+    let folder = root().join(page).with_extension("");
+    for picture in names_of_pictures(&folder) {
+        let stored = folder.join(&picture);
+        succeeds(at.path(), &["compare", &picture, stored.to_str().unwrap()]);
+    }
+}
+
+/// The names of the PNG files in a folder, if there is one.
+fn names_of_pictures(folder: &Path) -> impl Iterator<Item = String> {
+    let all = if folder.is_dir() { names(folder) } else { Vec::new() };
+    all.into_iter().filter(|name| name.ends_with(".png"))
 }
 
 /// Copies a folder. A link would not do, because pages write into `golden/`.

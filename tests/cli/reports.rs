@@ -171,4 +171,33 @@ fn explain_tells_the_fate_of_the_clients_surfel() {
     }
     assert!(found[0] > 0 && found[1] > 0, "{found:?}");
     assert!(client(4000).contains("the client's surfel 4000 does not exist: there are 400"));
+
+#[test]
+fn settings_that_the_method_does_not_use_are_said() {
+    let at = TempDir::new().unwrap();
+    let said = |text: &str, more: &[&str]| {
+        let model = "[[model]]\nshape = \"sphere\"\ncount = 50\n";
+        fs::write(at.path().join("s.toml"), format!("{model}{text}")).unwrap();
+        let render = ["render", "s.toml", "-o", "o.exr", "--size", "32x24"];
+        let output = splatref(at.path(), &[&render[..], more].concat());
+        assert_eq!(output.status.code(), Some(0));
+        String::from_utf8(output.stderr).unwrap()
+    };
+    let groups = "[groups]\ncount = 2\n";
+    let found = said(groups, &[]);
+    assert!(
+        found.starts_with("splatref: warning: s: [groups] has no effect, because the method ewa")
+    );
+    assert_eq!(found.lines().count(), 1);
+    assert_eq!(said(groups, &["--method", "transparent"]), "");
+    let found = said("", &["--mipmaps", "3"]);
+    assert!(found.contains("mipmaps have no effect, because the method ewa draws none"), "{found}");
+    assert_eq!(said("mipmaps = 3\n[method]\nname = \"deferred\"\n", &[]), "");
+    assert_eq!(said("", &["--mipmaps", "0"]), "");
+    // A near plane counts for every method and camera: in front of it, nothing is drawn.
+    for method in ["ewa", "pyramid", "template", "blue", "peeling", "single-pass"] {
+        assert_eq!(said("[camera]\nnear = 100\n", &["--method", method]), "");
+        let image = exr::read(&at.path().join("o.exr")).unwrap();
+        assert!(floats(&image, "Z").iter().all(|z| z.is_infinite()), "{method}");
+    }
 }

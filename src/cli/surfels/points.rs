@@ -4,8 +4,8 @@ use super::super::{warn, warn_of};
 use super::{Args, report};
 use splatref::frame::Exec;
 use splatref::io::ply::ReadOptions;
-use splatref::io::scene_file::{FileKind, SceneFile, read_model};
-use splatref::io::{ply, texture};
+use splatref::io::scene_file::{FileKind, SceneFile, read_model, read_properties};
+use splatref::io::texture;
 use splatref::progress::Progress;
 use splatref::scene::Cloud;
 use splatref::source::candidates::{self, Candidates, Directions, candidates};
@@ -32,7 +32,9 @@ impl Args {
         let mut cloud = read_model(&self.points, &ReadOptions::default(), exec)?;
         warn_of(&self.points, &mut cloud);
         cloud.normal = cloud.take_normals();
-        cloud.properties = ply::properties(&self.points, &self.properties)?;
+        if !self.properties.is_empty() {
+            read_properties(&self.points, &self.properties, &mut cloud)?;
+        }
         if !cloud.triangles.is_empty() {
             return self.candidates(cloud, exec, show).map(InputPoints::from);
         }

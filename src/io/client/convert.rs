@@ -326,7 +326,7 @@ fn ranged(v: f64, range: Option<[f64; 2]>) -> f64 {
 }
 
 /// The depths that 0 and 1 stand for, as far as a meaning has them.
-fn ends(keys: &DepthKeys, meaning: Meaning, table: &str) -> Reason<(f64, f64)> {
+pub(super) fn ends(keys: &DepthKeys, meaning: Meaning, table: &str) -> Reason<(f64, f64)> {
     let far = || keys.far.ok_or("far");
     let found = match (meaning, keys.near.ok_or("near")) {
         (Meaning::T | Meaning::Inverse, _) => return Ok((1.0, f64::INFINITY)),

@@ -92,6 +92,8 @@
 //! `"linear"`. A depth buffer under an orthographic camera is `"linear"` too; there n may lie
 //! behind f. A surface at the far end that has the number of an empty pixel counts as empty.
 //!
+//! [`DepthConvention`] writes such files, with the TOML file that says how to read them.
+//!
 //! # Depth tests
 //!
 //! A renderer may test depths in a depth buffer and store them in a color target. Describe the depth
@@ -142,6 +144,7 @@
 //! - `f32`: 2^-18 v, at least 2^-18, because shading languages compute the power inexactly.
 
 mod convert;
+mod depth;
 mod files;
 mod format;
 mod gather;
@@ -155,6 +158,8 @@ mod straight;
 #[cfg(test)]
 mod tests;
 mod wanted;
+
+pub use depth::{DepthConvention, DepthFile};
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;

@@ -74,6 +74,7 @@ pub fn scene_file(folder: &Path, case: &Case) -> SceneFile {
         prefix: None,
         texture: None,
         color_range: None,
+        color_by: None,
     };
     let mut scene = SceneFile::of_model(file("surfels.ply"));
     scene.models[0].draw = Draw::Points;

@@ -13,6 +13,7 @@ mod batch;
 mod read;
 #[cfg(test)]
 mod tests;
+mod window;
 mod write;
 mod zip;
 

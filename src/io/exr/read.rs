@@ -1,6 +1,6 @@
 //! Read an EXR file into an image, and trust nothing in it.
 
-use super::{ATTRIBUTE, ChannelType, PictureHeader, batch};
+use super::{ATTRIBUTE, ChannelType, PictureHeader, batch, window};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::frame::image::{Image, Values};
@@ -29,19 +29,21 @@ const LEAST_BLOCK: u64 = 16;
 /// the file.
 ///
 /// The file may have scan lines or tiles, one part or several, and any compression but DWA and
-/// HTJ2K. If it has several resolutions, only the full one is read. In a file with several parts, a
+/// HTJ2K. If it has several resolutions, only the full one is read. The picture is the display
+/// window: pixels outside the data window are empty, with a depth of +inf, an id of `0xFFFF_FFFF` and 0
+/// in all other channels. In a file with several parts, a
 /// channel is called `part.channel`. `HALF` values are widened exactly (a signalling NaN becomes
 /// quiet); all other bits are kept.
 ///
-/// Memory holds the bytes of the file, the planes, and two batches of a few blocks a thread. The
-/// planes take at most 1376 bytes (twice that for `HALF`) for each byte of the file, because no
+/// Memory holds the bytes of the file, the planes, and two batches of a few blocks a thread. If all
+/// parts fill the display window, planes take at most 1376 bytes (twice that for `HALF`) for each byte of the file, because no
 /// compression of the format can hold more.
 ///
 /// # Errors
 /// [`Error::Io`] if the file cannot be read. [`Error::Format`] if the file is not an EXR, is
 /// damaged, promises more than its bytes can hold, or has no planes to compare. This last case
-/// covers deep data, subsampled channels, a data window that is not the display window, parts of
-/// different sizes, and two channels of one name.
+/// covers deep data, subsampled channels, a display window of more than 256 MiB and 4096
+/// times the pixels of its data, parts with different display windows, and two channels of one name.
 pub fn read(path: &Path) -> Result<Image> {
     read_with(path, &Exec::sequential())
 }
@@ -100,16 +102,6 @@ fn metadata(read: impl Read, length: u64) -> Reason<MetaData> {
     let mut needed: u64 = 0;
     for header in &meta.headers {
         let Vec2(width, height) = header.layer_size;
-        let (data, display) = (header.data_window(), header.shared_attributes.display_window);
-        // A part of another size has no pixel-by-pixel counterpart.
-        if data != display || header.layer_size != meta.headers[0].layer_size {
-            return Err(format!(
-                "header: the data window of {width} x {height} pixels at ({}, {}) is not the \
-                 display window, or not that of the first part; save the whole picture",
-                data.position.x(),
-                data.position.y()
-            ));
-        }
         let pixels = (width as u64).saturating_mul(height as u64);
         let bytes = pixels.saturating_mul(header.channels.bytes_per_pixel as u64);
         let expansion = match header.compression {
@@ -127,6 +119,7 @@ fn metadata(read: impl Read, length: u64) -> Reason<MetaData> {
              {length} bytes can hold; write it again"
         ));
     }
+    window::check(&meta.headers)?;
     let names = summary(&meta).channels;
     match names.windows(2).find(|pair| pair[0].0 == pair[1].0) {
         Some(pair) => Err(format!("header: two channels are called `{}`; rename one", pair[0].0)),
@@ -149,10 +142,11 @@ fn summary(meta: &MetaData) -> PictureHeader {
     }
     channels.sort_by(|a, b| a.0.cmp(&b.0));
     let first = &meta.headers[0];
+    let size = first.shared_attributes.display_window.size;
     PictureHeader {
-        // Both are less than 2^30, because the exr crate has checked the windows.
-        width: first.layer_size.width() as u32,
-        height: first.layer_size.height() as u32,
+        // Both are less than 2^31, because the exr crate has checked the windows.
+        width: size.width() as u32,
+        height: size.height() as u32,
         channels,
         compressions: meta.headers.iter().map(|part| part.compression.to_string()).collect(),
         text: text(first),
@@ -198,13 +192,21 @@ pub(super) fn decode(bytes: &[u8], exec: &Exec) -> Reason<Image> {
     let PictureHeader { width, height, text, .. } = summary(&meta);
     let planes = meta.headers.iter().map(|part| part.channels.list.len() as u64).sum::<u64>();
     let batches = meta.headers.iter().map(|part| batch::most_bytes(part, exec)).max();
-    let needed = planes * 4 * u64::from(width) * u64::from(height);
+    // A part that is not the whole picture is in memory twice while it is put in its place.
+    let of_part =
+        |part: &PartHeader| 4 * (part.channels.list.len() * part.layer_size.area()) as u64;
+    let cropped = meta.headers.iter().filter(|part| !window::is_whole(part));
+    let cropped = cropped.map(of_part).max().unwrap_or(0);
+    let needed = planes * 4 * u64::from(width) * u64::from(height) + cropped;
     memory::try_ask(needed.saturating_add(batches.unwrap_or(0)), || {
         format!("a picture of {width} x {height} pixels, {planes} channels")
     })?;
     let mut channels = Vec::new();
     for (part, header) in meta.headers.iter().enumerate() {
-        let planes = decode_part(bytes, &mut rest, &meta, part, exec)?;
+        let mut planes = decode_part(bytes, &mut rest, &meta, part, exec)?;
+        if !window::is_whole(header) {
+            planes = window::fit(planes, header);
+        }
         let names = header.channels.list.iter().map(|c| full_name(&meta, header, &c.name));
         channels.extend(names.zip(planes));
     }

@@ -30,7 +30,7 @@ pub(super) fn cloud(mut statements: Statements, with_materials: bool) -> Reason<
     }
     let (color, opacity, more) = std::mem::take(&mut statements.colors).finish(count)?;
     let mut warnings = more;
-    cut(&mut statements);
+    warnings.extend(cut(&mut statements));
     if with_materials {
         warnings.extend(find_materials(&mut statements));
     } else {
@@ -50,17 +50,19 @@ pub(super) fn cloud(mut statements: Statements, with_materials: bool) -> Reason<
     Ok(Cloud { warnings, ..cloud })
 }
 
-/// Cuts polygons into ears where the fan leaves them.
-fn cut(statements: &mut Statements) {
+/// Cuts polygons into ears where the fan leaves them. Returns what is to be said.
+fn cut(statements: &mut Statements) -> Option<String> {
+    let mut budget = polygon::Budget::new();
     for &[start, corners] in &statements.polygons {
         let (start, corners) = (start as usize, corners as usize);
         let fan = &mut statements.triangles[start..start + corners - 2];
         let places = polygon::corners(fan);
         let positions = places.iter().map(|corner| statements.position[corner[0] as usize]);
-        if let Some(ears) = polygon::ears(&positions.collect::<Vec<_>>()) {
+        if let Some(ears) = polygon::ears(&positions.collect::<Vec<_>>(), &mut budget) {
             polygon::recut(fan, &places, &ears);
         }
     }
+    budget.warning()
 }
 
 /// Replaces the names of the triangles' materials by the materials. Returns what is to be said.
@@ -128,7 +130,7 @@ fn ignored<'a>(materials: impl Iterator<Item = &'a Material>) -> Option<String> 
     }
     let name = super::lines::shown(first?);
     let more = if several { " and others" } else { "" };
-    Some(format!("material `{name}`{more}: {} is not read; surfaces stay opaque", words.join(", ")))
+    Some(format!("material `{name}`{more}: {} is not read", words.join(", ")))
 }
 
 /// The materials that triangles use, each once, in the order of their first use. There are `count`,
@@ -147,9 +149,10 @@ fn uses(materials: &[u32], count: usize) -> Vec<u32> {
 impl Mesh {
     /// The points of a file without polygons.
     fn points(self) -> Cloud {
-        let Statements { position, normal, .. } = self.statements;
+        let Statements { position, normal, edges, .. } = self.statements;
         let normal = (normal.len() == position.len()).then_some(normal);
-        Cloud { position, normal, color: self.color, opacity: self.opacity, ..Cloud::default() }
+        let Self { color, opacity, .. } = self;
+        Cloud { position, normal, color, opacity, edges, ..Cloud::default() }
     }
 
     fn mesh(self) -> Cloud {
@@ -157,7 +160,7 @@ impl Mesh {
         let coordinates = self.coordinates();
         let textures = self.textures();
         let own = self.color.is_none() && (coordinates.is_none() || textures.is_empty());
-        let paints = if own { self.paints() } else { Vec::new() };
+        let paints = self.paints(own);
         let corners = || all.triangles.iter().flatten();
         let has_normals = corners().all(|corner| corner[1] != NONE);
         let point = |corner: &Corner, material: u32| {
@@ -178,19 +181,31 @@ impl Mesh {
         let place = |corner: [u32; 3]| points.partition_point(|point| *point < corner) as u32;
         let triangles = drawn.map(|corners| corners.map(place)).collect();
         let vertices = || points.iter().map(|point| point[0] as usize);
-        let painted = |point: &[u32; 3]| self.materials.get(point[2] as usize)?.color;
+        let material = |point: &[u32; 3]| self.materials.get(point[2] as usize);
+        let painted = |point: &[u32; 3]| material(point)?.color;
         let color = match &self.color {
             Some(color) => Some(vertices().map(|vertex| color[vertex]).collect()),
-            None => (!paints.is_empty())
+            None => (own && self.uses_any(|material| material.color.is_some()))
                 .then(|| points.iter().map(|point| painted(point).unwrap_or(Vec3::ONE)).collect()),
         };
+        let veiled = self.uses_any(|material| material.opacity() < 1.0);
+        let opacity = (veiled || self.opacity.is_some()).then(|| {
+            let own = |vertex: u32| self.opacity.as_ref().map_or(1.0, |all| all[vertex as usize]);
+            let of =
+                |point: &[u32; 3]| own(point[0]) * material(point).map_or(1.0, Material::opacity);
+            points.iter().map(of).collect()
+        });
+        // A line goes to the first point of a vertex.
+        let first = |vertex: u32| points.partition_point(|point| point[0] < vertex) as u32;
+        let edges = all.edges.iter().map(|ends| ends.map(first)).collect();
         // A vertex of no polygon has no normal.
         let normal = |point: &[u32; 3]| all.normal.get(point[1] as usize).copied();
         Cloud {
             triangles,
             position: vertices().map(|vertex| all.position[vertex]).collect(),
             color,
-            opacity: self.opacity.as_ref().map(|of| vertices().map(|vertex| of[vertex]).collect()),
+            opacity,
+            edges,
             normal: has_normals
                 .then(|| points.iter().map(|point| normal(point).unwrap_or(Vec3::ZERO)).collect()),
             coordinates,
@@ -230,15 +245,21 @@ impl Mesh {
         if names == [""] { Vec::new() } else { names.into_iter().map(str::to_owned).collect() }
     }
 
-    /// For each material the first one of the same colour; empty if no triangle has a colour.
-    fn paints(&self) -> Vec<u32> {
-        let color = |material: u32| self.materials.get(material as usize)?.color;
+    /// Whether any triangle has such a material.
+    fn uses_any(&self, such: impl Fn(&Material) -> bool) -> bool {
         let used = uses(&self.statements.materials, self.materials.len());
-        if !used.into_iter().any(|used| color(used).is_some()) {
+        used.into_iter().filter_map(|used| self.materials.get(used as usize)).any(such)
+    }
+
+    /// For each material the first one of the same opacity and, if materials give the colours, of the
+    /// same colour; empty if no triangle has any.
+    fn paints(&self, colored: bool) -> Vec<u32> {
+        let look = |of: &Material| (of.color.filter(|_| colored), of.opacity());
+        if !self.uses_any(|material| look(material) != (None, 1.0)) {
             return Vec::new();
         }
         let same = |of: &Material| {
-            self.materials.iter().position(|other| other.color == of.color).unwrap_or(0) as u32
+            self.materials.iter().position(|other| look(other) == look(of)).unwrap_or(0) as u32
         };
         self.materials.iter().map(same).collect()
     }

@@ -5,15 +5,17 @@
 //! | `newmtl NAME` | a material | the lines that follow belong to it |
 //! | `Kd r g b`, `Kd r` | its colour | linear, in [0, 65536]; one number is all three |
 //! | `map_Kd OPTIONS FILE` | its texture | beside the OBJ file; [`super::map`] has the options |
-//! | `d x`, `Tr x`, `map_d` | its opacity | not read; a warning says so if d is not 1 or Tr is not 0 |
+//! | `d x`, `Tr x` | its opacity, x or 1 - x | in [0, 1]; `Tr` beside `d` is ignored |
 //!
-//! All other lines are ignored. [`super::lines`] says how lines end and where comments begin. If
+//! `map_d`, and lines `d` and `Tr` of anything but one number in [0, 1], are not read, and a warning
+//! says so. All other lines are ignored. [`super::lines`] says how lines end and where comments begin. If
 //! several materials have one name, the first holds. `Kd spectral` and `Kd xyz` are not read, and a
 //! warning says so.
 //!
 //! `Decided:` Kd is linear, because programs that write it have linear colours. A texture replaces
 //! Kd and is not multiplied by it, because the same programs write a Kd that nobody has chosen
-//! beside the texture.
+//! beside the texture. `d` wins over `Tr`, and `Tr 1` alone is opaque, because some programs write the
+//! opacity as `Tr`.
 
 use super::lines::{lines, numbers, shown, statement, uncommented, words};
 use super::map::Map;
@@ -29,6 +31,8 @@ use std::path::Path;
 pub(super) struct Material {
     pub(super) name: String,
     pub(super) color: Option<Vec3>,
+    /// From the line `d`, and else from `Tr`.
+    pub(super) opacity: [Option<f32>; 2],
     pub(super) texture: Option<Map>,
     /// The lines that a picture would show if they were read.
     pub(super) ignored: Vec<String>,
@@ -195,22 +199,33 @@ impl Material {
                 _ => self.color = Some(color(rest)?),
             },
             "map_d" => self.ignore("map_d"),
-            // `d -halo 0.5` has a word before its number.
-            _ => {
-                let opaque = if word == "d" { 1.0 } else { 0.0 };
-                let value = words(rest).last().and_then(|last| last.parse::<f64>().ok());
-                if value != Some(opaque) {
-                    self.ignore(word);
-                }
-            }
+            // Not `d -halo 0.5`, which depends on the angle of view.
+            _ => match (word, opacity(rest)) {
+                (_, None) => self.ignore(word),
+                ("d", opacity) => self.opacity[0] = opacity,
+                (_, opacity) => self.opacity[1] = opacity.map(|value| 1.0 - value),
+            },
         }
         Ok(())
+    }
+
+    /// The opacity of its surfaces.
+    pub(super) fn opacity(&self) -> f32 {
+        let [d, tr] = self.opacity;
+        d.or(tr.filter(|opacity| *opacity > 0.0)).unwrap_or(1.0)
     }
 
     fn ignore(&mut self, what: &str) {
         if !self.ignored.iter().any(|known| known == what) {
             self.ignored.push(what.to_owned());
         }
+    }
+}
+
+fn opacity(text: &str) -> Option<f32> {
+    match numbers(words(text)).ok()?[..] {
+        [value] if (0.0..=1.0).contains(&value) => Some(value as f32),
+        _ => None,
     }
 }
 

@@ -6,6 +6,7 @@
 //! | `v x y z r g b` | with a colour | **sRGB** in [0, 1], decoded in `f64` and rounded once ([`crate::number::srgb`]); or codes from 0 to 255 |
 //! | `vn x y z` | a normal | of any length |
 //! | `f a b c ...` | a polygon | cut into triangles; with fewer than 3 corners it is nothing. `fo` means the same |
+//! | `l a b c ...` | a line | the segments between its vertices, for ribbons and tubes |
 //!
 //! | line | defines | details |
 //! |---|---|---|
@@ -25,8 +26,8 @@
 //!
 //! A comment begins at `#` at the start of a line or after white space; after a number, it needs no
 //! white space. All other statements are ignored. The [warnings](Cloud::warnings) name them, except
-//! for `o`, `g`, `mg`, `lod`, `c_interp` and `d_interp`, which change no picture, and for `s` in a
-//! file with normals.
+//! for `o`, `g`, `mg`, `lod`, `c_interp` and `d_interp`, which change no picture, for `p`, because every
+//! vertex is a point, and for `s` in a file with normals.
 //!
 //! The reader takes the texture and the colour of a material:
 //!
@@ -34,11 +35,12 @@
 //! |---|---|---|
 //! | `newmtl NAME` | a material | the lines that follow belong to it |
 //! | `Kd r g b`, `Kd r` | its colour | linear, in [0, 65536]; one number is all three |
+//! | `d x`, `Tr x` | its opacity, x or 1 - x | in [0, 1]; `Tr` beside `d` is ignored, and so is `Tr 1` |
 //! | `map_Kd OPTIONS FILE` | its texture, see [`crate::io::texture`] | `-s` and `-o` scale and move the texture coordinates |
 //!
 //! With these options, u' = u s.u + o.u and v' = v s.v + o.v, each in f64 and rounded to `f32` once.
-//! Opacity (`d`, `Tr`, `map_d`) and other options of `map_Kd` are not read. A warning names them if
-//! a polygon's material has them with a value that would change the picture.
+//! `map_d`, `d -halo x` and other options of `map_Kd` are not read. A warning names them if a polygon's
+//! material has them with a value that would change the picture.
 //!
 //! The reader does not judge values of positions and
 //! normals, and neither does [`super::ply`].
@@ -54,8 +56,10 @@
 //!   seventh is the opacity. A warning says which. Programs write both.
 //! - `1.#QNAN`, `1.#SNAN` and `-1.#IND` are NaN, and `1.#INF` is infinite, as Microsoft's run-time
 //!   library prints them.
+//! - The opacity of a point is that of its vertex times that of its material. Methods without
+//!   transparency, and polygons, ignore it.
 //! - A vertex becomes several points if its corners have several normals, or materials of several
-//!   colours. Points are in the order of the vertices, then of the normals' numbers, then of the
+//!   colours or opacities. Points are in the order of the vertices, then of the normals' numbers, then of the
 //!   materials. If a corner has no normal, all normals are left out, to be derived.
 //! - Texture coordinates belong to [corners](crate::scene::Coordinates::Corners); a corner without them has NaN.
 //! - If vertices have no colours and no texture replaces the materials' colours, points take the

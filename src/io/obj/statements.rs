@@ -30,6 +30,8 @@ pub(super) struct Statements {
     pub(super) triangles: Vec<[Corner; 3]>,
     /// The material of each triangle: a place in `names`.
     pub(super) materials: Vec<u32>,
+    /// The vertices at both ends of each segment of a line.
+    pub(super) edges: Vec<[u32; 2]>,
     /// The first triangle and the corners of each polygon of more than 3 corners.
     pub(super) polygons: Vec<[u32; 2]>,
     /// References to what a later line may define.
@@ -47,8 +49,9 @@ struct Ahead {
 /// What the parts of a corner refer to.
 const KINDS: [&str; 3] = ["vertex", "normal", "texture coordinate"];
 
-/// Statements that change no picture: names, groups, and levels of detail.
-const SILENT: [&str; 7] = ["", "o", "g", "mg", "lod", "c_interp", "d_interp"];
+/// Statements that change no picture: names, groups, levels of detail, and points, because every
+/// vertex is a point.
+const SILENT: [&str; 8] = ["", "o", "g", "mg", "lod", "c_interp", "d_interp", "p"];
 
 /// A file of many unknown words is probably no OBJ; so many are named.
 const MOST_SKIPPED: usize = 8;
@@ -66,6 +69,7 @@ impl Statements {
             "vn" => self.normal(rest),
             // `fo` is how old files write `f`.
             "f" | "fo" => self.face(line, rest),
+            "l" => self.line(line, rest),
             "usemtl" => {
                 self.choose(line, rest);
                 Ok(())
@@ -139,6 +143,16 @@ impl Statements {
         let triangles = self.triangles.len() - start;
         if triangles > 1 {
             self.polygons.push([start as u32, triangles as u32 + 2]);
+        }
+        Ok(())
+    }
+
+    fn line(&mut self, line: u64, rest: &str) -> Reason<()> {
+        let mut previous = None;
+        for word in words(rest) {
+            let [vertex, ..] = self.corner(line, word)?;
+            self.edges.extend(previous.map(|previous| [previous, vertex]));
+            previous = Some(vertex);
         }
         Ok(())
     }

@@ -196,3 +196,17 @@ fn materials_that_are_none_are_refused() {
     }
     assert_eq!(beside(&format!("{SQUARE}{face}"), "").unwrap().color, None, "no mtllib");
 }
+
+#[test]
+fn lines_are_edges_and_points_are_nothing_more() {
+    let cloud = parse(format!("{SQUARE}vt 0 0\nl 1 2/1 -2\np 4\nl 4\n").as_bytes()).unwrap();
+    assert_eq!((cloud.edges, cloud.position.len()), (vec![[0, 1], [1, 2]], 4));
+    assert_eq!(cloud.warnings, [""; 0]);
+    // Beside polygons, a vertex may be several points: the line goes to the first.
+    let faces = "vn 0 0 1\nvn 0 1 0\nf 1//1 2//1 3//1\nf 3//2 4//2 1//2\nl 3 1\n";
+    let cloud = parse(format!("{SQUARE}{faces}").as_bytes()).unwrap();
+    let ends = cloud.edges[0].map(|end| cloud.position[end as usize]);
+    assert_eq!(ends, [Vec3::new(1.0, 1.0, 0.0), Vec3::ZERO]);
+    assert_eq!(cloud.position.len(), 6);
+    assert!(line(&format!("{SQUARE}l 1 9\n")).contains("there is no vertex 9"));
+}

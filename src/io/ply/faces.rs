@@ -76,12 +76,15 @@ pub(super) fn read(
 
 /// Cuts polygons into ears where the fan leaves them, as soon as all vertices are read.
 pub(super) fn cut(polygons: &Polygons, cloud: &mut Cloud) {
+    let mut budget = polygon::Budget::new();
     for &[start, corners] in polygons {
         let all = start as usize..(start + corners) as usize - 2;
         let fan = &mut cloud.triangles[all.clone()];
         let corners = polygon::corners(fan);
         let positions = corners.iter().map(|&corner| cloud.position[corner as usize]);
-        let Some(ears) = polygon::ears(&positions.collect::<Vec<_>>()) else { continue };
+        let Some(ears) = polygon::ears(&positions.collect::<Vec<_>>(), &mut budget) else {
+            continue;
+        };
         polygon::recut(fan, &corners, &ears);
         if let Some(Coordinates::Corners(coordinates)) = &mut cloud.coordinates
             && let Some(fan) = coordinates.get_mut(all)
@@ -90,6 +93,7 @@ pub(super) fn cut(polygons: &Polygons, cloud: &mut Cloud) {
             polygon::recut(fan, &corners, &ears);
         }
     }
+    cloud.warnings.extend(budget.warning());
 }
 
 /// Cuts a polygon a b c d ... into the fan abc, acd, ...

@@ -109,6 +109,7 @@ mod write;
 pub(in crate::io) use numbers::numbers;
 pub use order::write_ordered;
 pub(in crate::io) use properties::check_properties;
+pub(in crate::io) use properties::number;
 pub use properties::properties;
 pub use write::write;
 

@@ -35,6 +35,28 @@ pub(in crate::io) fn check_properties(path: &Path, names: &[String]) -> Result<(
     places.map(|_| ()).map_err(|what| Error::format(path, what))
 }
 
+/// Reads one number of each vertex, whatever else it is read for.
+///
+/// # Errors
+/// [`Error::Io`] if the file cannot be read. [`Error::Format`] as [`super::parse`], and if there is
+/// no such property, or if it is a list.
+pub(in crate::io) fn number(path: &Path, name: &str) -> Result<Property> {
+    let one = |bytes: &[u8]| {
+        let header = header::parse(bytes)?;
+        let vertices = vertex(&header)?;
+        let all = || vertices.properties.iter().filter(|p| matches!(p.kind, PropertyKind::One(_)));
+        let Some(_) = all().find(|p| p.name == name) else {
+            let all: Vec<&str> = all().map(|p| p.name.as_str()).collect();
+            let (name, all) = (quote(name), all.join(", "));
+            return Err(format!("element vertex has no number {name}; it has {all}"));
+        };
+        let places = vertices.properties.iter().map(|p| (p.name == name).then_some(0)).collect();
+        values(bytes, &header, &[name.to_owned()], places)
+    };
+    let found = one(&whole(path)?).map_err(|what| Error::format(path, what))?;
+    Ok(found.into_iter().next().unwrap_or_default())
+}
+
 fn whole(path: &Path) -> Result<Vec<u8>> {
     let io = |source| Error::io(path, source);
     let (file, length) = input::open(path).map_err(io)?;
@@ -66,10 +88,21 @@ fn places(header: &PlyHeader, names: &[String]) -> Reason<Vec<Option<usize>>> {
 /// Reads the properties of these names from the bytes of a file.
 pub(super) fn read(bytes: &[u8], names: &[String]) -> Reason<Vec<Property>> {
     let header = header::parse(bytes)?;
-    let (vertices, places) = (vertex(&header)?, places(&header, names)?);
+    let places = places(&header, names)?;
+    values(bytes, &header, names, places)
+}
+
+/// Reads the properties for which `places` has the place among the names.
+fn values(
+    bytes: &[u8],
+    header: &PlyHeader,
+    names: &[String],
+    places: Vec<Option<usize>>,
+) -> Reason<Vec<Property>> {
+    let vertices = vertex(header)?;
     let vertex_bytes = vertices.count.min(bytes.len() as u64) * names.len() as u64 * BYTES;
-    ask(&header, bytes.len() as u64, vertex_bytes)?;
-    let mut values = BodyValues::new(bytes, &header);
+    ask(header, bytes.len() as u64, vertex_bytes)?;
+    let mut values = BodyValues::new(bytes, header);
     let mut found: Vec<Vec<f32>> = vec![Vec::new(); names.len()];
     for element in &header.elements {
         let is_vertices = std::ptr::eq(element, vertices);

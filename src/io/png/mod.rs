@@ -148,6 +148,21 @@ pub fn write_codes(path: &Path, size: [u32; 2], codes: &[u8]) -> Result<()> {
     write_atomically(path, |file| encode(file, codes, size, ExtendedColorType::Rgb8))
 }
 
+/// Writes grey codes of 16 bits as they are, from the top row on.
+///
+/// # Errors
+/// As [`write_codes`], with `width height` codes.
+pub fn write_grey(path: &Path, size: [u32; 2], codes: &[u16]) -> Result<()> {
+    if codes.is_empty() || codes.len() as u64 != size.map(u64::from).iter().product::<u64>() {
+        let [width, height] = size;
+        let what = format!("{} codes do not fill {width} x {height} pixels", codes.len());
+        return Err(Error::io(path, io::Error::other(what)));
+    }
+    // The encoder takes the bytes of this machine.
+    let bytes: Vec<u8> = codes.iter().flat_map(|code| code.to_ne_bytes()).collect();
+    write_atomically(path, |file| encode(file, &bytes, size, ExtendedColorType::L16))
+}
+
 fn encode(
     file: &mut impl io::Write,
     pixels: &[u8],

@@ -14,15 +14,17 @@ pub(super) struct Cutter<'a> {
     /// The corners that did not turn left at first, in ascending x. A corner turns further left when
     /// a neighbour is cut off, and so none is missing later.
     blockers: Vec<u32>,
+    /// How often it may still be tried whether a corner is in a triangle.
+    tries: &'a mut u64,
 }
 
 impl<'a> Cutter<'a> {
-    pub(super) fn new(at: &'a [Flat]) -> Self {
+    pub(super) fn new(at: &'a [Flat], tries: &'a mut u64) -> Self {
         let count = at.len() as u32;
         let before: Vec<u32> = (0..count).map(|i| (i + count - 1) % count).collect();
         let after: Vec<u32> = (0..count).map(|i| (i + 1) % count).collect();
         let turns = Vec::new();
-        let mut cutter = Self { at, before, after, turns, blockers: Vec::new() };
+        let mut cutter = Self { at, before, after, turns, blockers: Vec::new(), tries };
         cutter.turns = (0..count).map(|i| cutter.turn_at(i)).collect();
         let blocks = |i: &u32| cutter.turns[*i as usize] != Ordering::Greater;
         let mut blockers: Vec<u32> = (0..count).filter(blocks).collect();
@@ -30,12 +32,15 @@ impl<'a> Cutter<'a> {
         Self { blockers, ..cutter }
     }
 
-    /// The triangles; `None` if the polygon crosses itself.
+    /// The triangles; `None` if the polygon crosses itself, or if no tries are left.
     pub(super) fn cut(mut self) -> Option<Vec<[u32; 3]>> {
         let mut triangles = Vec::with_capacity(self.at.len() - 2);
         let mut left = self.at.len();
         let (mut current, mut tried) = (0, 0);
         while left > 3 {
+            if *self.tries == 0 {
+                return None;
+            }
             let corner = if self.is_ear(current) {
                 current
             } else if tried < left {
@@ -85,7 +90,8 @@ impl<'a> Cutter<'a> {
         }
     }
 
-    fn is_ear(&self, corner: u32) -> bool {
+    fn is_ear(&mut self, corner: u32) -> bool {
+        *self.tries -= 1;
         if self.turns[corner as usize] != Ordering::Greater {
             return false;
         }
@@ -111,6 +117,9 @@ impl<'a> Cutter<'a> {
                     .into_iter()
                     .all(|(from, to)| turn(from, to, place) != Ordering::Less)
         };
-        !near.into_iter().any(blocks)
+        let mut tried = 0;
+        let is_ear = !near.inspect(|_| tried += 1).any(blocks);
+        *self.tries = self.tries.saturating_sub(tried);
+        is_ear
     }
 }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::number::elementary;
 use glam::{DVec2, Vec2};
 
 const AXES: [fn(Vec2) -> Vec3; 6] = [
@@ -61,7 +62,7 @@ fn triangles_cover_the_polygon_once() {
             let placed = |axes: fn(Vec2) -> Vec3| -> Vec<Vec3> {
                 corners.iter().copied().map(axes).collect()
             };
-            let all_ears = AXES.map(|axes| ears(&placed(axes)));
+            let all_ears = AXES.map(|axes| ears(&placed(axes), &mut Budget::new()));
             assert!(all_ears.iter().all(|one| *one == all_ears[0]), "{name} from {by}");
             let cut = all_ears[0].clone().unwrap_or_else(|| whole.clone());
             assert_eq!(cut.len(), corners.len() - 2, "{name}");
@@ -91,7 +92,7 @@ fn polygons_whose_fan_is_right_keep_it() {
     ] {
         for axes in AXES {
             let corners: Vec<Vec3> = points(shape).into_iter().map(axes).collect();
-            assert_eq!(ears(&corners), None, "{shape}");
+            assert_eq!(ears(&corners, &mut Budget::new()), None, "{shape}");
         }
     }
 }
@@ -103,15 +104,41 @@ fn polygons_without_ears_keep_the_fan() {
         ["0 0 1 0 2 0 1 0", "0 0 0 0 0 0 0 0", "0 0 1e38 3e38 nan 1 0 2", "0 0 1 0 inf 1 0 1"]
     {
         let corners: Vec<Vec3> = points(shape).iter().map(|p| p.extend(0.0)).collect();
-        assert_eq!(ears(&corners), None, "{shape}");
+        assert_eq!(ears(&corners, &mut Budget::new()), None, "{shape}");
     }
     for shape in ["0 0 2 2 2 0 0 2", "0 0 4 0 1 3 2 -1 3 3", "0 0 3e38 0 3e38 3e38 1 1 0 3e38"] {
         let corners: Vec<Vec3> = points(shape).iter().map(|p| p.extend(0.0)).collect();
-        let cut = ears(&corners).unwrap_or_else(|| fan(corners.len() as u32));
+        let cut = ears(&corners, &mut Budget::new()).unwrap_or_else(|| fan(corners.len() as u32));
         assert_eq!(cut.len(), corners.len() - 2);
     }
-    let many = vec![Vec3::ZERO; MOST_CORNERS + 1];
-    assert_eq!(ears(&many), None);
+}
+
+/// A gear: every second corner turns right.
+fn gear(corners: u32) -> Vec<Vec3> {
+    let place = |i: u32| {
+        let angle = f64::from(i) / f64::from(corners) * std::f64::consts::TAU;
+        let radius = if i.is_multiple_of(2) { 1000.0 } else { 1001.0 };
+        let (x, y) = (elementary::cos(angle), elementary::sin(angle));
+        (DVec2::new(x, y) * radius).as_vec2().extend(0.0)
+    };
+    (0..corners).map(place).collect()
+}
+
+#[test]
+fn long_polygons_are_cut_as_long_as_the_budget_lasts() {
+    let mut budget = Budget::new();
+    let corners = gear(70_000);
+    let cut = ears(&corners, &mut budget).unwrap();
+    assert_eq!((cut.len(), budget.warning()), (69_998, None));
+    assert!(budget.tries > 1 << 29, "{} are left", budget.tries);
+
+    let flat = project(&gear(20)).unwrap();
+    let mut tries = 1000;
+    assert!(ears::Cutter::new(&flat, &mut tries).cut().is_some());
+    let mut tries = (1000 - tries) / 2;
+    assert!(ears::Cutter::new(&flat, &mut tries).cut().is_none() && tries == 0);
+    let said = Budget { tries: 0, uncut: 2 }.warning().unwrap();
+    assert!(said.starts_with("2 polygons have so many corners"), "{said}");
 }
 
 /// The rules, step by step: after the ear at corner 0, corner 2 is tried next.
@@ -119,7 +146,10 @@ fn polygons_without_ears_keep_the_fan() {
 fn ears_are_cut_in_the_order_of_the_rules() {
     let corners: Vec<Vec3> =
         points("2 0 2 1 1 1 1 2 0 2 0 0").iter().map(|p| p.extend(0.0)).collect();
-    assert_eq!(ears(&corners).unwrap(), [[5, 0, 1], [2, 3, 4], [5, 1, 2], [2, 4, 5]]);
+    assert_eq!(
+        ears(&corners, &mut Budget::new()).unwrap(),
+        [[5, 0, 1], [2, 3, 4], [5, 1, 2], [2, 4, 5]]
+    );
 }
 
 #[test]

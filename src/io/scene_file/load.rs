@@ -1,6 +1,6 @@
 //! Load a [`SceneFile`] into surfels and primitives.
 
-use super::model::{ModelParts, Purpose, check_draw, prefiltered, read};
+use super::model::{Colored, ModelParts, Purpose, check_draw, prefiltered, read};
 use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, offset, stem};
 use crate::error::Result;
 use crate::frame::Exec;
@@ -32,7 +32,7 @@ pub struct Loaded {
 }
 
 /// A report on a loaded model.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct ModelReport {
     /// The name of the file without its extension, of the shape, or of the geometry.
     pub name: String,
@@ -42,6 +42,8 @@ pub struct ModelReport {
     pub primitives: Counts,
     /// What had to be derived because its file lacks it; `None` for shapes.
     pub derived: Option<Derived>,
+    /// The numbers that colour it, if numbers do.
+    pub colored: Option<Colored>,
 }
 
 impl SceneFile {
@@ -252,6 +254,7 @@ fn of_hierarchy(
             surfels: node.surfels as usize,
             primitives: Counts { triangles, ..Counts::default() },
             derived: None,
+            colored: None,
         }
     }));
     loaded.scene.objects = Some(objects);
@@ -280,13 +283,20 @@ impl Loaded {
         exec: &Exec,
         progress: Progress<'_>,
     ) -> Result<(Surfels, Primitives)> {
-        let ModelParts { surfels, primitives, derived, painted, warnings, .. } = part;
+        let ModelParts { surfels, primitives, derived, painted, warnings, colored, .. } = part;
         let is_new = |what: &String| !self.warnings.contains(what);
         let new: Vec<String> = warnings.into_iter().filter(is_new).collect();
         self.warnings.extend(new);
         let surfels = if painted { surfels } else { prefiltered(surfels, model, exec, progress)? };
         let counts = primitives.counts();
-        self.models.push(ModelReport { name, surfels: surfels.len(), primitives: counts, derived });
+        let count = surfels.len();
+        self.models.push(ModelReport {
+            name,
+            surfels: count,
+            primitives: counts,
+            derived,
+            colored,
+        });
         // This drops primitives that a transform moved out of the range of f32; surfels are dropped
         // later.
         let (primitives, lost) = primitives.map(|vertices| {

@@ -97,8 +97,9 @@ pub use camera::{CameraChoice, Matrices, Views};
 pub use choice::{Choice, GroupChoice, MethodChoice, Number, OutputSettings};
 pub use draw::Draw;
 pub use load::{Loaded, ModelReport};
+pub use model::Colored;
 pub use objects::{Geometry, MOST_FRAMES, ObjectChoice, Places};
-pub use open::{FileKind, TREE, read_model, shapes};
+pub use open::{FileKind, TREE, read_model, read_properties, shapes};
 pub use ready::Ready;
 
 use crate::error::{Error, Result};
@@ -184,7 +185,7 @@ pub struct Model {
 /// The source of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
-    /// A PLY or an OBJ file.
+    /// A PLY, OBJ, LAS, LAZ or E57 file.
     File {
         /// The path of the file.
         path: PathBuf,
@@ -196,9 +197,12 @@ pub enum Source {
         prefix: Option<usize>,
         /// The texture, see [`crate::io::texture`]; the file's own if absent.
         texture: Option<PathBuf>,
-        /// The code of white of the colours in a PLY, see
+        /// The code of white of the colours in a PLY or LAS, see
         /// [`crate::io::ply::ReadOptions::color_range`].
         color_range: Option<f64>,
+        /// The number of each point that replaces its colour by a colour of
+        /// [viridis](crate::source::viridis): `x`, `y`, `z` or a property of the file.
+        color_by: Option<String>,
     },
     /// A procedural shape.
     Shape {

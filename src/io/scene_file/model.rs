@@ -1,6 +1,7 @@
 //! Load one model: its surfels and primitives in the coordinates of its file.
 
-use super::{Draw, FileKind, Model, Source, read_model};
+use super::open::read_number;
+use super::{Draw, FileKind, Model, Source, read_model, read_properties};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::mipmap;
@@ -9,7 +10,7 @@ use crate::io::{ply, texture};
 use crate::progress::Progress;
 use crate::scene::{Cloud, Primitives, Surfels};
 use crate::source::derive::{self, Derive, Derived};
-use crate::source::plant;
+use crate::source::{plant, viridis};
 use glam::DVec3;
 use std::path::Path;
 
@@ -24,13 +25,28 @@ pub(super) struct ModelParts {
     pub(super) offset: DVec3,
     /// What the reader doubts about the file.
     pub(super) warnings: Vec<String>,
+    pub(super) colored: Option<Colored>,
+}
+
+/// The numbers by which a model is coloured.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Colored {
+    /// The name of the numbers.
+    pub by: String,
+    /// The least number, which has the first colour of the map.
+    pub low: f64,
+    /// The greatest number, which has the last colour of the map.
+    pub high: f64,
+    /// How many points have no finite number, and are grey.
+    pub without: u64,
 }
 
 impl ModelParts {
     fn none() -> Self {
         let (surfels, primitives) = (Surfels::none(), Primitives::default());
         let (offset, warnings) = (DVec3::ZERO, Vec::new());
-        Self { surfels, primitives, derived: None, painted: false, offset, warnings }
+        let (derived, painted, colored) = (None, false, None);
+        Self { surfels, primitives, derived, painted, offset, warnings, colored }
     }
 
     fn new(surfels: Surfels, primitives: Primitives, derived: Derived) -> Self {
@@ -40,7 +56,17 @@ impl ModelParts {
 
 /// Whether a model would show the colours of a texture.
 fn shows_texture(model: &Model) -> bool {
-    model.color.is_none() && !matches!(model.draw, Draw::Ribbons | Draw::Tubes)
+    model.color.is_none()
+        && color_by(model).is_none()
+        && !matches!(model.draw, Draw::Ribbons | Draw::Tubes)
+}
+
+/// The name of the numbers that colour a model.
+fn color_by(model: &Model) -> Option<&str> {
+    match &model.source {
+        Source::File { color_by, .. } => color_by.as_deref(),
+        Source::Shape { .. } | Source::Tree { .. } => None,
+    }
 }
 
 /// Why a scene is loaded.
@@ -58,10 +84,15 @@ pub(super) enum Purpose<'a> {
 pub(super) fn check_draw(model: &Model, purpose: Purpose<'_>) -> Result<()> {
     model.draw.check(&model.source).map_err(Error::Invalid)?;
     if let Source::File { path, color_range: Some(_), .. } = &model.source
-        && FileKind::from_extension(path)? == FileKind::Obj
+        && matches!(FileKind::from_extension(path)?, FileKind::Obj | FileKind::E57)
     {
-        let what = "color_range applies to a PLY; remove it";
+        let what = "color_range applies to a PLY, a LAS or a LAZ; remove it";
         return Err(Error::format(path, what));
+    }
+    if let (Some(by), Some(_)) = (color_by(model), model.color) {
+        let (name, by) = (model.source.name(), by.escape_debug());
+        let what = format!("{name}: a model in one colour is not coloured by {by}; remove one");
+        return Err(Error::Invalid(what));
     }
     if model.progressive && !matches!(model.source, Source::File { .. }) {
         let name = model.source.name();
@@ -71,9 +102,10 @@ pub(super) fn check_draw(model: &Model, purpose: Purpose<'_>) -> Result<()> {
         return Err(Error::Invalid(what));
     }
     if matches!(model.source, Source::File { texture: Some(_), .. }) && !shows_texture(model) {
-        let what = match model.color {
-            Some(_) => "a model in one colour".to_owned(),
-            None => format!("a model drawn as {}", model.draw.word()),
+        let what = match (model.color, color_by(model)) {
+            (Some(_), _) => "a model in one colour".to_owned(),
+            (None, Some(by)) => format!("a model coloured by {}", by.escape_debug()),
+            (None, None) => format!("a model drawn as {}", model.draw.word()),
         };
         let name = model.source.name();
         return Err(Error::Invalid(format!("{name}: {what} has no texture; remove one of them")));
@@ -109,13 +141,15 @@ pub(super) fn read(
     let further = if let Purpose::Candidates(names) = purpose { names } else { &[] };
     ply_of(model, further)?;
     match &model.source {
-        Source::File { path, radius, prefix, texture, color_range } => {
+        Source::File { path, radius, prefix, texture, color_range, color_by } => {
             let options = ReadOptions { color_range: *color_range, keep_place };
             let mut cloud = read_model(path, &options, exec)?;
             let offset = cloud.offset;
             let warnings = std::mem::take(&mut cloud.warnings).into_iter();
             let warnings = warnings.map(|what| Error::format(path, what).to_string()).collect();
-            cloud.properties = ply::properties(path, further)?;
+            let by = color_by.as_deref();
+            let colored = by.map(|by| color_points(&mut cloud, path, by)).transpose()?;
+            read_properties(path, further, &mut cloud)?;
             if model.draw == Draw::Polygons && !matches!(purpose, Purpose::Candidates(_)) {
                 // Polygons are drawn opaque.
                 cloud.opacity = None;
@@ -128,11 +162,10 @@ pub(super) fn read(
             let options = Derive { radius: *radius };
             let parts = first(cloud, *prefix, model.progressive)
                 .and_then(|cloud| of_file(cloud, &model.draw, &options, exec, progress));
-            parts.map(|parts| ModelParts { painted, offset, warnings, ..parts }).map_err(|error| {
-                match error {
-                    Error::Invalid(what) => Error::format(path, what),
-                    other => other,
-                }
+            let more = |parts| ModelParts { painted, offset, warnings, colored, ..parts };
+            parts.map(more).map_err(|error| match error {
+                Error::Invalid(what) => Error::format(path, what),
+                other => other,
             })
         }
         Source::Shape { shape, count, seed } => {
@@ -145,6 +178,19 @@ pub(super) fn read(
             Ok(ModelParts { primitives, ..ModelParts::none() })
         }
     }
+}
+
+/// Replaces the colours of a cloud by colours of a number of each point.
+fn color_points(cloud: &mut Cloud, path: &Path, by: &str) -> Result<Colored> {
+    let (values, more) = read_number(path, by, cloud)?;
+    let Some(viridis::Colored { color, low, high, without }) = viridis::colored(&values) else {
+        let what = format!("no point has a finite number `{}` to colour it by", by.escape_debug());
+        return Err(Error::format(path, what));
+    };
+    cloud.color = Some(color);
+    (cloud.mipmap, cloud.triangle_color) = (None, None);
+    let [low, high] = [low, high].map(|value| f64::from(value) + more);
+    Ok(Colored { by: by.to_owned(), low, high, without })
 }
 
 /// Checks in the header of a model's file that its vertices have these properties.

@@ -5,8 +5,8 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::io::hierarchy::Hierarchy;
 use crate::io::ply::ReadOptions;
-use crate::io::{extension, input, obj, ply};
-use crate::scene::Cloud;
+use crate::io::{extension, input, las, obj, ply};
+use crate::scene::{Cloud, Property};
 use crate::source::{Shape, plant};
 use std::path::Path;
 
@@ -27,25 +27,99 @@ pub enum FileKind {
     Ply,
     /// A mesh or points as text.
     Obj,
+    /// A point cloud, LAS or LAZ.
+    Las,
+    /// Scans.
+    E57,
     /// A scene file.
     Toml,
     /// A picture.
     Exr,
 }
 
-/// Reads the model at `path`: OBJ by its extension, PLY otherwise. Its texture is not read, see
-/// [`crate::io::texture::paint`]. The options are for a PLY.
+/// Reads the model at `path` by its extension; without a known one, as a PLY. Its texture is not
+/// read, see [`crate::io::texture::paint`]. An OBJ takes no options, and an E57 no colour range.
 ///
 /// # Errors
-/// As [`obj::read`] and [`ply::read_with`].
+/// As [`obj::read`], [`las::read`], `e57::read` and [`ply::read_with`].
 pub fn read_model(path: &Path, options: &ReadOptions, exec: &Exec) -> Result<Cloud> {
     match FileKind::from_extension(path) {
         Ok(FileKind::Obj) => obj::read(path),
-        _ => ply::read_with(path, options, exec),
+        Ok(FileKind::Las) => las::read(path, options),
+        Ok(FileKind::E57) => e57(path, options),
+        Ok(FileKind::Ply | FileKind::Toml | FileKind::Exr) | Err(_) => {
+            ply::read_with(path, options, exec)
+        }
     }
 }
 
+#[cfg(feature = "cli")]
+fn e57(path: &Path, options: &ReadOptions) -> Result<Cloud> {
+    crate::io::e57::read(path, options)
+}
+
+#[cfg(not(feature = "cli"))]
+fn e57(path: &Path, _: &ReadOptions) -> Result<Cloud> {
+    Err(Error::format(path, "E57 is read with the feature `cli` of this crate only"))
+}
+
+/// Gives the cloud that [`read_model`] read from `path` exactly the further properties with these
+/// names, in this order.
+///
+/// # Errors
+/// [`Error::Format`] as [`ply::properties`] for a PLY; for other files, if they have no such
+/// property.
+pub fn read_properties(path: &Path, names: &[String], cloud: &mut Cloud) -> Result<()> {
+    let there = std::mem::take(&mut cloud.properties);
+    cloud.properties = match FileKind::from_extension(path) {
+        Ok(FileKind::Obj | FileKind::Las | FileKind::E57) => {
+            names.iter().map(|name| named(path, name, &there)).collect::<Result<_>>()?
+        }
+        Ok(FileKind::Ply | FileKind::Toml | FileKind::Exr) | Err(_) => {
+            ply::properties(path, names)?
+        }
+    };
+    Ok(())
+}
+
+/// The property with this name.
+fn named(path: &Path, name: &str, there: &[Property]) -> Result<Property> {
+    let found = there.iter().find(|property| property.name == name).cloned();
+    found.ok_or_else(|| {
+        let all: Vec<&str> = there.iter().map(|property| property.name.as_str()).collect();
+        let all = if all.is_empty() { "no properties".into() } else { all.join(", ") };
+        let name = name.escape_debug();
+        Error::format(path, format!("there is no property `{name}`; the file has {all}"))
+    })
+}
+
+/// The number of each point by which [`Source::File`] colours a model: a coordinate of the file for
+/// `x`, `y` and `z`, otherwise a property of the cloud that [`read_model`] read from `path`. Also
+/// what is to be added to the numbers.
+///
+/// # Errors
+/// [`Error::Format`] if there is no such number.
+pub(super) fn read_number(path: &Path, name: &str, cloud: &Cloud) -> Result<(Vec<f32>, f64)> {
+    if let Some(axis) = ["x", "y", "z"].iter().position(|axis| *axis == name) {
+        return Ok((cloud.position.iter().map(|p| p[axis]).collect(), cloud.offset[axis]));
+    }
+    let property = match FileKind::from_extension(path) {
+        Ok(FileKind::Obj | FileKind::Las | FileKind::E57) => named(path, name, &cloud.properties)?,
+        Ok(FileKind::Ply | FileKind::Toml | FileKind::Exr) | Err(_) => ply::number(path, name)?,
+    };
+    Ok((property.values, 0.0))
+}
+
 impl FileKind {
+    /// Whether files of this kind hold a model.
+    #[must_use]
+    pub fn is_model(self) -> bool {
+        match self {
+            Self::Ply | Self::Obj | Self::Las | Self::E57 => true,
+            Self::Toml | Self::Exr => false,
+        }
+    }
+
     /// The kind of the file at `path`.
     ///
     /// # Errors
@@ -54,13 +128,15 @@ impl FileKind {
         match extension(path).as_deref() {
             Some("ply") => Ok(Self::Ply),
             Some("obj") => Ok(Self::Obj),
+            Some("las" | "laz") => Ok(Self::Las),
+            Some("e57") => Ok(Self::E57),
             Some("toml") => Ok(Self::Toml),
             Some("exr") => Ok(Self::Exr),
             _ => Err(Error::Usage(match input::no_file(path) {
                 Some(what) => format!("{}: {what}", path.display()),
                 None => format!(
-                    "{}: unknown kind of file; give a .ply, an .obj, a scene .toml, an .exr, or a \
-                     shape: {}",
+                    "{}: unknown kind of file; give a .ply, .obj, .las, .laz or .e57, a scene \
+                     .toml, an .exr, or a shape: {}",
                     path.display(),
                     shapes()
                 ),
@@ -82,7 +158,7 @@ impl Source {
 }
 
 impl SceneFile {
-    /// Opens a scene by its name: a shape, `tree`, a .ply, an .obj, a scene .toml or the folder of
+    /// Opens a scene by its name: a shape, `tree`, a file of a model, a scene .toml or the folder of
     /// a [hierarchy](crate::io::hierarchy). This example gets from a name to a picture in memory:
     /// ```
     /// use splatref::frame::{Exec, Samples};
@@ -114,13 +190,16 @@ impl SceneFile {
             return Ok(Self::of_hierarchy(path));
         }
         match FileKind::from_extension(path)? {
-            FileKind::Ply | FileKind::Obj => Ok(Self::of_model(Source::File {
-                path: path.to_owned(),
-                radius: None,
-                prefix: None,
-                texture: None,
-                color_range: None,
-            })),
+            FileKind::Ply | FileKind::Obj | FileKind::Las | FileKind::E57 => {
+                Ok(Self::of_model(Source::File {
+                    path: path.to_owned(),
+                    radius: None,
+                    prefix: None,
+                    texture: None,
+                    color_range: None,
+                    color_by: None,
+                }))
+            }
             FileKind::Toml => Self::read(path),
             FileKind::Exr => Err(Error::Usage(format!(
                 "{}: an EXR is a picture, not a scene; `splatref info` describes it",

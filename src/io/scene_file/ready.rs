@@ -2,7 +2,7 @@
 
 use super::camera::CameraPath;
 use super::model::Purpose;
-use super::{Loaded, Number, OutputSettings, SceneFile};
+use super::{Loaded, Model, Number, OutputSettings, SceneFile};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::grouping::Grouping;
@@ -47,6 +47,30 @@ impl SceneFile {
     pub fn ready(&self, exec: &Exec, progress: Progress<'_>) -> Result<Ready> {
         self.check_drawing()?;
         self.placed(self.load_for(Purpose::View, exec, progress)?, exec, progress)
+    }
+
+    /// Says what was chosen, but changes no picture of the method: one line each.
+    ///
+    /// # Errors
+    /// As [`MethodChoice::method`](super::MethodChoice::method).
+    pub fn without_effect(&self) -> Result<Vec<String>> {
+        let method = self.method.method()?;
+        let (scene, name) = (&self.name, method.name());
+        let mut all = Vec::new();
+        if !self.groups.settings.is_empty() && method.grouping().is_none() {
+            all.push(format!(
+                "{scene}: [groups] has no effect, because the method {name} draws no groups; remove it, \
+                 or choose another method"
+            ));
+        }
+        let has_levels = |model: &Model| model.mipmaps.is_some_and(|levels| levels > 0);
+        if self.all_models().any(has_levels) && !matches!(method, Method::Deferred(_)) {
+            all.push(format!(
+                "{scene}: mipmaps have no effect, because the method {name} draws none; remove them, or \
+                 choose the method deferred"
+            ));
+        }
+        Ok(all)
     }
 
     /// Finds the errors of a frame that need no loaded scene.

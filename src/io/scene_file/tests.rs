@@ -59,7 +59,8 @@ fn the_example_says_what_it_says() {
             radius: Some(0.002),
             prefix: Some(10_000),
             texture: None,
-            color_range: None
+            color_range: None,
+            color_by: None
         }
     );
     assert_eq!(bunny.color, Some(Vec3::new(0.75, 0.5, 0.25)));
@@ -379,6 +380,7 @@ fn errors_of_models_name_their_file() {
         prefix: None,
         texture: None,
         color_range: None,
+        color_by: None,
     });
     let error = missing.load(&Exec::sequential(), &|_, _, _| ()).unwrap_err();
     assert!(error.to_string().starts_with("no/such.ply: "), "{error}");
@@ -396,6 +398,7 @@ fn errors_of_models_name_their_file() {
         prefix: None,
         texture: None,
         color_range: None,
+        color_by: None,
     });
     let error = lone.load(&Exec::sequential(), &|_, _, _| ()).unwrap_err();
     assert!(error.to_string().starts_with(&path.display().to_string()), "{error}");

@@ -1,6 +1,7 @@
 //! Check the meanings of stored depths.
 
 use super::*;
+use crate::frame::Plane;
 
 /// The depths of a plane of one row of raw numbers, and their storage.
 fn depths(bytes: &[u8], count: usize, keys: &str) -> (Vec<f64>, Storage) {
@@ -128,4 +129,64 @@ fn what_is_said_of_all_depths_holds_where_a_plane_says_nothing() {
     assert_eq!(scalars(&client, "Z"), [2.0, 1.0, 0.5, INF]);
     assert_eq!(scalars(&client, "visibility.Z"), [4.0, 2.0, 1.0, INF]);
     assert_eq!(scalars(&client, "weight"), [0.25, 0.5, 1.0, 0.0]);
+}
+
+/// Depths come back from every convention and file, within what its storage may lose.
+#[cfg(feature = "cli")]
+#[test]
+fn what_is_written_is_read_again() {
+    let all = [0.75, INF, 1.0, 3.5, 1.9990234375, INF];
+    let plane = Plane::from_values(3, 2, all.map(|t| t as f32).to_vec());
+    for (file, text) in [
+        (DepthFile::Npy, "t"),
+        (DepthFile::Png, "t,1000"),
+        (DepthFile::Npy, "1/t"),
+        (DepthFile::Npy, "near/t,0.5"),
+        (DepthFile::Png, "near/t,0.5"),
+        (DepthFile::Npy, "z-buffer,0.5,4"),
+        (DepthFile::Png, "z-buffer,0.5,inf"),
+        (DepthFile::Npy, "reversed-z,0.5,inf"),
+        (DepthFile::Png, "reversed-z,0.5,100"),
+        (DepthFile::Npy, "linear,0,4"),
+        (DepthFile::Png, "linear,4,0.5"),
+    ] {
+        let at = tempfile::tempdir().unwrap();
+        let place = |end: &str| at.path().join(format!("a \"b\".depth.{end}"));
+        let ewa = Method::by_name("ewa").unwrap();
+        let convention = DepthConvention::parse(file, text).unwrap();
+        convention.write(&place(file.extension()), &place("toml"), &plane).unwrap();
+        let client = read(&place("toml"), ewa.stages(), [3, 2], &Exec::sequential());
+        let client = client.unwrap_or_else(|error| panic!("{text}: {error}"));
+        let storage = client.storage("Z");
+        for (found, t) in scalars(&client, "Z").into_iter().zip(all) {
+            let near = found == t || (found - t).abs() <= storage.radius(t);
+            assert!(near, "{text} in {}: {found} for {t}", file.extension());
+        }
+    }
+}
+
+#[test]
+fn conventions_and_depths_without_numbers_are_refused() {
+    for (file, text, what) in [
+        (DepthFile::Png, "t", "give t,SCALE, the codes for each world unit"),
+        (DepthFile::Npy, "t,1000", "give t alone"),
+        (DepthFile::Npy, "z", "give one of t, 1/t, near/t"),
+        (DepthFile::Npy, "z-buffer,0.1", "give z-buffer,NEAR,FAR"),
+        (DepthFile::Npy, "z-buffer,2,1", "near = 2 and far = 1 are impossible"),
+        (DepthFile::Npy, "linear,x,1", "`x` is not a number"),
+        (DepthFile::Png, "t,0", "a scale of 0"),
+    ] {
+        let found = DepthConvention::parse(file, text).unwrap_err();
+        assert!(found.contains(what), "{found}");
+    }
+    let at = tempfile::tempdir().unwrap();
+    let [path, toml] = ["z.png", "z.toml"].map(|name| at.path().join(name));
+    // Beyond the codes, and with the code of an empty pixel.
+    for (text, t) in [("t,1000", 66.0), ("t,1000", 0.0001), ("linear,0,4", 4.0), ("1/t", 0.5)] {
+        let plane = Plane::filled(1, 1, t);
+        let convention = DepthConvention::parse(DepthFile::Png, text).unwrap();
+        let found = convention.write(&path, &toml, &plane).unwrap_err().to_string();
+        assert!(found.contains(&format!("a depth of {t} cannot be told apart")), "{found}");
+        assert!(!path.exists() && !toml.exists());
+    }
 }

@@ -171,30 +171,65 @@ fn options_of_textures_are_read() {
         warnings,
         [
             "material `a`: -bm 1, -clamp on, -imfchan r, -mm 0 2, -texres 64, -t 1, -what x, -boost 2 is \
-          not read; surfaces stay opaque"
+          not read"
         ]
     );
 }
 
 #[test]
-fn opacity_is_said() {
+fn lines_that_are_not_read_are_said() {
     let of = |lines: &str| {
         let obj = format!("mtllib a.mtl\n{SQUARE}usemtl a\nf 1 2 3\n");
         beside(&obj, &format!("d 1\nnewmtl a\nKd 1 0 0\n{lines}newmtl b\nd 0.5\n"))
             .unwrap()
             .warnings
     };
-    for opaque in ["d 1\n", "d 1.000\nTr 0\n", "Tr 0.0 # x\n", ""] {
-        assert!(of(opaque).is_empty(), "{opaque}");
+    for read in ["d 1\n", "d 0.5\nTr 0\n", "Tr 0.0 # x\n", ""] {
+        assert!(of(read).is_empty(), "{read}");
     }
     for (lines, what) in [
-        ("d 0.5\nd 0.25\n", "d"),
-        ("Tr 1\n", "Tr"),
+        ("d 1.5\nTr 1 1 1\n", "d, Tr"),
         ("d -halo 0.5\n", "d"),
         ("map_d x.png\nd\n", "map_d, d"),
         ("Kd xyz 1 1 1\n", "Kd xyz"),
         ("Kd spectral a.rfl 1\n", "Kd spectral"),
     ] {
-        assert_eq!(of(lines), [format!("material `a`: {what} is not read; surfaces stay opaque")]);
+        assert_eq!(of(lines), [format!("material `a`: {what} is not read")]);
     }
+}
+
+/// The opacity of a material is that of its points, beside colours of any origin.
+#[test]
+fn opacities_of_materials_reach_the_points() {
+    let two = |mtl: &str, color: &str| {
+        let points = format!("v 0 0 0{color}\nv 1 0 0{color}\nv 1 1 0{color}\nv 0 1 0{color}\n");
+        let obj = format!("mtllib a.mtl\n{points}usemtl a\nf 1 2 3\nusemtl b\nf 1 3 4\n");
+        beside(&obj, mtl).unwrap()
+    };
+    let opacities = |cloud: &Cloud| {
+        let of = |triangle: &[u32; 3]| cloud.opacity.as_ref().map(|all| all[triangle[1] as usize]);
+        cloud.triangles.iter().map(of).collect::<Vec<_>>()
+    };
+    for (a, b, expected) in [
+        ("d 0.5", "", [0.5, 1.0]),
+        ("Tr 0.75", "d 1", [0.25, 1.0]),
+        ("Tr 0.75\nd 0.5", "d 0\nTr 0", [0.5, 0.0]),
+        ("Tr 1", "d 0.125", [1.0, 0.125]),
+    ] {
+        let mtl = format!("newmtl a\nKd 1 0 0\n{a}\nnewmtl b\nKd 1 0 0\n{b}\n");
+        for color in ["", " 1 0 0"] {
+            let cloud = two(&mtl, color);
+            assert_eq!(opacities(&cloud), expected.map(Some), "{a}");
+            assert_eq!(cloud.position.len(), 6, "the corners of both are two points");
+            assert_eq!(cloud.color, Some(vec![Vec3::X; 6]));
+            assert_eq!(cloud.warnings, [""; 0]);
+        }
+        let plain = two(&mtl.replace("Kd 1 0 0\n", ""), "");
+        assert_eq!((opacities(&plain), plain.color), (expected.map(Some).to_vec(), None));
+    }
+    let opaque = two("newmtl a\nd 1\nTr 0\nnewmtl b\n", "");
+    assert_eq!((opaque.opacity, opaque.position.len()), (None, 4));
+    let doubted = two("newmtl a\nd -halo 0.5\nmap_d x.png\nTr 2\nnewmtl b\n", "");
+    assert_eq!(doubted.opacity, None);
+    assert_eq!(doubted.warnings, ["material `a`: d, map_d, Tr is not read"]);
 }

@@ -259,6 +259,7 @@ fn a_tree_is_a_shape_of_leaves() {
             surfels: 0,
             primitives: primitives.counts(),
             derived: None,
+            colored: None,
         };
         assert_eq!((models, dropped_primitives), (vec![report], 0));
     }

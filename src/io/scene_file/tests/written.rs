@@ -56,6 +56,7 @@ fn paths_lead_from_the_file_to_the_same_place() {
             prefix: None,
             texture: None,
             color_range: None,
+            color_by: None,
         })
     };
     let first = |file: &SceneFile, to: &Path| {
@@ -75,8 +76,14 @@ fn paths_lead_from_the_file_to_the_same_place() {
 fn what_toml_cannot_say_is_refused() {
     use std::os::unix::ffi::OsStrExt;
     let path = Path::new(std::ffi::OsStr::from_bytes(b"\xff.ply")).to_owned();
-    let source =
-        Source::File { path, radius: None, prefix: None, texture: None, color_range: None };
+    let source = Source::File {
+        path,
+        radius: None,
+        prefix: None,
+        texture: None,
+        color_range: None,
+        color_by: None,
+    };
     let error = SceneFile::of_model(source).text(Path::new("scene.toml")).unwrap_err().to_string();
     assert!(!error.contains('\n') && error.contains("TOML"), "{error}");
 }

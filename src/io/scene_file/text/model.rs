@@ -22,6 +22,7 @@ pub(super) struct RawModel {
     prefix: Option<usize>,
     texture: Option<PathBuf>,
     color_range: Option<f64>,
+    color_by: Option<String>,
     draw: Option<String>,
     split: Option<Exactly<f64, 4>>,
     shape: Option<String>,
@@ -109,14 +110,17 @@ impl RawModel {
 
     fn of_source(source: &Source, place: &Folder) -> Self {
         match *source {
-            Source::File { ref path, radius, prefix, ref texture, color_range } => Self {
-                file: Some(place.path(path)),
-                radius,
-                prefix,
-                texture: texture.as_deref().map(|texture| place.path(texture)),
-                color_range,
-                ..Self::default()
-            },
+            Source::File { ref path, radius, prefix, ref texture, color_range, ref color_by } => {
+                Self {
+                    file: Some(place.path(path)),
+                    radius,
+                    prefix,
+                    texture: texture.as_deref().map(|texture| place.path(texture)),
+                    color_range,
+                    color_by: color_by.clone(),
+                    ..Self::default()
+                }
+            }
             Source::Tree { leaves, seed } => Self {
                 shape: Some(TREE.into()),
                 leaves: Some(leaves),
@@ -160,7 +164,8 @@ impl RawModel {
                         "color_range is {range}; give the code of white, such as 255"
                     ));
                 }
-                Ok(Source::File { path, radius, prefix, texture: self.texture.take(), color_range })
+                let (texture, color_by) = (self.texture.take(), self.color_by.take());
+                Ok(Source::File { path, radius, prefix, texture, color_range, color_by })
             }
             (None, Some(name)) if name == TREE => {
                 let leaves = self.leaves.take().unwrap_or(plant::LEAVES);
@@ -186,6 +191,7 @@ impl RawModel {
             ("prefix", self.prefix.is_some()),
             ("texture", self.texture.is_some()),
             ("color_range", self.color_range.is_some()),
+            ("color_by", self.color_by.is_some()),
             ("square", self.square.is_some()),
             ("gap", self.gap.is_some()),
             ("step", self.step.is_some()),
