@@ -141,6 +141,7 @@
 //! - `f16`: 2^-10 v, at least 2^-18;
 //! - `f32`: 2^-18 v, at least 2^-18, because shading languages compute the power inexactly.
 
+mod arrays;
 mod convert;
 mod files;
 mod format;
@@ -155,6 +156,8 @@ mod straight;
 #[cfg(test)]
 mod tests;
 mod wanted;
+
+pub use arrays::Array;
 
 use crate::error::{Error, Result};
 use crate::frame::Exec;

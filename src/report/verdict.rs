@@ -1,58 +1,71 @@
 //! Prints a verdict in about ten lines, or as JSON.
 
-use crate::cli::report::short;
+mod page;
+
+use super::short;
+use crate::error::{Error, Result};
+use crate::frame::Plane;
+use crate::method::Session;
+use crate::scene::Camera;
+use crate::setting::Word;
+use crate::verdict::client::Client;
+use crate::verdict::shift::{LIMITS, Shift};
+use crate::verdict::{Doubt, Fault, Finding, Outcome, StageVerdict, Unlike, Verdict};
 use serde::{Deserialize, Serialize};
-use splatref::Result;
-use splatref::frame::Plane;
-use splatref::method::Session;
-use splatref::scene::Camera;
-use splatref::setting::Word;
-use splatref::verdict::client::Client;
-use splatref::verdict::shift::{LIMITS, Shift};
-use splatref::verdict::{Doubt, Fault, Finding, Outcome, StageVerdict, Unlike, Verdict};
+use std::fmt;
 
 /// A verdict, with what its report shows beside it.
-pub(in crate::cli) struct Seen<'a> {
-    pub(super) verdict: &'a Verdict,
+pub struct VerdictReport<'a> {
+    verdict: &'a Verdict,
+    client: &'a Client,
     method: &'static str,
-    pub(super) likely: Option<String>,
+    likely: Option<String>,
     /// The surfels with the largest weights at the worst pixel.
     heaviest: Vec<(u32, f64)>,
+    /// The command that explains a pixel.
+    replay: &'a (dyn Fn((u32, u32)) -> String + Sync),
 }
 
-/// Gives the command that explains a pixel.
-pub(in crate::cli) type Replay<'a> = &'a (dyn Fn((u32, u32)) -> String + Sync);
+impl fmt::Debug for VerdictReport<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        write!(f, "VerdictReport({})", self.ending())
+    }
+}
 
 /// How many surfels of a pixel are named.
 const NAMED: usize = 5;
 
-impl<'a> Seen<'a> {
-    pub(in crate::cli) fn new(
+impl<'a> VerdictReport<'a> {
+    /// A report on the verdict about a client. `likely` is the mistake that
+    /// [`likely_cause`](crate::verdict::causes::likely_cause) found, and `replay` gives the command
+    /// that explains a pixel.
+    ///
+    /// # Errors
+    /// As [`Session::weights`].
+    pub fn new(
         session: &Session<'_>,
         camera: &Camera,
-        (verdict, likely): (&'a Verdict, Option<String>),
+        (client, verdict, likely): (&'a Client, &'a Verdict, Option<String>),
+        replay: &'a (dyn Fn((u32, u32)) -> String + Sync),
     ) -> Result<Self> {
         let heaviest = match worst(verdict) {
             Some(worst) => session.weights(camera, worst.pixel)?,
             None => Vec::new(),
         };
-        Ok(Self { verdict, method: session.method().name(), likely, heaviest })
+        Ok(Self { verdict, client, method: session.method().name(), likely, heaviest, replay })
     }
 
     /// The lines of the report.
-    pub(super) fn lines(&self, replay: Replay<'_>, client: &Client) -> Vec<String> {
-        let facts = self.facts(replay, client).into_iter();
+    #[must_use]
+    pub fn lines(&self) -> Vec<String> {
+        let facts = self.facts().into_iter();
         let lines = facts.map(|(label, text)| format!("{label:<14} {text}"));
         lines.chain([self.ending()]).collect()
     }
 
     /// Labels and texts: the report without its last line.
-    pub(in crate::cli) fn facts(
-        &self,
-        replay: Replay<'_>,
-        client: &Client,
-    ) -> Vec<(String, String)> {
-        let Self { verdict, method, likely, heaviest } = self;
+    fn facts(&self) -> Vec<(String, String)> {
+        let Self { verdict, client, method, likely, heaviest, replay } = self;
         let mut lines = vec![labelled("client", planes(client, method))];
         let promise = format!("{}, {}", client.rounding.word(), client.rounding.promise());
         lines.push(labelled("promise", promise));
@@ -88,7 +101,8 @@ impl<'a> Seen<'a> {
     }
 
     /// The verdict in a sentence.
-    pub(super) fn ending(&self) -> String {
+    #[must_use]
+    pub fn ending(&self) -> String {
         let Verdict { undecided, covered, unbounded, budget, .. } = self.verdict;
         let share = |pixels: u64| 100.0 * pixels as f64 / (*covered).max(1) as f64;
         match self.verdict.outcome() {
@@ -116,8 +130,11 @@ impl<'a> Seen<'a> {
     }
 
     /// The report as JSON, for other programs.
-    pub(super) fn json(&self, replay: Replay<'_>, client: &Client) -> Result<String> {
-        let Self { verdict, method, likely, heaviest } = self;
+    ///
+    /// # Errors
+    /// [`Error::Invalid`] if the numbers cannot be written as JSON.
+    pub fn json(&self) -> Result<String> {
+        let Self { verdict, client, method, likely, heaviest, replay } = self;
         let json = Json {
             outcome: verdict.outcome().word(),
             method,
@@ -134,11 +151,11 @@ impl<'a> Seen<'a> {
             shifts: LIMITS.iter().zip(&verdict.shifts).map(JsonShift::new).collect(),
         };
         let text = serde_json::to_string_pretty(&json);
-        text.map(|text| text + "\n").map_err(|error| splatref::Error::Invalid(error.to_string()))
+        text.map(|text| text + "\n").map_err(|error| Error::Invalid(error.to_string()))
     }
 }
 
-fn labelled(label: &str, text: impl std::fmt::Display) -> (String, String) {
+fn labelled(label: &str, text: impl fmt::Display) -> (String, String) {
     (label.to_owned(), text.to_string())
 }
 
@@ -154,7 +171,7 @@ fn planes(client: &Client, method: &str) -> String {
 }
 
 /// A stage in words.
-pub(super) fn judged(stage: &StageVerdict) -> String {
+fn judged(stage: &StageVerdict) -> String {
     if stage.planes.is_empty() {
         return "not judged: none of its planes was handed in".into();
     }
@@ -187,7 +204,8 @@ pub(super) fn judged(stage: &StageVerdict) -> String {
 }
 
 /// The bias of the undecided decisions at a threshold, in words.
-pub(in crate::cli) fn leaning(limit: Doubt, shift: &Shift) -> String {
+#[must_use]
+pub fn leaning(limit: Doubt, shift: &Shift) -> String {
     let estimate = shift.estimate();
     format!(
         "{}: {} undecided decisions, as if the threshold were {:.1e} of itself too {}; z = {:.1}",
@@ -214,7 +232,8 @@ fn next(verdict: &Verdict) -> Option<String> {
 }
 
 /// The fields that a verdict as JSON has, and the fields of each of its stages.
-pub(in crate::cli) fn fields() -> [Vec<String>; 2] {
+#[must_use]
+pub fn fields() -> [Vec<String>; 2] {
     let keys = |value: serde_json::Result<serde_json::Value>| match value {
         Ok(serde_json::Value::Object(fields)) => fields.into_iter().map(|(key, _)| key).collect(),
         _ => Vec::new(),
@@ -244,10 +263,11 @@ struct Json<'a> {
 }
 
 /// The bias of the undecided decisions at a threshold; z and the estimate are for readers.
-#[derive(Serialize, Deserialize)]
+#[derive(Debug, Serialize, Deserialize)]
 #[serde(deny_unknown_fields)]
-pub(in crate::cli) struct JsonShift {
-    pub(in crate::cli) limit: String,
+pub struct JsonShift {
+    /// The name of the threshold.
+    pub limit: String,
     decisions: u64,
     score: f64,
     information: f64,
@@ -257,14 +277,17 @@ pub(in crate::cli) struct JsonShift {
 }
 
 impl JsonShift {
-    pub(in crate::cli) fn new((limit, shift): (&Doubt, &Shift)) -> Self {
+    /// The sums at a threshold.
+    #[must_use]
+    pub fn new((limit, shift): (&Doubt, &Shift)) -> Self {
         let Shift { decisions, score, information, variance } = *shift;
         let (z, estimate) = (shift.z(), shift.estimate());
         Self { limit: limit.name().into(), decisions, score, information, variance, z, estimate }
     }
 
     /// Whether a picture can have these sums.
-    pub(in crate::cli) fn is_possible(&self) -> bool {
+    #[must_use]
+    pub fn is_possible(&self) -> bool {
         let Self { score, information, variance, .. } = *self;
         score.is_finite()
             && (0.0..f64::INFINITY).contains(&information)
@@ -272,7 +295,8 @@ impl JsonShift {
     }
 
     /// The sums, to be added over pictures.
-    pub(in crate::cli) fn shift(&self) -> Shift {
+    #[must_use]
+    pub fn shift(&self) -> Shift {
         let Self { decisions, score, information, variance, .. } = *self;
         Shift { decisions, score, information, variance }
     }
@@ -294,8 +318,9 @@ impl JsonUnlike {
     }
 }
 
-#[derive(Serialize, Default)]
-pub(in crate::cli) struct JsonStage<'a> {
+/// The findings about a stage, as JSON.
+#[derive(Debug, Serialize, Default)]
+pub struct JsonStage<'a> {
     stage: &'static str,
     planes: &'a [&'static str],
     missing: &'a [String],
@@ -307,14 +332,14 @@ pub(in crate::cli) struct JsonStage<'a> {
 }
 
 /// A wrong pixel and its error in bounds.
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct JsonPixel {
     pixel: (u32, u32),
     error: f32,
 }
 
 /// How many pixels have errors in which range.
-#[derive(Serialize, Default)]
+#[derive(Debug, Serialize, Default)]
 struct JsonHistogram {
     /// The edges, ascending.
     edges: [f32; EDGES.len()],
@@ -323,7 +348,7 @@ struct JsonHistogram {
     counts: Vec<u64>,
 }
 
-#[derive(Serialize)]
+#[derive(Debug, Serialize)]
 struct JsonFinding {
     pixel: (u32, u32),
     error: f64,
@@ -334,7 +359,9 @@ struct JsonFinding {
 }
 
 impl<'a> JsonStage<'a> {
-    pub(in crate::cli) fn new(stage: &'a StageVerdict) -> Self {
+    /// The findings about a stage.
+    #[must_use]
+    pub fn new(stage: &'a StageVerdict) -> Self {
         let undecided = Doubt::ALL.map(|doubt| (doubt.name(), stage.doubtful(doubt as u8)));
         Self {
             stage: stage.stage,
