@@ -51,9 +51,13 @@ def _words(shape: tuple[Optional[int], ...]) -> str:
 def float32(name: str, value: object, shape: tuple[Optional[int], ...]) -> Array:
     """An array of float32 with this shape, in any order in memory; `None` stands for any side.
 
-    Other types are taken if each number is a float32, so that nothing is rounded unseen.
+    Other types are taken if each number is a float32, so that nothing is rounded unseen. Lists of
+    Python have no type of their own: they are rounded once, as numbers of a scene file are.
     """
     array = as_array(name, value)
+    if isinstance(value, (list, tuple)) and array.dtype == np.float64:
+        with np.errstate(all="ignore"):
+            array = array.astype(np.float32)
     if not _fits(array, shape):
         raise ValueError(f"{name}: an array with the shape {array.shape}; give {_words(shape)}")
     if array.dtype.kind == "b":

@@ -208,7 +208,8 @@ class Scene:
     environment: "sky" or the name of a latitude-longitude .exr.
     name: in reports and files.
 
-    float32 arrays of any strides are copied once; other types are taken if each number is a float32.
+    float32 arrays of any strides are copied once; arrays of other types are taken if each number is a
+    float32, and lists are rounded once.
     Arrays are never changed, and later changes of them do not change the scene.
 
     Raises `ValueError`, which names the array, and `MemoryError`.

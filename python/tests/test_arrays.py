@@ -48,6 +48,7 @@ def test_layouts_and_types_that_lose_nothing_give_the_same_bits(expected: np.nda
     ]:
         assert np.array_equal(drawn(**{**a, "positions": other}), expected)
     assert np.array_equal(drawn(**{**a, "radii": float(a["radii"][0])}), expected), "one radius for all"
+    assert sr.Scene([[0.1, 0, 0]], normals=[[0, 0, 1]], radii=0.1).median_radius == np.float32(0.1), "lists round"
     assert np.array_equal(drawn(**{**a, "radii": np.broadcast_to(a["radii"][0], 500)}), expected), "stride 0"
 
 
