@@ -37,6 +37,18 @@ def as_array(name: str, value: object) -> Array:
     return array
 
 
+def packed(array: Array, dtype: npt.DTypeLike = None) -> Array:
+    """The array without gaps, aligned and in the byte order of the machine: as Rust takes it."""
+    wanted = np.dtype(dtype if dtype is not None else array.dtype).newbyteorder("=")
+    found: Array = np.require(array, wanted, ["C_CONTIGUOUS", "ALIGNED"])
+    return found
+
+
+def _ask(size: int, what: str) -> None:
+    """Raises `ValueError` if the process may not hold so many bytes more: arrays may claim anything."""
+    _splatref.ask(min(size, (1 << 63) - 1), what)
+
+
 def _fits(array: Array, shape: tuple[Optional[int], ...]) -> bool:
     return array.ndim == len(shape) and all(
         wanted is None or wanted == side for side, wanted in zip(array.shape, shape)
@@ -64,7 +76,7 @@ def float32(name: str, value: object, shape: tuple[Optional[int], ...]) -> Array
         raise ValueError(f"{name}: an array of bool with the shape {array.shape}; give float32 {_words(shape)}")
     if array.dtype == np.float32 and array.dtype.isnative and array.flags.aligned:
         return array
-    _splatref.ask(array.size * 4, f"a copy of {name}")
+    _ask(array.size * 4, f"a copy of {name}")
     copy = np.empty(array.shape, np.float32)
     rows = max(1, _CHUNK // max(1, array.size // max(1, len(array))))
     for first in range(0, len(array), rows):
@@ -107,9 +119,10 @@ def indices(name: str, value: object, count: int) -> Array:
         raise ValueError(
             f"{name}: an array of {array.dtype} with the shape {array.shape}; give whole numbers of the shape (n,)"
         )
+    _ask(array.size * 4, f"a copy of {name}")
     if array.size and (int(array.min()) < 0 or int(array.max()) >= count):
         raise ValueError(f"{name}: indices from {array.min()} to {array.max()}, but there are {count} points")
-    return np.ascontiguousarray(array, dtype=np.uint32)
+    return packed(array, dtype=np.uint32)
 
 
 _FORMATS = {"f2": "f16", "f4": "f32", "f8": "f32", "u1": "u8", "b1": "u8", "u2": "u16", "u4": "u32", "i4": "i32"}
@@ -138,36 +151,37 @@ def plane(name: str, value: object) -> Array:
 def stored_plane(name: str, value: object) -> tuple[Array, str]:
     """The numbers of a plane as float64, and the format that they were stored in."""
     array = plane(name, value)
-    _splatref.ask(array.size * 32, f"the plane {name}")
+    _ask(array.size * 32, f"the plane {name}")
     kind = array.dtype.kind + str(array.dtype.itemsize)
     if kind in ("i1", "i2"):
-        return np.ascontiguousarray(array, dtype=np.float64), "i32"
+        return packed(array, dtype=np.float64), "i32"
     if kind in ("i8", "u8"):
         low, high = int(array.min()), int(array.max())
         if low < -1 or high > 0xFFFF_FFFF:
             raise ValueError(f"{name}: whole numbers from {low} to {high}; give numbers of 32 bits, or -1")
         if low == -1 and high < 1 << 31:
-            return np.ascontiguousarray(array, dtype=np.float64), "i32"
-        numbers = np.ascontiguousarray(array, dtype=np.float64)
+            return packed(array, dtype=np.float64), "i32"
+        numbers = packed(array, dtype=np.float64)
         # As a file of 32 bits has -1: all bits set.
         return np.where(numbers == -1, np.float64(0xFFFF_FFFF), numbers), "u32"
     if kind not in _FORMATS:
         raise ValueError(f"{name}: an array of {array.dtype} with the shape {array.shape}; give float16, float32 or float64")
-    return np.ascontiguousarray(array, dtype=np.float64), _FORMATS[kind]
+    return packed(array, dtype=np.float64), _FORMATS[kind]
 
 
 def picture_plane(name: str, value: object) -> Array:
     """A plane of a picture to compare or write: float32, uint32 or uint8 as pictures have them."""
     array = plane(name, value)
+    _ask(array.size * 8, f"a copy of {name}")
     if array.dtype.kind == "f":
         if array.dtype == np.float64 and array.dtype.isnative:
             # Pictures of f64 are rounded once, as files hold them.
-            return np.ascontiguousarray(array)
-        return np.ascontiguousarray(float32(name, array, array.shape))
+            return packed(array)
+        return packed(float32(name, array, array.shape))
     if array.ndim == 3:
         raise ValueError(f"{name}: an array of {array.dtype} with the shape {array.shape}; colours and vectors are floats")
     if array.dtype == np.uint8:
-        return np.ascontiguousarray(array)
+        return packed(array)
     numbers, _ = stored_plane(name, array)
     whole = np.where(numbers == -1, np.float64(0xFFFF_FFFF), numbers)
     if whole.min() < 0:

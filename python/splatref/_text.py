@@ -10,6 +10,10 @@ from typing import Any, Mapping, Optional
 import numpy as np
 
 from . import _splatref
+from ._arrays import as_array
+
+# The most numbers of a setting or a key; arrays may claim billions.
+_MOST = 4096
 
 ROWS: list[dict[str, Any]] = _splatref.rows()
 _BY_NAME = {row["name"]: row for row in ROWS}
@@ -28,6 +32,12 @@ def _number(value: object) -> Optional[str]:
     return None
 
 
+def _short(value: object) -> str:
+    """A value in an error."""
+    text = repr(value)
+    return text if len(text) <= 200 else f"{text[:200]} ..."
+
+
 def setting(name: str, value: object) -> str:
     """A value of a setting as the command line has it."""
     number = _number(value)
@@ -44,11 +54,11 @@ def setting(name: str, value: object) -> str:
         if sorted(value) != sorted(parts):
             raise ValueError(f"{name}={value!r}; give {', '.join(parts)}")
         return ",".join(setting(name, value[part]) for part in parts)
-    if isinstance(value, (list, tuple, np.ndarray)):
+    if isinstance(value, (list, tuple, np.ndarray)) and np.size(value) <= _MOST:
         numbers = [_number(one) for one in value]
         if all(one is not None for one in numbers):
             return ",".join(one for one in numbers if one is not None)
-    raise ValueError(f"{name}={value!r}; give {_BY_NAME[name]['form']}")
+    raise ValueError(f"{name}={_short(value)}; give {_BY_NAME[name]['form']}")
 
 
 @dataclass
@@ -85,11 +95,14 @@ def toml(name: str, value: object) -> str:
     if isinstance(value, Mapping):
         parts = (f"{json.dumps(str(key))} = {toml(name, one)}" for key, one in value.items())
         return "{ " + ", ".join(parts) + " }"
-    if isinstance(value, np.ndarray) or hasattr(value, "__array__"):
-        value = np.asarray(value).tolist()
-    if isinstance(value, (list, tuple)):
+    if hasattr(value, "__array__"):
+        array = as_array(name, value)
+        if array.size > _MOST:
+            raise ValueError(f"{name}: an array with the shape {array.shape}; give a few numbers")
+        value = array.tolist()
+    if isinstance(value, (list, tuple)) and len(value) <= _MOST:
         return "[" + ", ".join(toml(name, one) for one in value) + "]"
-    raise ValueError(f"{name}={value!r}; give numbers, text, or a list or table of them")
+    raise ValueError(f"{name}={_short(value)}; give numbers, text, or a list or table of them")
 
 
 def table(header: str, values: Mapping[str, object]) -> str:

@@ -12,7 +12,7 @@ from typing import Mapping, Optional, Union
 import numpy as np
 
 from . import _splatref
-from ._arrays import Array, picture_plane
+from ._arrays import Array, packed, picture_plane
 from ._call import calling
 from ._compare import planes_of
 from ._picture import listed
@@ -63,7 +63,7 @@ def ssim(picture: Colors, reference: Colors) -> float:
     total = 0.0
     for i in range(3):
         with calling(False) as how:
-            one = _splatref.ssim(how, np.ascontiguousarray(first[..., i]), np.ascontiguousarray(second[..., i]))
+            one = _splatref.ssim(how, packed(first[..., i]), packed(second[..., i]))
         if one is None:
             raise ValueError(f"picture: the shape {first.shape} is too small for SSIM; give 11 pixels a side or more")
         total += float(one)

@@ -2,19 +2,42 @@
 
 use crate::error::{memory, raised, value};
 use glam::Vec3;
-use numpy::ndarray::{ArrayViewD, Axis};
-use numpy::{Element, IntoPyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2};
+use numpy::ndarray::{ArrayViewD, Axis, Dimension};
+use numpy::{
+    Element, IntoPyArray, PyArray, PyArrayDyn, PyArrayMethods, PyReadonlyArray1, PyReadonlyArray2,
+    PyUntypedArrayMethods,
+};
 use pyo3::prelude::*;
 use splatref::frame::{Frame, Image, NamedPlane, Plane, Samples};
 
+/// A vector with room for so many values. An array may claim more numbers than there is memory.
+fn room<T>(count: usize) -> PyResult<Vec<T>> {
+    let bytes = (count as u64).saturating_mul(size_of::<T>() as u64);
+    splatref::memory::ask(bytes, || format!("a copy of {count} values")).map_err(raised)?;
+    let mut all = Vec::new();
+    all.try_reserve_exact(count).map_err(memory)?;
+    Ok(all)
+}
+
+/// Refuses an array whose numbers lie across the borders of their type: Rust reads no such numbers.
+/// The modules of Python align arrays, so that this is a mistake of theirs.
+pub(crate) fn check<T: Element, D: Dimension>(array: &Bound<'_, PyArray<T, D>>) -> PyResult<()> {
+    let aligned = |stride: &isize| stride.unsigned_abs() % align_of::<T>() == 0;
+    let strides = array.strides();
+    if array.data().is_aligned() && strides.iter().all(aligned) {
+        return Ok(());
+    }
+    Err(value("an array is not aligned; give a copy of it"))
+}
+
 /// Points or colours, n x 3.
 pub(crate) fn vectors(array: &PyReadonlyArray2<'_, f32>) -> PyResult<Vec<Vec3>> {
+    check(array)?;
     let array = array.as_array();
     if array.ncols() != 3 {
         return Err(value("vectors have three components"));
     }
-    let mut all = Vec::new();
-    all.try_reserve_exact(array.nrows()).map_err(memory)?;
+    let mut all = room(array.nrows())?;
     match array.as_slice() {
         Some(numbers) => {
             all.extend(numbers.as_chunks::<3>().0.iter().map(|&v| Vec3::from_array(v)));
@@ -26,9 +49,9 @@ pub(crate) fn vectors(array: &PyReadonlyArray2<'_, f32>) -> PyResult<Vec<Vec3>> 
 
 /// Numbers, one a point.
 pub(crate) fn numbers<T: Element + Copy>(array: &PyReadonlyArray1<'_, T>) -> PyResult<Vec<T>> {
+    check(array)?;
     let array = array.as_array();
-    let mut all = Vec::new();
-    all.try_reserve_exact(array.len()).map_err(memory)?;
+    let mut all = room(array.len())?;
     all.extend(array.iter().copied());
     Ok(all)
 }
@@ -76,16 +99,20 @@ fn name_in_python(name: &str, is_color: bool) -> String {
 fn samples(name: &str, array: &Bound<'_, PyAny>) -> PyResult<Samples<f32>> {
     let (_, is_color) = name_of(name);
     if let Ok(array) = array.cast::<PyArrayDyn<f32>>() {
+        check(array)?;
         return floats(array.try_readonly()?.as_array(), is_color, |v| v);
     }
     if let Ok(array) = array.cast::<PyArrayDyn<f64>>() {
+        check(array)?;
         // As files hold pictures of f64: rounded once.
         return floats(array.try_readonly()?.as_array(), is_color, |v| v as f32);
     }
     if let Ok(array) = array.cast::<PyArrayDyn<u32>>() {
+        check(array)?;
         return Ok(Samples::Index(whole(array.try_readonly()?.as_array())?));
     }
     if let Ok(array) = array.cast::<PyArrayDyn<u8>>() {
+        check(array)?;
         return Ok(Samples::Count(whole(array.try_readonly()?.as_array())?));
     }
     Err(value(&format!("{name}: a plane holds float32, float64, uint32 or uint8")))

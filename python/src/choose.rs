@@ -69,13 +69,16 @@ pub(crate) struct Choices {
     frame: Option<u32>,
 }
 
+/// Reads a value of a row; `None` if there is no such row.
+type Read<'a> = &'a dyn Fn(&str) -> Option<Result<Value, String>>;
+
 /// Sorts the settings into those of the method, of its groups, and of the picture.
 fn sorted(settings: &[(String, String)]) -> PyResult<[Choice; 3]> {
     let mut all = [Choice::default(), Choice::default(), Choice::default()];
     for (name, text) in settings {
         let read_of_method =
             |name: &str| Method::all().into_iter().find_map(|method| method.read(name, text));
-        let tables: [(Vec<Setting>, &dyn Fn(&str) -> Option<Result<Value, String>>); 3] = [
+        let tables: [(Vec<Setting>, Read<'_>); 3] = [
             (MethodChoice::rows(), &read_of_method),
             (GroupChoice::rows(), &|name| GroupChoice::ALONE.read(name, text)),
             (OutputSettings::rows(), &|name| OutputSettings::default().read(name, text)),

@@ -1,6 +1,6 @@
 //! Comparisons of pictures, and metrics.
 
-use crate::arrays::{Planes, frame, image, scalar};
+use crate::arrays::{Planes, check, frame, image, scalar};
 use crate::call::{How, call};
 use crate::error::value;
 use numpy::PyReadonlyArray2;
@@ -20,8 +20,10 @@ fn tolerance((max_ulp, max_abs, pixels): Bounds) -> Tolerance {
     Tolerance { max_ulp, max_abs, pixels }
 }
 
-/// Compares the planes of two pictures: the verdict, the lines of the report, and a dictionary for
-/// each channel.
+/// The verdict, the lines of the report, and a dictionary for each channel.
+type Compared<'py> = (&'static str, Vec<String>, Vec<Bound<'py, PyDict>>);
+
+/// Compares the planes of two pictures.
 #[pyfunction]
 pub(crate) fn compare<'py>(
     py: Python<'py>,
@@ -30,7 +32,7 @@ pub(crate) fn compare<'py>(
     planes: Option<Vec<String>>,
     bounds: Bounds,
     named: Vec<(String, Bounds)>,
-) -> PyResult<(&'static str, Vec<String>, Vec<Bound<'py, PyDict>>)> {
+) -> PyResult<Compared<'py>> {
     let (first, second) = (image(&pair.0)?, image(&pair.1)?);
     let named = named.into_iter().map(|(name, bounds)| (name, tolerance(bounds)));
     let (named, tolerance) = (named.collect(), tolerance(bounds));
@@ -96,6 +98,8 @@ pub(crate) fn ssim(
     first: PyReadonlyArray2<'_, f32>,
     second: PyReadonlyArray2<'_, f32>,
 ) -> PyResult<Option<f64>> {
+    check(&first)?;
+    check(&second)?;
     let width = first.as_array().ncols();
     if first.as_array().shape() != second.as_array().shape() {
         return Err(value("two planes of one size are compared"));

@@ -55,7 +55,7 @@ impl<'py> Operator<'py> {
     ) -> T {
         let called = || {
             *self.calls.borrow_mut() += 1;
-            if *self.calls.borrow() % 1024 == 0 {
+            if self.calls.borrow().is_multiple_of(1024) {
                 self.py.check_signals()?;
             }
             let arguments = PyTuple::new(self.py, arguments?)?;
@@ -148,30 +148,8 @@ impl Operator<'_> {
     /// Tries the laws; `None` if there is no such operator.
     fn search<R: Number>(&self, operator: &str, kinds: &[Kind]) -> Option<Lawful> {
         Some(match operator {
-            "over" => over::of_kinds(kinds, &|below: Blend<R>, alpha, color| {
-                let arguments = || {
-                    let (color, below_color) = (self.triple(color), self.triple(below.color));
-                    Ok(vec![below_color, self.number(below.alpha)?, self.number(alpha)?, color])
-                };
-                self.call(0, arguments(), |found| {
-                    let [color, alpha] = parts(&found, "a colour and an opacity")?;
-                    Ok(Blend { color: triple(&color)?, alpha: number(&alpha)? })
-                })
-            }),
-            "under" => under::of_kinds(kinds, &|front: Under<R>, alpha, color| {
-                let arguments = || {
-                    let (color, front_color) = (self.triple(color), self.triple(front.color));
-                    let (through, opacity) =
-                        (self.number(front.through)?, self.number(front.alpha)?);
-                    Ok(vec![front_color, opacity, through, self.number(alpha)?, color])
-                };
-                self.call(0, arguments(), |found| {
-                    let what = "a colour, an opacity, and what is let through";
-                    let [color, alpha, through] = parts(&found, what)?;
-                    let (alpha, through) = (number(&alpha)?, number(&through)?);
-                    Ok(Under { color: triple(&color)?, alpha, through })
-                })
-            }),
+            "over" => self.over::<R>(kinds),
+            "under" => self.under::<R>(kinds),
             "epsilon" => epsilon::of_kinds(kinds, &|t: R, nearest, band| {
                 let arguments =
                     || Ok(vec![self.number(t)?, self.number(nearest)?, self.number(band)?]);
@@ -199,26 +177,57 @@ impl Operator<'_> {
                     self.call(0, arguments(), |found| number(&found))
                 })
             }
-            "bins" => {
-                let range = |range: &Range| {
-                    let numbers = (range.nearest, range.farthest, range.count);
-                    Ok::<_, PyErr>(numbers.into_pyobject(self.py)?.into_any())
-                };
-                let bin = |of: &Range, t: R| {
-                    let arguments = || Ok(vec![range(of)?, self.number(t)?]);
-                    self.call(0, arguments(), |found| number(&found))
-                };
-                let voronoi = |of: &Range, t: R, ratio: R| {
-                    let arguments = || Ok(vec![range(of)?, self.number(t)?, self.number(ratio)?]);
-                    self.call(1, arguments(), |found| number(&found))
-                };
-                bins::of_kinds(kinds, &bin, &voronoi)
-            }
+            "bins" => self.bins::<R>(kinds),
             "groups" => groups::of_kinds(kinds, &|samples: &[WeightedFragment<R>], band: R| {
                 self.compose(samples, band)
             }),
             _ => return None,
         })
+    }
+
+    fn over<R: Number>(&self, kinds: &[Kind]) -> Lawful {
+        over::of_kinds(kinds, &|below: Blend<R>, alpha, color| {
+            let arguments = || {
+                let (color, below_color) = (self.triple(color), self.triple(below.color));
+                Ok(vec![below_color, self.number(below.alpha)?, self.number(alpha)?, color])
+            };
+            self.call(0, arguments(), |found| {
+                let [color, alpha] = parts(&found, "a colour and an opacity")?;
+                Ok(Blend { color: triple(&color)?, alpha: number(&alpha)? })
+            })
+        })
+    }
+
+    fn under<R: Number>(&self, kinds: &[Kind]) -> Lawful {
+        under::of_kinds(kinds, &|front: Under<R>, alpha, color| {
+            let arguments = || {
+                let (color, front_color) = (self.triple(color), self.triple(front.color));
+                let (through, opacity) = (self.number(front.through)?, self.number(front.alpha)?);
+                Ok(vec![front_color, opacity, through, self.number(alpha)?, color])
+            };
+            self.call(0, arguments(), |found| {
+                let what = "a colour, an opacity, and what is let through";
+                let [color, alpha, through] = parts(&found, what)?;
+                let (alpha, through) = (number(&alpha)?, number(&through)?);
+                Ok(Under { color: triple(&color)?, alpha, through })
+            })
+        })
+    }
+
+    fn bins<R: Number>(&self, kinds: &[Kind]) -> Lawful {
+        let range = |range: &Range| {
+            let numbers = (range.nearest, range.farthest, range.count);
+            Ok::<_, PyErr>(numbers.into_pyobject(self.py)?.into_any())
+        };
+        let bin = |of: &Range, t: R| {
+            let arguments = || Ok(vec![range(of)?, self.number(t)?]);
+            self.call(0, arguments(), |found| number(&found))
+        };
+        let voronoi = |of: &Range, t: R, ratio: R| {
+            let arguments = || Ok(vec![range(of)?, self.number(t)?, self.number(ratio)?]);
+            self.call(1, arguments(), |found| number(&found))
+        };
+        bins::of_kinds(kinds, &bin, &voronoi)
     }
 
     /// Composes the samples of all groups at a pixel. Samples are rows of nine numbers: depth,

@@ -1,10 +1,10 @@
 //! Scenes: from files and shapes, or from arrays.
 
-use crate::arrays::{numbers, vectors};
+use crate::arrays::{check, numbers, vectors};
 use crate::call::{How, call};
 use crate::choose::{parsed, read_views};
 use crate::error::raised;
-use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3};
+use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use splatref::io::environment;
 use splatref::io::scene_file::{EnvironmentChoice, Loaded, SceneFile};
@@ -59,14 +59,16 @@ pub(crate) struct Points<'py> {
 impl Points<'_> {
     /// Copies the arrays, the one copy that is made.
     fn cloud(&self) -> PyResult<Cloud> {
-        let count = self.positions.as_array().nrows();
+        let count = self.positions.shape()[0];
         let what = || format!("a scene of {count} points");
         memory::ask((count as u64).saturating_mul(POINT), what).map_err(raised)?;
         let tangents = self.tangents.as_ref().map(|tangents| {
+            check(tangents)?;
             let tangents = tangents.as_array();
             let half = |i, j| glam::Vec3::from_array([0, 1, 2].map(|k| tangents[[i, j, k]]));
-            (0..tangents.shape()[0]).map(|i| [half(i, 0), half(i, 1)]).collect()
+            Ok::<_, PyErr>((0..tangents.shape()[0]).map(|i| [half(i, 0), half(i, 1)]).collect())
         });
+        let tangents = tangents.transpose()?;
         Ok(Cloud {
             position: vectors(&self.positions)?,
             normal: self.normals.as_ref().map(vectors).transpose()?,

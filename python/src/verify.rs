@@ -1,6 +1,6 @@
 //! Verdicts on the planes of another renderer.
 
-use crate::arrays::{components, scalar, size};
+use crate::arrays::{check, components, scalar, size};
 use crate::call::{How, call};
 use crate::choose::{CameraChoice, Choices};
 use crate::error::{raised, value};
@@ -85,6 +85,7 @@ pub(crate) fn verify(
             unknown.push(name);
             continue;
         }
+        check(&numbers)?;
         let numbers = numbers.as_array();
         let (size, _) = size(&numbers)?;
         let array = Array::new(size, components(&numbers)?, &format);

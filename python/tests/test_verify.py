@@ -180,3 +180,13 @@ def test_metrics_are_those_of_the_program(scene: sr.Scene, camera: sr.Camera, pi
     ]:
         with pytest.raises(ValueError):
             call()
+
+
+@pytest.mark.parametrize("method", list(sr.methods.names()))
+def test_the_planes_of_every_method_are_right(scene: sr.Scene, method: str) -> None:
+    camera = sr.Camera(size=(32, 24))
+    own = sr.render(scene, camera, method=method, stages=True)
+    verdict = sr.verify(scene, camera, own, method=method, budget=1.0)
+    assert verdict.outcome in ("right", "unlike") and verdict.json["method"] == method
+    known = {row.name for row in sr.methods.planes(method)}
+    assert {"Z", "RGB"} <= known
