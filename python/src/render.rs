@@ -314,7 +314,7 @@ pub(crate) fn png<'py>(
     py: Python<'py>,
     planes: Planes<'py>,
 ) -> PyResult<Option<Bound<'py, PyBytes>>> {
-    let bytes = png_file::preview(&frame(&planes)?).map_err(raised)?;
+    let bytes = png_file::encode_frame(&frame(&planes)?).map_err(raised)?;
     Ok(bytes.map(|bytes| PyBytes::new(py, &bytes)))
 }
 

@@ -6,16 +6,18 @@ import os
 import subprocess
 from pathlib import Path
 
+import pytest
+
 import splatref as sr
 from conftest import ROOT
 
 
-def test_every_golden_has_the_same_hash(program: Path) -> None:
+def test_every_golden_has_the_same_hash(program: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     names = sorted({path.stem for path in (ROOT / "golden").glob("*.toml")})
     # As `splatref golden` does: a picture without a scene is a case too, and there is none.
     assert names == sorted({path.stem for path in (ROOT / "golden").glob("*.exr")})
     pictures = {}
-    os.chdir(ROOT)
+    monkeypatch.chdir(ROOT)
     for name in names:
         scene, state = sr.Scene.open(f"golden/{name}.toml"), None
         for frame in range(scene.frames):
