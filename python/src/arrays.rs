@@ -22,7 +22,7 @@ fn room<T>(count: usize) -> PyResult<Vec<T>> {
 /// Refuses an array whose numbers lie across the borders of their type: Rust reads no such numbers.
 /// The modules of Python align arrays, so that this is a mistake of theirs.
 pub(crate) fn check<T: Element, D: Dimension>(array: &Bound<'_, PyArray<T, D>>) -> PyResult<()> {
-    let aligned = |stride: &isize| stride.unsigned_abs() % align_of::<T>() == 0;
+    let aligned = |stride: &isize| stride.unsigned_abs().is_multiple_of(align_of::<T>());
     let strides = array.strides();
     if array.data().is_aligned() && strides.iter().all(aligned) {
         return Ok(());
