@@ -257,6 +257,8 @@ pub mod memory;
 pub mod method;
 pub mod number;
 pub mod progress;
+#[cfg(feature = "cli")]
+pub mod report;
 pub mod scene;
 pub mod setting;
 pub mod shade;

@@ -7,6 +7,9 @@
 use crate::error::{Error, Result};
 use std::sync::atomic::{AtomicU64, Ordering};
 
+#[cfg(feature = "cli")]
+mod available;
+
 static LIMIT: AtomicU64 = AtomicU64::new(u64::MAX);
 
 /// Sets how many bytes the process may hold; [`u64::MAX`] is no limit.
@@ -14,11 +17,23 @@ pub fn set_limit(bytes: u64) {
     LIMIT.store(bytes, Ordering::Relaxed);
 }
 
+/// The limit that the program sets: three quarters of what the machine, the container, the control
+/// groups and `ulimit` leave to the process, whichever is least. [`u64::MAX`] if the system does
+/// not tell. Needs the feature `cli`.
+#[cfg(feature = "cli")]
+#[must_use]
+pub fn usual_limit() -> u64 {
+    match available::total() {
+        0 => u64::MAX,
+        total => total / 4 * 3,
+    }
+}
+
 /// Whether `bytes` more may be held, for what `what` says.
 ///
 /// # Errors
 /// [`Error::Invalid`] if not: what, how much, and the limit.
-pub(crate) fn ask(bytes: u64, what: impl FnOnce() -> String) -> Result<()> {
+pub fn ask(bytes: u64, what: impl FnOnce() -> String) -> Result<()> {
     try_ask(bytes, what).map_err(Error::Invalid)
 }
 

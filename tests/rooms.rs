@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 /// Every folder and file of `src/` but `lib.rs` and `main.rs`, the lowest first.
 ///
 /// `source` stands above `method` because the candidates of a mesh are found by the projection of the methods.
-const ROOMS: [&str; 19] = [
+const ROOMS: [&str; 20] = [
     "error",
     "memory",
     "progress",
@@ -25,6 +25,7 @@ const ROOMS: [&str; 19] = [
     "verdict",
     "io",
     "study",
+    "report",
     "cli",
 ];
 

@@ -1,12 +1,11 @@
 //! `splatref group`: divides a scene into groups, and writes a PLY.
 
-use super::options::named;
 use super::rows::{OfGroupsAlone, RowOptions};
 use super::{Ended, Ending, output, progress, report, warn};
 use splatref::frame::Exec;
 use splatref::index::grouping::{Extended, Extension, Grouping, GroupingReport};
 use splatref::io::ply;
-use splatref::io::scene_file::{FileKind, GroupChoice};
+use splatref::io::scene_file::{FileKind, GroupChoice, SceneFile};
 use splatref::scene::Groups;
 use splatref::scene::Scene;
 use splatref::source::flatten;
@@ -48,7 +47,7 @@ pub(super) fn run(args: &Args) -> Ended {
             "{path}: groups are written as a PLY; give a name that ends in .ply"
         )));
     }
-    let file = named(&args.scene, args.count, args.seed)?;
+    let file = SceneFile::open_with(&args.scene, args.count, args.seed)?;
     output::check(&args.output, &args.scene, &file)?;
     let exec = Exec::new(args.threads, 32)?;
     let steps = progress::Steps::new("loading");

@@ -21,7 +21,6 @@ mod interrupt;
 mod memory;
 mod options;
 mod output;
-mod page;
 mod plan;
 mod progress;
 mod project;

@@ -3,7 +3,7 @@
 use super::camera::{CameraOptions, replace};
 use super::rows::{OfGroups, OfMethods, OfNumber, RowOptions};
 use splatref::frame::Exec;
-use splatref::io::scene_file::{Choice, EnvironmentChoice, SceneFile, Source};
+use splatref::io::scene_file::{EnvironmentChoice, SceneFile, Source};
 use splatref::io::scene_file::{check_mipmaps, check_opacity, check_prefix};
 use splatref::method::Method;
 use splatref::{Error, Result};
@@ -89,7 +89,7 @@ pub(super) struct SceneOptions {
 impl SceneOptions {
     /// The scene that `name` stands for, a shape or a file, with these options applied.
     pub(super) fn scene_file(&self, name: &Path) -> Result<SceneFile> {
-        let mut file = named(name, self.count, self.seed)?;
+        let mut file = SceneFile::open_with(name, self.count, self.seed)?;
         self.check_hierarchy(&file)?;
         self.camera.apply(&mut file)?;
         if let Some(frame) = self.frame {
@@ -107,7 +107,7 @@ impl SceneOptions {
         }
         self.choose_of_files(&mut file)?;
         self.choose_refinement(&mut file)?;
-        self.choose_method(&mut file)?;
+        file.choose_method(self.method, &self.settings.chosen, &self.groups.chosen)?;
         file.output = self.number.chosen.on(file.output, "the output")?;
         Ok(file)
     }
@@ -205,72 +205,6 @@ impl SceneOptions {
     pub(super) fn state(&self) -> Option<&Path> {
         self.state.as_deref()
     }
-
-    /// Applies the method, its settings and its groups.
-    fn choose_method(&self, file: &mut SceneFile) -> Result<()> {
-        if let Some(name) = self.method {
-            // The file's settings belong to its own method; `replace` keeps those that fit the new
-            // one.
-            file.method.replace(name)?;
-        }
-        file.method.settings.extend(self.settings.chosen.clone());
-        let method = file.method.method();
-        // Without options the settings are the file's own, and so is the error.
-        let given = self.method.is_some() || !self.settings.chosen.is_empty();
-        let method = if given { usage(method)? } else { method? };
-        if self.method.is_some() {
-            // As the settings: what means nothing to the new method is forgotten.
-            file.groups.settings = match method.grouping() {
-                Some(default) => file.groups.settings.fitting(default),
-                None => Choice::default(),
-            };
-        }
-        if !self.groups.chosen.is_empty() && method.grouping().is_none() {
-            let what = format!(
-                "the method {} has no groups, so --overlap, --groups and their like have no \
-                 effect; give another --method",
-                method.name()
-            );
-            return Err(Error::Usage(what));
-        }
-        file.groups.settings.extend(self.groups.chosen.clone());
-        if !self.groups.chosen.is_empty() {
-            usage(file.grouping(&method))?;
-        }
-        Ok(())
-    }
-}
-
-/// The scene that `name` stands for. Only shapes take a count and a seed, by name or as the one model
-/// of a scene file; the count of a tree is its leaves.
-pub(super) fn named(name: &Path, count: Option<usize>, seed: Option<u64>) -> Result<SceneFile> {
-    let mut file = match name.to_str().and_then(Source::procedural) {
-        Some(source) => SceneFile::of_model(source),
-        None => SceneFile::open(name)?,
-    };
-    if count.is_none() && seed.is_none() {
-        return Ok(file);
-    }
-    let mut models = file.all_models_mut();
-    match (models.next().map(|model| &mut model.source), models.next()) {
-        (
-            Some(
-                Source::Shape { count: items, seed: number, .. }
-                | Source::Tree { leaves: items, seed: number },
-            ),
-            None,
-        ) => {
-            *items = count.unwrap_or(*items);
-            *number = seed.unwrap_or(*number);
-        }
-        _ => {
-            let what = "--count and --seed apply to a procedural shape, or to a scene file whose \
-                        one model is such a shape; remove them";
-            return Err(Error::Usage(what.into()));
-        }
-    }
-    drop(models);
-    Ok(file)
 }
 
 /// What an option says is wrong usage if it cannot be; the same in a scene file is not.

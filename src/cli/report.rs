@@ -8,6 +8,7 @@ use splatref::index::seen::Seen;
 use splatref::io::scene_file::{Colored, Loaded, ModelReport, OutputSettings, SceneFile};
 use splatref::method::Method;
 use splatref::method::session::Made;
+pub(super) use splatref::report::short;
 use splatref::scene::objects::detail::prefix::Estimate;
 use splatref::scene::objects::{Detail, Split};
 use splatref::scene::{Camera, Counts, Dropped, Groups, Objects, Projection, Scene, Surfels};
@@ -359,15 +360,4 @@ pub(super) fn time(what: &str, mut times: Vec<Duration>) {
 
 fn point(v: [f64; 3]) -> String {
     format!("({})", v.map(short).join(", "))
-}
-
-/// Rounds a number to five digits; small numbers have a power of ten.
-pub(super) fn short(value: f64) -> String {
-    let rounded = format!("{value:.4e}").parse().unwrap_or(value);
-    match rounded {
-        // -0 is printed as 0.
-        0.0 => "0".into(),
-        small if small.abs() < 1e-4 => format!("{small:e}"),
-        other => format!("{other}"),
-    }
 }

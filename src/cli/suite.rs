@@ -1,10 +1,10 @@
 //! `splatref suite`: pools the verdicts of several scenes.
 
-use super::verify::report::{self, JsonShift, leaning};
 use super::{Ended, Ending, say};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use splatref::method::Method;
+use splatref::report::verdict::{self as report, JsonShift, leaning};
 use splatref::setting::{Word, Words};
 use splatref::verdict::client::Rounding;
 use splatref::verdict::shift::{LIMITS, Shift, Shifts};

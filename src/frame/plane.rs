@@ -54,6 +54,12 @@ impl<T> Plane<T> {
         &self.values
     }
 
+    /// All values, row by row, without a copy.
+    #[must_use]
+    pub fn into_values(self) -> Vec<T> {
+        self.values
+    }
+
     /// All values, row by row.
     pub fn values_mut(&mut self) -> &mut [T] {
         &mut self.values

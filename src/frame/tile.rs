@@ -8,7 +8,9 @@ use super::{Plane, Rect};
 use crate::error::{Error, Result};
 use rayon::prelude::*;
 use std::mem;
-use std::sync::{Mutex, PoisonError};
+use std::panic::resume_unwind;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Threads and tile size: how a picture is computed, never what.
 ///
@@ -24,8 +26,13 @@ use std::sync::{Mutex, PoisonError};
 #[derive(Debug)]
 pub struct Exec {
     tile: u32,
-    pool: Option<rayon::ThreadPool>,
+    pool: Option<Arc<rayon::ThreadPool>>,
+    stop: Option<Arc<AtomicBool>>,
 }
+
+/// What work unwinds with that was stopped, see [`Exec::stoppable`].
+#[derive(Clone, Copy, Debug)]
+pub struct Stopped;
 
 impl Exec {
     /// Starts `threads` threads, one per core if `threads` is 0; tiles have `tile` x `tile` pixels.
@@ -46,21 +53,36 @@ impl Exec {
             None
         } else {
             let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build();
-            Some(pool.map_err(|e| Error::Usage(format!("{threads} threads: {e}")))?)
+            Some(Arc::new(pool.map_err(|e| Error::Usage(format!("{threads} threads: {e}")))?))
         };
-        Ok(Self { tile, pool })
+        Ok(Self { tile, pool, stop: None })
     }
 
     /// One thread, tiles of 32 pixels.
     #[must_use]
     pub fn sequential() -> Self {
-        Self { tile: 32, pool: None }
+        Self { tile: 32, pool: None, stop: None }
+    }
+
+    /// The same threads and tiles for work that can be stopped: once `stop` is true, the next job
+    /// unwinds with [`Stopped`], and nothing is written. Catch it with [`std::panic::catch_unwind`].
+    #[must_use]
+    pub fn stoppable(&self, stop: Arc<AtomicBool>) -> Self {
+        Self { tile: self.tile, pool: self.pool.clone(), stop: Some(stop) }
+    }
+
+    /// Unwinds with [`Stopped`] if the work was stopped. Jobs call it; long work without jobs may.
+    pub fn check_stop(&self) {
+        if self.stop.as_ref().is_some_and(|stop| stop.load(Ordering::Relaxed)) {
+            // Unlike a panic, this prints nothing.
+            resume_unwind(Box::new(Stopped));
+        }
     }
 
     /// How many threads work.
     #[must_use]
     pub fn threads(&self) -> usize {
-        self.pool.as_ref().map_or(1, rayon::ThreadPool::current_num_threads)
+        self.pool.as_ref().map_or(1, |pool| pool.current_num_threads())
     }
 
     /// The tiles of a picture.
@@ -102,6 +124,10 @@ impl Exec {
     fn each(&self, count: usize, run: &(dyn Fn(usize) + Sync)) {
         /// Runs for each thread, or one for each index.
         const RUNS: usize = 64;
+        let run = &|i| {
+            self.check_stop();
+            run(i);
+        };
         match &self.pool {
             None => (0..count).for_each(run),
             Some(pool) => {
@@ -346,6 +372,23 @@ mod tests {
                 let expected: Vec<_> = (1..=width * height).collect();
                 assert_eq!(plane.values(), expected, "each pixel once: {width} x {height}");
             }
+        }
+    }
+
+    #[test]
+    fn work_that_is_stopped_unwinds_at_its_next_job() {
+        for exec in [Exec::sequential(), Exec::new(3, 16).unwrap()] {
+            let stop = Arc::new(AtomicBool::new(false));
+            let stoppable = exec.stoppable(stop.clone());
+            let work = || {
+                stoppable.ordered((0..1000).collect(), |i: u32| {
+                    stop.store(i > 10, Ordering::Relaxed);
+                    i
+                })
+            };
+            let ended = std::panic::catch_unwind(std::panic::AssertUnwindSafe(work));
+            assert!(ended.unwrap_err().is::<Stopped>());
+            assert_eq!(exec.ordered((0..1000).collect(), |i: u32| i).len(), 1000, "others go on");
         }
     }
 

@@ -187,6 +187,12 @@ impl<'a> Session<'a> {
         Ok(self.picture.insert(picture))
     }
 
+    /// Takes the last picture of [`Session::render`] out, if there is one. The next picture then
+    /// needs new memory.
+    pub fn take_picture(&mut self) -> Option<Picture<f32>> {
+        self.picture.take()
+    }
+
     /// Renders the picture by the definition, in any number; with `stages`, also the planes of
     /// every stage, which [`Method::stages`] lists.
     ///

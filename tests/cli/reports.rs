@@ -171,6 +171,7 @@ fn explain_tells_the_fate_of_the_clients_surfel() {
     }
     assert!(found[0] > 0 && found[1] > 0, "{found:?}");
     assert!(client(4000).contains("the client's surfel 4000 does not exist: there are 400"));
+}
 
 #[test]
 fn settings_that_the_method_does_not_use_are_said() {

@@ -2,7 +2,6 @@
 
 mod page;
 
-use super::page::pending;
 use super::{Ended, Ending, output, report, say};
 use splatref::compare::metrics;
 use splatref::compare::{Criteria, Tolerance, Verdict, compare};
@@ -10,6 +9,7 @@ use splatref::frame::{Exec, Image};
 use splatref::io::replace::Pending;
 use splatref::io::{exr, extension, npy, npz, png};
 use splatref::number::srgb;
+use splatref::report::page::pending;
 use splatref::{Error, Result};
 use std::path::{Path, PathBuf};
 

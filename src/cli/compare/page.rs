@@ -1,12 +1,12 @@
 //! The page of a comparison: a tab for each plane that was compared.
 
-use crate::cli::page::{Kind, LISTED, Mark, Measure, Report, Shown, Tab, worst};
 use splatref::compare::{
     ChannelComparison, ChannelValue, Comparison, Criteria, Difference, Tolerance, Verdict,
 };
 use splatref::frame::Image;
 use splatref::frame::image::Values;
 use splatref::number::Real;
+use splatref::report::page::{Kind, LISTED, Mark, Measure, Report, Shown, Tab, worst};
 
 /// What the page of a comparison shows: the second picture beside the first, which is the
 /// reference.

@@ -3,13 +3,11 @@
 
 use super::command;
 use super::report::{Run, Tried};
-use crate::cli::page;
-use crate::cli::verify::page::Judged as JudgedPage;
-use crate::cli::verify::report::Seen;
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::png::encode_frame;
 use splatref::io::scene_file::Number;
+use splatref::report::{VerdictReport, page};
 use splatref::study::chart::escaped;
 use splatref::study::report::page::{filled, inline};
 use splatref::verdict::Outcome;
@@ -41,12 +39,12 @@ pub(super) fn rule(
     let pictures = [encode_frame(&client.frame().to_f32())?, encode_frame(&own)?];
     let linked = judged.verdict.outcome() != Outcome::Right;
     if linked {
-        let seen = &Seen::new(session, camera, (&judged.verdict, judged.cause.clone()))?;
         let [scene, planes] = command::files(folder);
-        let replay = &|(x, y)| format!("splatref explain {scene} {x} {y} --client {planes}");
-        let (facts, number) = (seen.facts(replay, client), Number::F32);
-        let page = JudgedPage { session, camera, number, client, seen, facts, replay, exec };
-        page::pending(&folder.join(VERDICT), &page.report()?, exec)?.put()?;
+        let replay = |(x, y)| format!("splatref explain {scene} {x} {y} --client {planes}");
+        let found = (client, &judged.verdict, judged.cause.clone());
+        let page = VerdictReport::new(session, camera, found, &replay)?;
+        let page = page.page(session, camera, Number::F32, exec)?;
+        page::pending(&folder.join(VERDICT), &page, exec)?.put()?;
     }
     Ok(Shown { pictures, linked })
 }

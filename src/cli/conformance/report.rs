@@ -2,8 +2,8 @@
 
 use super::page::Shown;
 use crate::cli::Ending;
-use crate::cli::verify::report::{JsonShift, JsonStage};
 use serde_json::{Value, json};
+use splatref::report::verdict::{JsonShift, JsonStage};
 use splatref::setting::Word;
 use splatref::study::chart::escaped;
 use splatref::verdict::Outcome;

@@ -1,10 +1,6 @@
 //! `splatref verify`: decides whether a correct implementation can produce the planes of a client.
 
-pub(super) mod page;
-pub(super) mod report;
-
 use super::options::{ExecOptions, SceneOptions};
-use super::page::Report;
 use super::words::quoted;
 use super::{Ended, Ending, draw, output, progress, say};
 use splatref::frame::{Exec, Frame, Samples};
@@ -13,6 +9,8 @@ use splatref::io::exr;
 use splatref::io::replace::Pending;
 use splatref::io::scene_file::{FileKind, Number, OutputSettings, SceneFile};
 use splatref::method::Session;
+use splatref::report::VerdictReport;
+use splatref::report::page::{self, Report};
 use splatref::scene::Camera;
 use splatref::setting::Words;
 use splatref::verdict::Verdict;
@@ -103,30 +101,21 @@ fn judge(args: &Args) -> Ended {
         };
         Ok((verdict, likely))
     })?;
-    let seen = report::Seen::new(&session, camera, (&verdict, likely))?;
-    let replay: report::Replay<'_> = &|pixel| args.replay(pixel);
+    let replay = |pixel| args.replay(pixel);
+    let report = VerdictReport::new(&session, camera, (&client, &verdict, likely), &replay)?;
     progress::during("writing", || {
-        let page = || {
-            let facts = seen.facts(replay, &client);
-            let (client, number, seen) = (&client, file.output.number, &seen);
-            let (session, exec) = (&session, &exec);
-            page::Judged { session, camera, number, client, seen, facts, replay, exec }.report()
-        };
-        let json = || seen.json(replay, &client);
-        write(args, (|| errors(camera, &verdict), json, page), &exec)
+        let page = || report.page(&session, camera, number, &exec);
+        write(args, &report, (|| errors(camera, &verdict), page), &exec)
     })?;
-    seen.lines(replay, &client).iter().for_each(say);
+    report.lines().iter().for_each(say);
     Ok(Ending::from(verdict.outcome()).or_strict(args.strict))
 }
 
 /// Writes the requested files; all are complete before any replaces an old file.
 fn write(
     args: &Args,
-    (errors, json, page): (
-        impl FnOnce() -> Result<Frame<f32>>,
-        impl FnOnce() -> Result<String>,
-        impl FnOnce() -> Result<Report>,
-    ),
+    report: &VerdictReport<'_>,
+    (errors, page): (impl FnOnce() -> Result<Frame<f32>>, impl FnOnce() -> Result<Report>),
     exec: &Exec,
 ) -> Result<()> {
     let compression = OutputSettings::default().compression;
@@ -136,13 +125,13 @@ fn write(
     };
     let json = match &args.json {
         Some(path) => {
-            let text = json()?;
+            let text = report.json()?;
             Some(Pending::write(path, |file| file.write_all(text.as_bytes()))?)
         }
         None => None,
     };
     let page = match &args.report {
-        Some(path) => Some(super::page::pending(path, &page()?, exec)?),
+        Some(path) => Some(page::pending(path, &page()?, exec)?),
         None => None,
     };
     picture.into_iter().chain(json).chain(page).try_for_each(Pending::put)

@@ -91,6 +91,7 @@ fn check_keys(wanted: &Wanted, kind: Kind) -> Reason<()> {
                 ("channel" | "offset" | "row_stride" | "pixel_stride", Kind::Npz) => "an NPZ",
                 ("channel" | "offset" | "row_stride" | "pixel_stride", Kind::Png) => "a PNG",
                 ("channel" | "offset" | "row_stride" | "pixel_stride", Kind::Raw) => "a raw file",
+                ("channel" | "offset" | "row_stride" | "pixel_stride", Kind::Array) => "an array",
                 _ if is_depth => "depths",
                 _ => row.holds.words(),
             };

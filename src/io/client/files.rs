@@ -21,6 +21,8 @@ pub(super) enum Kind {
     Npz,
     Png,
     Raw,
+    /// In memory.
+    Array,
 }
 
 impl Kind {
@@ -48,12 +50,13 @@ pub(super) struct Picture {
 #[derive(Debug)]
 pub(super) struct Files<'e> {
     exec: &'e Exec,
+    arrays: &'e BTreeMap<String, Numbers>,
     pictures: BTreeMap<PathBuf, Picture>,
 }
 
 impl<'e> Files<'e> {
-    pub(super) fn new(exec: &'e Exec) -> Self {
-        Self { exec, pictures: BTreeMap::new() }
+    pub(super) fn new(exec: &'e Exec, arrays: &'e BTreeMap<String, Numbers>) -> Self {
+        Self { exec, arrays, pictures: BTreeMap::new() }
     }
 
     /// The picture at `path`, an EXR or a PNG; read on the first call.
@@ -89,8 +92,23 @@ impl<'e> Files<'e> {
     ) -> Result<Numbers> {
         let Wanted { keys, row, key, .. } = wanted;
         let components = wanted.channels().len();
-        let refused = |what: String| Error::format(path, format!("planes.{key}: {what}"));
+        let place = if kind == Kind::Array { Path::new("") } else { path };
+        let refused = |what: String| Error::format(place, format!("planes.{key}: {what}"));
+        let count = |found: usize| match found == components {
+            true => Ok(()),
+            false => {
+                let holds = row.holds.words();
+                Err(refused(format!("{found} numbers a pixel, but the plane holds {holds}")))
+            }
+        };
         match kind {
+            Kind::Array => {
+                let array = path.to_str().and_then(|key| self.arrays.get(key));
+                let array = array.ok_or_else(|| refused("no array".into()))?;
+                count(array.components.len())?;
+                ask(array.size, components).map_err(refused)?;
+                Ok(array.clone())
+            }
             Kind::Raw => {
                 let format = keys.format.unwrap_or(match row.holds.plain() {
                     Holds::Index => Format::U32,
@@ -111,13 +129,7 @@ impl<'e> Files<'e> {
                 };
                 let names: Vec<String> =
                     image.channels.iter().map(|(name, _)| name.clone()).collect();
-                if names.len() != components {
-                    return Err(refused(format!(
-                        "{} numbers a pixel, but the plane holds {}",
-                        names.len(),
-                        row.holds.words()
-                    )));
-                }
+                count(names.len())?;
                 let half = names.iter().filter(|_| is_half).map(|name| (name.clone(), Format::F16));
                 let picture = Picture { image, formats: half.collect() };
                 picture.numbers(&names).map_err(refused)

@@ -32,7 +32,7 @@ pub(super) fn client(
     exec: &Exec,
 ) -> Result<Client> {
     let refused = |what: String| Error::format(path, what);
-    let mut files = Files::new(exec);
+    let mut files = Files::new(exec, &sidecar.arrays);
     let mut wanted = named(sidecar, stages).map_err(refused)?;
     let mut unknown = Vec::new();
     if let Some(file) = &sidecar.file {
@@ -172,6 +172,10 @@ fn read(
 /// The file of a plane.
 fn file_of(wanted: &Wanted, sidecar: &Sidecar) -> Reason<(PathBuf, Kind)> {
     let key = &wanted.key;
+    let plain = key.trim_matches('"');
+    if sidecar.arrays.contains_key(plain) {
+        return Ok((plain.into(), Kind::Array));
+    }
     let file = wanted.keys.file.as_ref().or(sidecar.file.as_ref());
     let file = file.ok_or_else(|| {
         format!("planes.{key}: no `file`, neither here nor for all planes; give one")

@@ -143,6 +143,7 @@
 //! - `f16`: 2^-10 v, at least 2^-18;
 //! - `f32`: 2^-18 v, at least 2^-18, because shading languages compute the power inexactly.
 
+mod arrays;
 mod convert;
 mod depth;
 mod files;
@@ -159,6 +160,7 @@ mod straight;
 mod tests;
 mod wanted;
 
+pub use arrays::Array;
 pub use depth::{DepthConvention, DepthFile};
 
 use crate::error::{Error, Result};

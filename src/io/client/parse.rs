@@ -3,10 +3,12 @@
 use super::convert;
 use super::format::Format;
 use super::keys::Keys;
+use super::numbers::Numbers;
 use crate::error::{Error, Result};
 use crate::io::{Reason, input};
 use crate::setting::Words;
 use crate::verdict::client::{Rounding, Storage, Ties};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 /// The contents of a TOML file; no other file has been read yet.
@@ -24,6 +26,8 @@ pub(super) struct Sidecar {
     pub(super) depth_test: Storage,
     /// The planes, by their names in the file.
     pub(super) planes: Vec<(String, PlaneKeys)>,
+    /// The planes that are in memory, by these names.
+    pub(super) arrays: BTreeMap<String, Numbers>,
 }
 
 /// How depths are stored.
@@ -129,15 +133,22 @@ impl Sidecar {
             depth: DepthKeys::default(),
             depth_test: Storage::Single,
             planes: Vec::new(),
+            arrays: BTreeMap::new(),
         }
     }
 
     /// Parses the text of the file at `path`; other files are relative to its folder.
     pub(super) fn parse(text: &str, path: &Path) -> Result<Self> {
+        Self::parse_with(text, path, false)
+    }
+
+    /// The same for a text that may be without planes if there are arrays.
+    pub(super) fn parse_with(text: &str, path: &Path, has_arrays: bool) -> Result<Self> {
         input::ask_for_toml(path, text)?;
         let table = text.parse::<toml::Table>();
         let table = table.map_err(|error| input::no_toml(path, text, &error))?;
-        let mut read = Self::of_keys(Keys::new(table)).map_err(|what| Error::format(path, what))?;
+        let mut read = Self::of_keys(Keys::new(table), has_arrays)
+            .map_err(|what| Error::format(path, what))?;
         // `join` keeps an absolute path as it is.
         let folder = path.parent().unwrap_or(Path::new(""));
         let files = read.planes.iter_mut().map(|(_, plane)| &mut plane.file);
@@ -153,7 +164,7 @@ impl Sidecar {
         planes.chain(self.file.as_deref()).chain(self.records.as_deref())
     }
 
-    fn of_keys(mut keys: Keys) -> Reason<Self> {
+    fn of_keys(mut keys: Keys, has_arrays: bool) -> Reason<Self> {
         let mut depth = keys.table("depth")?;
         let mut test = keys.table("depth-test")?;
         let planes = keys.table("planes")?.tables()?.into_iter();
@@ -175,11 +186,12 @@ impl Sidecar {
             upwards: keys.word("origin")? == Some(Origin::BottomLeft),
             size: keys.size("size")?,
             records: keys.path("records")?,
+            arrays: BTreeMap::new(),
         };
         depth.done()?;
         test.done()?;
         keys.done()?;
-        if read.planes.is_empty() && read.file.is_none() {
+        if read.planes.is_empty() && read.file.is_none() && !has_arrays {
             return Err("no plane; give a `file`, or a table such as [planes.Z]".into());
         }
         Ok(read)

@@ -1,5 +1,6 @@
 //! Settings as they were chosen; anything not chosen keeps its default.
 
+use super::SceneFile;
 use crate::error::{Error, Result};
 use crate::index::grouping::{Extension, Grouping, Rules};
 use crate::io::exr::Compression;
@@ -144,6 +145,60 @@ impl GroupChoice {
         grouping.check()?;
         Ok(grouping)
     }
+}
+
+impl SceneFile {
+    /// Chooses a method, settings and groups in place of the file's own. Settings of the file that
+    /// also mean something to the new method are kept.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] as [`Method::by_name`], [`MethodChoice::method`] and
+    /// [`GroupChoice::grouping`], and if there are settings of groups for a method without groups.
+    pub fn choose_method(
+        &mut self,
+        name: Option<&'static str>,
+        settings: &Choice,
+        groups: &Choice,
+    ) -> Result<()> {
+        if let Some(name) = name {
+            // The file's settings belong to its own method; `replace` keeps those that fit the new
+            // one.
+            self.method.replace(name)?;
+        }
+        self.method.settings.extend(settings.clone());
+        let method = self.method.method();
+        // Without choices the settings are the file's own, and so is the error.
+        let given = name.is_some() || !settings.is_empty();
+        let method = if given { usage(method)? } else { method? };
+        if name.is_some() {
+            // As the settings: what means nothing to the new method is forgotten.
+            self.groups.settings = match method.grouping() {
+                Some(default) => self.groups.settings.fitting(default),
+                None => Choice::default(),
+            };
+        }
+        if !groups.is_empty() && method.grouping().is_none() {
+            let what = format!(
+                "the method {} has no groups, so --overlap, --groups and their like have no \
+                 effect; give another --method",
+                method.name()
+            );
+            return Err(Error::Usage(what));
+        }
+        self.groups.settings.extend(groups.clone());
+        if !groups.is_empty() {
+            usage(self.grouping(&method))?;
+        }
+        Ok(())
+    }
+}
+
+/// A choice that cannot be is wrong usage; the same in a scene file is not.
+fn usage<T>(checked: Result<T>) -> Result<T> {
+    checked.map_err(|error| match error {
+        Error::Invalid(what) => Error::Usage(what),
+        other => other,
+    })
 }
 
 /// The arithmetic of a picture.

@@ -158,6 +158,42 @@ impl Source {
 }
 
 impl SceneFile {
+    /// [`SceneFile::open`] with another number of surfels, and another random seed. Only shapes have
+    /// these, by name or as the one model of a scene file; the count of a tree is its leaves.
+    ///
+    /// # Errors
+    /// As [`SceneFile::open`], and [`Error::Usage`] if the scene has no count or seed.
+    pub fn open_with(
+        name: impl AsRef<Path>,
+        count: Option<usize>,
+        seed: Option<u64>,
+    ) -> Result<Self> {
+        let mut file = Self::open(name)?;
+        if count.is_none() && seed.is_none() {
+            return Ok(file);
+        }
+        let mut models = file.all_models_mut();
+        match (models.next().map(|model| &mut model.source), models.next()) {
+            (
+                Some(
+                    Source::Shape { count: items, seed: number, .. }
+                    | Source::Tree { leaves: items, seed: number },
+                ),
+                None,
+            ) => {
+                *items = count.unwrap_or(*items);
+                *number = seed.unwrap_or(*number);
+            }
+            _ => {
+                let what = "--count and --seed apply to a procedural shape, or to a scene file \
+                            whose one model is such a shape; remove them";
+                return Err(Error::Usage(what.into()));
+            }
+        }
+        drop(models);
+        Ok(file)
+    }
+
     /// Opens a scene by its name: a shape, `tree`, a file of a model, a scene .toml or the folder of
     /// a [hierarchy](crate::io::hierarchy). This example gets from a name to a picture in memory:
     /// ```

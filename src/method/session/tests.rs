@@ -19,6 +19,17 @@ fn sphere() -> (Scene, Camera) {
 }
 
 #[test]
+fn a_picture_is_taken_out_once_and_the_next_has_its_bits() {
+    let (scene, camera) = sphere();
+    let exec = Exec::sequential();
+    let mut session = Session::new(&scene, Method::default(), &exec).unwrap();
+    let first = session.render(&camera).unwrap().frame.clone();
+    assert_eq!(session.take_picture().unwrap().frame, first);
+    assert!(session.take_picture().is_none());
+    assert_eq!(session.render(&camera).unwrap().frame, first);
+}
+
+#[test]
 fn primitives_are_refused_by_methods_that_draw_surfels_alone() {
     let (mut scene, _) = sphere();
     let vertices = Vertices {

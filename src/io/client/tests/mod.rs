@@ -1,5 +1,6 @@
 //! Check files of every kind against numbers computed by hand.
 
+mod arrays;
 mod depths;
 mod normals;
 mod pictures;

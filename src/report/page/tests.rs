@@ -1,11 +1,11 @@
 //! What a page holds can be read again, and a page keeps its limit.
 
 use super::*;
+use crate::frame::image::Values;
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use miniz_oxide::inflate::decompress_to_vec_zlib;
 use serde_json::Value;
-use splatref::frame::image::Values;
 
 /// A report of two pictures with these channels, each a plane of one tab.
 fn report(size: [u32; 2], pictures: [Vec<(String, Values)>; 2]) -> Report {

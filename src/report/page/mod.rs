@@ -2,146 +2,170 @@
 //!
 //! [`Report`] says what the page shows, as plain data. [`html`] makes the page. It loads nothing
 //! from outside, and its policy tells the browser so. The planes travel as compressed bytes, see
-//! [`packed`], so that the page prints the numbers themselves and not the colours on the screen.
+//! `packed`, so that the page prints the numbers themselves and not the colours on the screen.
 
 mod data;
 mod packed;
 #[cfg(test)]
 mod tests;
 
+use crate::error::Result;
+use crate::frame::{Exec, Image};
+use crate::io::replace::Pending;
+use crate::study::chart::escaped;
+use crate::study::report::page::filled;
 use serde::Serialize;
-use splatref::Result;
-use splatref::frame::{Exec, Image};
-use splatref::io::replace::Pending;
-use splatref::study::chart::escaped;
-use splatref::study::report::page::filled;
 use std::io::Write;
 use std::path::Path;
 
 /// The largest page that is written, in bytes.
-pub(super) const LARGEST: usize = 10_000_000;
+pub const LARGEST: usize = 10_000_000;
 /// How many of the worst pixels of a wrong tab are listed.
-pub(super) const LISTED: usize = 20;
+pub const LISTED: usize = 20;
 
 /// What a page shows.
-pub(super) struct Report {
-    pub(super) title: String,
+#[derive(Debug)]
+pub struct Report {
+    /// The title of the page.
+    pub title: String,
     /// Labels and texts at the top of the page, in this order.
-    pub(super) facts: Vec<(String, String)>,
+    pub facts: Vec<(String, String)>,
     /// What the two pictures are, in a few sentences.
-    pub(super) about: String,
+    pub about: String,
     /// The names of the two pictures: `Client` and `Reference`.
-    pub(super) sides: [&'static str; 2],
+    pub sides: [&'static str; 2],
     /// The two pictures, of one size. Either may lack channels.
-    pub(super) pictures: [Image; 2],
-    pub(super) measure: Measure,
-    pub(super) tabs: Vec<Tab>,
+    pub pictures: [Image; 2],
+    /// What the errors measure.
+    pub measure: Measure,
+    /// The stages or planes, in their order.
+    pub tabs: Vec<Tab>,
     /// The bits of [`Tab::doubts`] and their names.
-    pub(super) doubts: Vec<(u8, &'static str)>,
+    pub doubts: Vec<(u8, &'static str)>,
     /// The likely cause of wrong pixels.
-    pub(super) cause: Option<String>,
-    pub(super) explained: Vec<Explained>,
+    pub cause: Option<String>,
+    /// The decisions at the listed pixels.
+    pub explained: Vec<Explained>,
 }
 
 /// What the errors of a page measure.
-#[derive(Serialize)]
-pub(super) struct Measure {
+#[derive(Debug, Serialize)]
+pub struct Measure {
     /// `Error in bounds`.
-    pub(super) name: &'static str,
+    pub name: &'static str,
     /// `bounds`; empty for a plain number.
-    pub(super) unit: &'static str,
+    pub unit: &'static str,
     /// The largest right error, if one number holds for all pixels.
-    pub(super) limit: Option<f32>,
+    pub limit: Option<f32>,
     /// What a pixel is called that is right, and one that is wrong.
-    pub(super) words: [&'static str; 2],
+    pub words: [&'static str; 2],
 }
 
 /// A stage, or a plane that is compared.
-pub(super) struct Tab {
-    pub(super) name: String,
+#[derive(Debug)]
+pub struct Tab {
+    /// The name of the stage or plane.
+    pub name: String,
     /// What was found, in a sentence.
-    pub(super) says: String,
-    pub(super) mark: Mark,
-    pub(super) planes: Vec<Shown>,
+    pub says: String,
+    /// The outcome.
+    pub mark: Mark,
+    /// The planes to show.
+    pub planes: Vec<Shown>,
     /// The error at each pixel.
-    pub(super) errors: Vec<f32>,
+    pub errors: Vec<f32>,
     /// Whether each pixel is wrong.
-    pub(super) wrong: Vec<bool>,
+    pub wrong: Vec<bool>,
     /// Undecided decisions at each pixel as bits; empty if there are none.
-    pub(super) doubts: Vec<u8>,
+    pub doubts: Vec<u8>,
     /// The listed pixels, the worst first: indices of pixels, row by row.
-    pub(super) worst: Vec<usize>,
+    pub worst: Vec<usize>,
 }
 
 /// The outcome of a tab.
-#[derive(Clone, Copy, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
-pub(super) enum Mark {
+pub enum Mark {
+    /// Every pixel is right.
     Right,
+    /// A pixel is wrong.
     Wrong,
+    /// Nothing was judged.
     NotJudged,
 }
 
 /// A plane of a tab.
-#[derive(Serialize)]
-pub(super) struct Shown {
-    pub(super) name: String,
-    pub(super) kind: Kind,
-    pub(super) unit: &'static str,
+#[derive(Debug, Serialize)]
+pub struct Shown {
+    /// The name of the plane.
+    pub name: String,
+    /// How its values become colours.
+    pub kind: Kind,
+    /// The unit of its values; empty if it has none.
+    pub unit: &'static str,
     /// What a value means; may be empty.
-    pub(super) meaning: &'static str,
+    pub meaning: &'static str,
     /// The names of the channels in the pictures: one or three.
-    pub(super) channels: Vec<String>,
+    pub channels: Vec<String>,
 }
 
 /// How the values of a plane become colours.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "lowercase")]
-pub(super) enum Kind {
+pub enum Kind {
+    /// Linear RGB.
     Color,
+    /// A vector of any length.
     Vector,
+    /// A unit vector.
     Normal,
+    /// A depth, +inf where nothing is.
     Depth,
+    /// A number.
     Scalar,
+    /// The index of a surfel.
     Index,
+    /// A small whole number.
     Count,
 }
 
 /// The decisions at a listed pixel.
-#[derive(Serialize)]
-pub(super) struct Explained {
+#[derive(Debug, Serialize)]
+pub struct Explained {
     /// The index of the pixel, row by row.
     #[serde(skip)]
-    pub(super) pixel: usize,
+    pub pixel: usize,
     /// The values that were checked.
-    pub(super) checks: Vec<CheckRow>,
+    pub checks: Vec<CheckRow>,
     /// The decisions in words.
-    pub(super) text: String,
+    pub text: String,
     /// The command that prints them.
-    pub(super) replay: String,
+    pub replay: String,
 }
 
 /// A value and the values that are right, as texts.
-#[derive(Serialize)]
-pub(super) struct CheckRow {
-    pub(super) stage: &'static str,
+#[derive(Debug, Serialize)]
+pub struct CheckRow {
+    /// The name of the stage.
+    pub stage: &'static str,
     /// `right`, `WRONG` or `open`.
-    pub(super) word: &'static str,
+    pub word: &'static str,
     /// The channel, its value, and the least and the largest right value; none for a finding that
     /// has no interval.
-    pub(super) interval: Option<[String; 4]>,
+    pub interval: Option<[String; 4]>,
     /// The finding in words.
-    pub(super) says: String,
+    pub says: String,
     /// The error with its unit; empty if there is none.
-    pub(super) error: String,
+    pub error: String,
     /// The error.
     #[serde(skip)]
-    pub(super) size: f64,
+    pub size: f64,
 }
 
 impl Kind {
     /// The kind of a plane by the names that this program gives to planes.
-    pub(super) fn from_names(channels: &[String], is_index: bool) -> Self {
+    #[must_use]
+    pub fn from_names(channels: &[String], is_index: bool) -> Self {
         let last = |name: &str| name.rsplit('.').next().unwrap_or_default().to_owned();
         let first = channels.first().map_or("", String::as_str);
         let of_vector = first.strip_suffix(".X").map(last);
@@ -159,7 +183,8 @@ impl Kind {
 
 /// The indices of the `most` largest errors, the largest first. Pixels with the same error are
 /// taken evenly from all of the picture, because the first ones lie side by side.
-pub(super) fn worst(errors: &[f32], most: usize) -> Vec<usize> {
+#[must_use]
+pub fn worst(errors: &[f32], most: usize) -> Vec<usize> {
     let mut all: Vec<usize> = (0..errors.len()).filter(|&i| errors[i] > 0.0).collect();
     all.sort_by(|&a, &b| errors[b].total_cmp(&errors[a]).then(a.cmp(&b)));
     if all.len() <= most {
@@ -179,13 +204,16 @@ pub(super) fn worst(errors: &[f32], most: usize) -> Vec<usize> {
 ///
 /// # Errors
 /// As [`Pending::write`].
-pub(super) fn pending(path: &Path, report: &Report, exec: &Exec) -> Result<Pending> {
+pub fn pending(path: &Path, report: &Report, exec: &Exec) -> Result<Pending> {
     let text = html(report, exec)?;
     Pending::write(path, |file| file.write_all(text.as_bytes()))
 }
 
 /// Writes a page as text.
-pub(super) fn html(report: &Report, exec: &Exec) -> Result<String> {
+///
+/// # Errors
+/// [`crate::Error::Invalid`] if the data cannot be written as JSON.
+pub fn html(report: &Report, exec: &Exec) -> Result<String> {
     html_within(report, LARGEST, exec)
 }
 

@@ -10,12 +10,12 @@
 //! fit is left out.
 
 use super::{Mark, Report, Tab};
+use crate::frame::Exec;
+use crate::frame::image::{Image, Values};
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
 use miniz_oxide::deflate::compress_to_vec_zlib;
 use serde::Serialize;
-use splatref::frame::Exec;
-use splatref::frame::image::{Image, Values};
 use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write;
 

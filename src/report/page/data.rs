@@ -2,8 +2,8 @@
 
 use super::packed::{Channel, Packed, TabPlanes};
 use super::{Explained, Mark, Measure, Report, Shown, Tab};
+use crate::error::{Error, Result};
 use serde::Serialize;
-use splatref::{Error, Result};
 use std::collections::BTreeMap;
 
 #[derive(Serialize)]

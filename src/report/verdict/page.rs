@@ -1,17 +1,17 @@
 //! The page of a verdict: its stages as tabs, and the decisions at the worst pixels.
 
-use super::report::{Replay, Seen, judged};
-use crate::cli::page::{
+use super::{VerdictReport, judged};
+use crate::error::Result;
+use crate::frame::{Exec, Frame, Image, Samples};
+use crate::io::scene_file::Number;
+use crate::method::{Holds, PlaneRow, Session, Stage};
+use crate::report::page::{
     CheckRow, Explained, Kind, LISTED, Mark, Measure, Report, Shown, Tab, worst,
 };
-use crate::cli::report::short;
-use splatref::Result;
-use splatref::frame::{Exec, Frame, Image, Samples};
-use splatref::io::scene_file::Number;
-use splatref::method::{Holds, PlaneRow, Session, Stage};
-use splatref::scene::Camera;
-use splatref::verdict::client::Client;
-use splatref::verdict::{Check, Doubt, Fault, StageVerdict};
+use crate::report::short;
+use crate::scene::Camera;
+use crate::verdict::client::Client;
+use crate::verdict::{Check, Doubt, Fault, StageVerdict};
 
 /// How many of the worst pixels of a right stage are listed. Explaining a pixel of a pyramid takes
 /// as long as drawing the picture.
@@ -19,45 +19,48 @@ const LISTED_RIGHT: usize = 1;
 /// The longest explanation of a pixel, in bytes.
 const LONGEST: usize = 20_000;
 
-/// Everything that the page of a verdict is made from.
-pub(in crate::cli) struct Judged<'a> {
-    pub(in crate::cli) session: &'a Session<'a>,
-    pub(in crate::cli) camera: &'a Camera,
-    pub(in crate::cli) number: Number,
-    pub(in crate::cli) client: &'a Client,
-    pub(in crate::cli) seen: &'a Seen<'a>,
-    /// The lines of the report.
-    pub(in crate::cli) facts: Vec<(String, String)>,
-    pub(in crate::cli) replay: Replay<'a>,
-    pub(in crate::cli) exec: &'a Exec,
+/// What explains a pixel of a page.
+struct Explaining<'a> {
+    report: &'a VerdictReport<'a>,
+    session: &'a Session<'a>,
+    camera: &'a Camera,
+    number: Number,
 }
 
-impl Judged<'_> {
-    /// What the page shows.
+impl VerdictReport<'_> {
+    /// What the page of the verdict shows. `session` and `camera` are the ones of the verdict;
+    /// `number` is the arithmetic of the reference picture.
     ///
     /// # Errors
     /// As [`Session::define`] and [`Session::explain`].
-    pub(in crate::cli) fn report(self) -> Result<Report> {
-        let verdict = self.seen.verdict;
-        let reference = match self.number {
-            Number::F32 => self.session.define::<f32>(self.camera, true)?.frame,
-            Number::F64 => self.session.define::<f64>(self.camera, true)?.frame.to_f32(),
+    pub fn page(
+        &self,
+        session: &Session<'_>,
+        camera: &Camera,
+        number: Number,
+        exec: &Exec,
+    ) -> Result<Report> {
+        let verdict = self.verdict;
+        let reference = match number {
+            Number::F32 => session.define::<f32>(camera, true)?.frame,
+            Number::F64 => session.define::<f64>(camera, true)?.frame.to_f32(),
         };
         let client = self.client.frame().to_f32();
-        let stages = self.session.method().stages();
+        let stages = session.method().stages();
         let tabs: Vec<Tab> =
             verdict.stages.iter().map(|stage| tab(stage, &client, stages)).collect();
         let mut listed: Vec<usize> = tabs.iter().flat_map(|tab| tab.worst.clone()).collect();
         listed.sort_unstable();
         listed.dedup();
-        let explained = self.exec.ordered(listed, |pixel| self.explained(pixel));
+        let explaining = Explaining { report: self, session, camera, number };
+        let explained = exec.ordered(listed, |pixel| explaining.explained(pixel));
         let explained = explained.into_iter().collect::<Result<_>>()?;
         let shown = |(label, _): &(String, String)| {
             !verdict.stages.iter().any(|stage| stage.stage == label)
         };
         Ok(Report {
-            title: format!("splatref verify: {}", self.seen.ending()),
-            facts: self.facts.into_iter().filter(shown).collect(),
+            title: format!("splatref verify: {}", self.ending()),
+            facts: self.facts().into_iter().filter(shown).collect(),
             about: about(&client, self.client),
             sides: ["Client", "Reference"],
             pictures: [Image::from(&client), Image::from(&reference)],
@@ -69,11 +72,13 @@ impl Judged<'_> {
             },
             tabs,
             doubts: Doubt::ALL.map(|doubt| (doubt as u8, doubt.name())).to_vec(),
-            cause: self.seen.likely.clone(),
+            cause: self.likely.clone(),
             explained,
         })
     }
+}
 
+impl Explaining<'_> {
     /// The decisions at a pixel, and the client's values there.
     fn explained(&self, pixel: usize) -> Result<Explained> {
         let width = self.camera.width as usize;
@@ -82,12 +87,12 @@ impl Judged<'_> {
             Number::F32 => self.session.explain::<f32>(self.camera, at)?,
             Number::F64 => self.session.explain::<f64>(self.camera, at)?,
         };
-        let checks = self.session.checks(self.camera, self.client, at)?;
+        let checks = self.session.checks(self.camera, self.report.client, at)?;
         Ok(Explained {
             pixel,
             checks: checks.iter().map(row).collect(),
             text: shortened(text.trim_end()),
-            replay: (self.replay)(at),
+            replay: (self.report.replay)(at),
         })
     }
 }
