@@ -125,6 +125,14 @@ impl<'a> Session<'a> {
         Ok(Self { scene, method, exec, index, memory, pool, picture: None })
     }
 
+    /// The same method, groups and state with another scene of as many surfels.
+    pub(crate) fn beside<'s>(&'s self, scene: &'s Scene) -> Result<Session<'s>> {
+        let groups = self.index.groups.clone();
+        let mut session = Session::with_groups(scene, self.method, groups, self.exec)?;
+        session.index.seen.clone_from(&self.index.seen);
+        Ok(session)
+    }
+
     /// The scene.
     #[must_use]
     pub fn scene(&self) -> &'a Scene {

@@ -12,6 +12,7 @@ use crate::shade::phong::Shader;
 use crate::splat::View;
 use crate::verdict::Fault;
 use crate::verdict::client::{Client, Storage, StoredPlane};
+use crate::verdict::supposed::Supposed;
 use std::ops::Range;
 
 /// Receives a check: the index of its stage among the stages that are judged together, the error in
@@ -237,6 +238,9 @@ pub(crate) struct Shading<'a, P: Profile> {
     colored: bool,
     /// The environment where nothing else is seen; none if that is black.
     backdrop: Option<Backdrop<'a, P>>,
+    /// Whether normals are supposed to be lit without being turned to the camera.
+    unturned: bool,
+    view: View<Ball<P>>,
 }
 
 /// The surface at a pixel.
@@ -258,7 +262,14 @@ impl<'a, P: Profile> Shading<'a, P> {
             shader: Shader::new(View::new(job.camera), &scene.lights, scene.material),
             colored,
             backdrop: scene.environment.is_some().then(|| Backdrop::new(job)),
+            unturned: false,
+            view: View::new(job.camera),
         }
+    }
+
+    /// Shading by the rule that is supposed.
+    pub(crate) fn supposing(self, supposed: Supposed) -> Self {
+        Self { unturned: supposed == Supposed::LitUnturned, ..self }
     }
 
     /// Shading for a layer: an empty pixel is black.
@@ -284,12 +295,20 @@ impl<'a, P: Profile> Shading<'a, P> {
             return [anything(); 3];
         }
         let vector = |[x, y, z]: [Ball<P>; 3]| Vector3::new(x, y, z);
+        // The shader turns the normal, so turn it back before.
+        let normal = if self.unturned { self.turned_back(normal) } else { normal };
         let color = if self.colored { color } else { self.shader.plain() };
         let place = (x as usize, y as usize);
         match tangent {
             Some(tangent) => self.shader.tube(place, depth, vector(tangent), color),
             None => self.shader.surface(place, depth, vector(normal), color),
         }
+    }
+
+    /// A direction of view space in world space: the inverse of a rotation is its transpose.
+    fn turned_back(&self, [x, y, z]: [Ball<P>; 3]) -> [Ball<P>; 3] {
+        let rows = &self.view.rows;
+        [0, 1, 2].map_inline(|i: usize| rows[0][i] * x + rows[1][i] * y + rows[2][i] * z)
     }
 
     /// The opacity of a pixel, where something is seen if `seen` is greater than 0.

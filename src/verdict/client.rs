@@ -8,12 +8,15 @@ pub use storage::Storage;
 use crate::error::{Error, Result};
 use crate::frame::{Frame, NamedPlane, Plane, Samples};
 use crate::method::stage::numbered;
-use crate::method::{Holds, PlaneRow};
+use crate::method::{Holds, Job, PlaneRow};
 use crate::number::MapInline;
 use crate::number::ball::{Ball, Profile};
+use crate::scene::{Camera, Scene};
 use crate::setting::Words;
 use crate::splat::record::SplatRecord;
+use crate::verdict::supposed::Supposed;
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// The rounding that a client promises for its operations.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -133,6 +136,10 @@ pub struct Client {
     /// planes that store depth: a depth buffer of 24 bits, for example, beside depths in a colour
     /// target. Two fragments whose stored depths may be equal count as equally near.
     pub depth_test: Storage,
+    /// The mistake that is assumed for the client.
+    pub(crate) supposed: Supposed,
+    /// The scene and the camera that are assumed for the client's projection, if they are others.
+    pub(crate) drawn: Option<Arc<(Scene, Camera)>>,
     /// The format of the attribute pass's sums between two additions.
     pub accumulator: Storage,
     /// The splats that the client has projected, in ascending surfel index. The later stages are
@@ -246,6 +253,8 @@ impl Client {
             ties: Ties::default(),
             band: Band::default(),
             depth_test: Storage::Single,
+            supposed: Supposed::default(),
+            drawn: None,
             accumulator: Storage::Single,
             records: None,
             unknown: Vec::new(),
@@ -316,6 +325,14 @@ impl Client {
     #[must_use]
     pub fn frame(&self) -> &Frame<f64> {
         &self.frame
+    }
+
+    /// The job of the projection: with the scene and the camera that are assumed for it.
+    pub(crate) fn projection<'j>(&'j self, job: &Job<'j>) -> Job<'j> {
+        match self.drawn.as_deref() {
+            Some((scene, camera)) => Job::new(scene, job.index, camera, job.exec),
+            None => Job::new(job.scene, job.index, job.camera, job.exec),
+        }
     }
 
     /// The planes, for changing them.

@@ -41,6 +41,7 @@ pub mod pyramid;
 mod session;
 pub mod shift;
 pub mod single_pass;
+mod supposed;
 mod table;
 pub mod template;
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Verify the pictures of a session.
 
 use super::client::{Client, Rounding};
-use super::{Check, Verdict, table, unlike};
+use super::{Check, Verdict, ewa, table, unlike};
 use crate::error::{Error, Result};
 use crate::method::session::{Making, Names, named};
 use crate::method::{Method, Session};
@@ -44,6 +44,23 @@ impl Session<'_> {
             Rounding::Ieee => table::verify::<Ieee>(method, &job, client, budget),
         }?;
         Ok(verdict.renumbered(|index| named(names.as_ref(), index)))
+    }
+
+    /// The numbers that are wrong in the records of a client of `ewa`.
+    pub(super) fn wrong_fields(
+        &self,
+        camera: &Camera,
+        client: &Client,
+    ) -> Result<Vec<ewa::WrongField>> {
+        let (Method::Ewa(settings), Some(records)) = (self.method(), &client.records) else {
+            return Ok(Vec::new());
+        };
+        let job = self.job(camera)?;
+        Ok(match client.rounding {
+            Rounding::Gpu => ewa::wrong_fields::<Gpu>(&job, settings, records),
+            Rounding::Precise => ewa::wrong_fields::<Precise>(&job, settings, records),
+            Rounding::Ieee => ewa::wrong_fields::<Ieee>(&job, settings, records),
+        })
     }
 
     /// Every check at one pixel: each judged value of the client, and the values that are allowed

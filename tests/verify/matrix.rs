@@ -248,8 +248,28 @@ fn the_matrix_is_that_of_the_page() {
         accused.extend(matrix.accused.iter().map(|accused| format!("{method}: {accused}")));
     }
     assert!(accused.is_empty(), "{accused:#?}");
+    check(Section::Finds, &page);
+}
+
+/// The heading of the part of the page that [`super::matrix_of_causes`] writes.
+pub(crate) const NAMES: &str = "## The names of mistakes";
+
+/// A section of the page.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Section {
+    Finds,
+    Names,
+}
+
+/// Panics unless a section of the page is this text. Writes a page that has it.
+pub(crate) fn check(section: Section, text: &str) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let old = std::fs::read_to_string(root.join("docs/verdicts-tried.md")).unwrap_or_default();
+    let (finds, names) = old.split_at(old.find(NAMES).unwrap_or(old.len()));
+    let page = match section {
+        Section::Finds => format!("{text}\n{names}"),
+        Section::Names => format!("{finds}{text}"),
+    };
     if old != page {
         let path = root.join("out/verdicts-tried.md");
         std::fs::create_dir_all(root.join("out")).unwrap();

@@ -5,6 +5,7 @@
 //! - [`cases`]: the scenes.
 //! - [`conformance`]: the suite of small scenes, as files and as tests of `cargo test`.
 //! - [`empty_pixels`]: one wrong bit in an empty pixel is found, in every plane of every method.
+//! - [`matrix`], [`matrix_of_causes`]: the page of what verdicts find, and how they name it.
 //! - [`verdicts`]: no lawful habit is called wrong, and every bug is found.
 //! - [`ladder`]: scenes whose decisions lie close to their limits.
 //! - [`nodes`]: a hierarchy whose choices lie close to their limits, and clients that make these
@@ -27,6 +28,7 @@ mod groups;
 mod image_space;
 mod ladder;
 mod matrix;
+mod matrix_of_causes;
 mod nodes;
 mod own_pictures;
 mod shares;

@@ -2,7 +2,7 @@
 //! offset, and a depth buffer that is not declared. The numbers are estimated: a line is fitted to
 //! the client's values and the depths of the crate, or to their reciprocals.
 
-use super::Change;
+use super::change::Change;
 use super::epsilon::DEPTHS;
 use crate::frame::Samples;
 use crate::method::Session;
@@ -91,13 +91,8 @@ pub(super) fn mistakes(
     camera: &Camera,
     client: &Client,
 ) -> Vec<(String, Change)> {
-    let Some((name, _)) = client.depth_of_visibility() else { return Vec::new() };
-    // Where there is no memory for another picture, these mistakes are not tried.
-    let Ok(picture) = session.define::<f32>(camera, false) else { return Vec::new() };
-    let (Ok(own), Ok(truth)) = (client.frame().scalar(name), picture.frame.scalar("Z")) else {
-        return Vec::new();
-    };
-    let pairs = || own.values().iter().copied().zip(truth.values().iter().map(|&t| f64::from(t)));
+    let Some(all) = pairs(session, camera, client) else { return Vec::new() };
+    let pairs = || all.iter().copied();
     let background = background(pairs().filter(|(_, t)| *t == f64::INFINITY).map(|(v, _)| v));
     let seen: Vec<_> = pairs()
         .filter(|(v, t)| v.is_finite() && Some(*v) != background && *t > 0.0 && t.is_finite())
@@ -108,6 +103,26 @@ pub(super) fn mistakes(
         all.insert(0, Reading { background, ..Reading::PLAIN });
     }
     all.into_iter().map(|one| (one.in_words(), Change::Depths(one))).collect()
+}
+
+/// The depth that the client stores at each pixel, and the right one. None where there is no memory
+/// for another picture.
+fn pairs(session: &Session<'_>, camera: &Camera, client: &Client) -> Option<Vec<(f64, f64)>> {
+    let (name, _) = client.depth_of_visibility()?;
+    let picture = session.define::<f32>(camera, false).ok()?;
+    let (own, truth) = (client.frame().scalar(name).ok()?, picture.frame.scalar("Z").ok()?);
+    let truth = truth.values().iter().map(|&t| f64::from(t));
+    Some(own.values().iter().copied().zip(truth).collect())
+}
+
+/// The length by which most depths are too large, if it is the same for most of them.
+pub(super) fn offset(session: &Session<'_>, camera: &Camera, client: &Client) -> Option<f64> {
+    let pairs = pairs(session, camera, client)?;
+    let both = pairs.iter().filter(|(v, t)| v.is_finite() && t.is_finite());
+    let offsets: Vec<f64> = both.map(|(v, t)| v - t).collect();
+    let offset = median(offsets.clone());
+    let off = median(offsets.iter().map(|own| (own - offset).abs()).collect());
+    (offset.is_finite() && off < 0.01 * offset.abs()).then_some(offset)
 }
 
 /// The one value of nearly all empty pixels, if it is not +inf.

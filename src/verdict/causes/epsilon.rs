@@ -18,8 +18,9 @@
 //! - The radius of each fragment's own surfel, because then the band of a pixel has no single end.
 //! - The strict t < `t_1` + e, because it differs only at ties.
 
-use super::Change;
-use crate::frame::{Frame, Plane, Samples};
+use super::change::Change;
+use super::depths;
+use crate::frame::{Plane, Samples};
 use crate::method::ewa::visibility::Foremost;
 use crate::method::surface;
 use crate::method::{Method, Session};
@@ -32,7 +33,7 @@ use crate::verdict::client::{Band, Client, Storage};
 
 /// Epsilon in world units, if the method is `ewa`, and epsilon is positive and finite.
 fn resolved(session: &Session<'_>) -> Option<f32> {
-    if !matches!(session.method(), Method::Ewa(_)) {
+    if !matches!(session.method(), Method::Ewa(_) | Method::SinglePass(_)) {
         return None;
     }
     let epsilon = session.method().splats()?.epsilon.resolve(&session.scene().surfels);
@@ -70,10 +71,7 @@ pub(super) fn bands(
         return Vec::new();
     };
     let mut all = vec![
-        (
-            "epsilon is on the wrong side: nothing is added up, as if it were subtracted",
-            Band::Before,
-        ),
+        ("nothing is added up, as if epsilon were on the wrong side", Band::Before),
         ("the unit of epsilon: a difference of 1/t, not of t", Band::OfNearness(1.0)),
     ];
     if camera.projection == Projection::Perspective {
@@ -89,24 +87,37 @@ pub(super) fn bands(
     }
     let named = |(what, band): (&str, _)| (what.to_owned(), Change::Band(band));
     let mut all: Vec<_> = all.into_iter().map(named).collect();
-    let what = "epsilon is on the wrong side: what is added up lies behind it";
-    all.push((what.to_owned(), Change::Behind));
+    if matches!(session.method(), Method::Ewa(_)) {
+        let what = "epsilon is on the wrong side: what is added up lies behind it";
+        all.push((what.to_owned(), Change::Behind));
+    }
     all
 }
 
-/// Visibility depths that are moved by epsilon, and the mistakes in words.
-pub(super) fn moved(session: &Session<'_>, client: &Client) -> Vec<(String, Change)> {
-    let Some((epsilon, _)) = resolved(session).zip(client.depth_of_visibility()) else {
+/// Visibility depths that are moved by epsilon, or by another length, and the mistakes in words.
+pub(super) fn moved(
+    session: &Session<'_>,
+    camera: &Camera,
+    client: &Client,
+) -> Vec<(String, Change)> {
+    if client.depth_of_visibility().is_none() {
         return Vec::new();
-    };
-    let epsilon = f64::from(epsilon);
-    vec![
-        ("the depth comes from discs moved back by epsilon".into(), Change::Moved(epsilon)),
-        (
-            "epsilon is on the wrong side: the depth comes from discs moved towards the eye".into(),
-            Change::Moved(-epsilon),
-        ),
-    ]
+    }
+    let mut all = Vec::new();
+    if let Some(epsilon) = resolved(session) {
+        let epsilon = f64::from(epsilon);
+        all.push((
+            "the depth comes from discs moved back by epsilon".into(),
+            Change::Moved(epsilon),
+        ));
+        let what = "epsilon is on the wrong side: the depth comes from discs moved towards the eye";
+        all.push((what.into(), Change::Moved(-epsilon)));
+    }
+    if let Some(offset) = depths::offset(session, camera, client) {
+        let what = format!("a depth bias: depths are {} too large", depths::digits(offset));
+        all.push((what, Change::Moved(offset)));
+    }
+    all
 }
 
 /// The planes that may hold the depth for judging the visibility pass. The first one that is there
@@ -115,7 +126,14 @@ pub(super) const DEPTHS: [&str; 2] = [Foremost::<f32>::PLANES[0].row.name, surfa
 
 /// The client as if its band ended there.
 pub(super) fn banded(client: &Client, band: Band) -> Client {
-    let client = if band == Band::Before { up_to_sums(client) } else { client.clone() };
+    let of_images = client.frame().planes.iter().any(|plane| plane.name.starts_with("group"));
+    let client = match band {
+        Band::Before if of_images => {
+            client.with_planes(|name| name.starts_with("group") || is_sum(name))
+        }
+        Band::Before => up_to_sums(client),
+        _ => client.clone(),
+    };
     Client { band, ..client }
 }
 
@@ -129,9 +147,13 @@ fn up_to_sums(client: &Client) -> Client {
         "weight" => is_first(name, "attributes"),
         _ => name.starts_with("visibility.") || is_sum(name),
     };
-    let Frame { width, height, ref planes } = *frame;
-    let planes = planes.iter().filter(|plane| kept(&plane.name)).cloned().collect();
-    Client { frame: Frame { width, height, planes }, ..client.clone() }
+    client.with_planes(kept)
+}
+
+/// The client with its depths alone.
+pub(super) fn depths_alone(client: &Client) -> Client {
+    let first = DEPTHS.into_iter().find(|name| client.frame().scalar(name).is_ok());
+    client.with_planes(|name| Some(name) == first)
 }
 
 /// Whether a plane holds sums.

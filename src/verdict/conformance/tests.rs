@@ -107,3 +107,26 @@ fn so_it_is_under_every_promise_and_if_it_is_large() {
     let flaws: Vec<String> = flaws.collect();
     assert!(flaws.is_empty(), "{}", flaws.join("\n"));
 }
+
+/// The name of the mistake of a renderer that breaks a rule.
+fn cause(method: &str, rule: &str) -> Option<String> {
+    let exec = Exec::sequential();
+    let rules = Rule::all(method).unwrap();
+    let rule = rules.iter().find(|own| own.name == rule).unwrap();
+    let (case, broken) = (rule.case(&exec).unwrap(), rule.broken(&exec).unwrap());
+    case.judge(&drawn(&broken, &exec), 1.0, &exec).unwrap().cause
+}
+
+#[test]
+fn numbers_of_broken_rules_are_estimated() {
+    for (method, rule, name) in [
+        ("ewa", "low-pass", "the low-pass filter has another variance: 0.6 px^2, not 0.25"),
+        ("single-pass", "low-pass", "the low-pass filter has another variance: 0.6 px^2, not 0.25"),
+        ("ewa", "rim", "radii are 1.02 times as large"),
+        ("ewa", "rolled", "the camera is tilted by -26.57 degrees"),
+        ("ewa", "sizes", "large splats are clamped: no radius is above 2"),
+        ("ewa", "between-pixels", "centres are rounded to the centres of pixels"),
+    ] {
+        assert_eq!(cause(method, rule).as_deref(), Some(name), "{method}: {rule}");
+    }
+}

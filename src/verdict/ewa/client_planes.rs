@@ -8,6 +8,7 @@ use crate::method::stage::PlaneRow;
 use crate::method::surface;
 use crate::splat::record::SplatRecord;
 use crate::verdict::client::{Band, Client, Storage, StoredPlane, Ties};
+use crate::verdict::supposed::Supposed;
 
 /// The planes of a client; each may be missing.
 #[derive(Clone, Copy, Debug)]
@@ -20,6 +21,7 @@ pub(crate) struct ClientPlanes<'a> {
     pub(crate) ties: Ties,
     pub(crate) band: Band,
     pub(crate) depth_test: Storage,
+    pub(crate) supposed: Supposed,
     /// The sums of the attribute pass. The weight may come from the picture.
     pub(crate) weight: Option<StoredPlane<'a, f64>>,
     pub(crate) normal_sum: Option<StoredPlane<'a, [f64; 3]>>,
@@ -84,6 +86,7 @@ impl<'a> ClientPlanes<'a> {
             ties: client.ties,
             band: client.band,
             depth_test: client.depth_test,
+            supposed: client.supposed,
             weight: sum,
             normal_sum: client.triple(normal),
             color_sum: client.triple(color),

@@ -70,6 +70,7 @@ use band::Bands;
 use certificate::{Certificate, Nearest};
 use client_planes::ClientPlanes;
 use pixel::PixelJudge;
+pub(super) use records::{WrongField, wrong_fields};
 use right::{Errors, RightPixels};
 use sums::{AllSums, Continuations};
 use swift::SwiftSplats;
@@ -82,11 +83,13 @@ pub(super) fn verify<P: Profile>(
     budget: f64,
 ) -> Verdict {
     let client_planes = ClientPlanes::new(client);
-    let judge = Judge::<P>::new(job, settings, &client_planes);
+    let judge = Judge::<P>::new(job, settings, (client, &client_planes));
     let verdict =
         marks::verdict(job, client_planes.stages(), budget, |tile, marks| judge.judge(tile, marks));
     match &client.records {
-        Some(records) => verdict.after(records::judge::<P>(job, settings, records)),
+        Some(records) => {
+            verdict.after(records::judge::<P>(job, settings, (records, client.supposed)))
+        }
         None => verdict,
     }
 }
@@ -99,7 +102,7 @@ pub(super) fn checks<P: Profile>(
     pixel: (u32, u32),
 ) -> Result<Vec<Check>> {
     let client_planes = ClientPlanes::new(client);
-    let judge = Judge::<P>::new(job, settings, &client_planes);
+    let judge = Judge::<P>::new(job, settings, (client, &client_planes));
     let stages = client_planes.stages().map(|(stage, _)| stage);
     marks::checks(job, stages, pixel, |tile, marks| judge.judge(tile, marks))
 }
@@ -115,10 +118,19 @@ struct Judge<'a, P: Profile> {
 }
 
 impl<'a, P: Profile> Judge<'a, P> {
-    fn new(job: &Job<'a>, settings: &Settings, client_planes: &'a ClientPlanes<'a>) -> Self {
+    fn new(
+        job: &Job<'a>,
+        settings: &Settings,
+        (client, client_planes): (&Client, &'a ClientPlanes<'a>),
+    ) -> Self {
         let splats = match client_planes.records {
             Some(records) => records::project(job, settings, records),
-            None => swift::project(job, settings),
+            None => {
+                let job = client.projection(job);
+                let mut splats = swift::project(&job, settings, client_planes.supposed);
+                splats.shared.limit = client_planes.supposed.limit(splats.shared.limit);
+                splats
+            }
         };
         let bands = Bands::new(job, (client_planes.band, client_planes.depth_test), splats.epsilon);
         let pixels = PixelJudge::new(job, client_planes);
@@ -134,7 +146,8 @@ impl<'a, P: Profile> Judge<'a, P> {
         let nearest = certificate.nearest();
         let limits = bands.moved(&nearest, &rect);
         let beside = Some((&certificate, &mut *first));
-        let added = sums::add(splats, surfels, &limits, (tile, &rect), beside, &mut rest[0]);
+        let rule = (client_planes.supposed, &*limits);
+        let added = sums::add(splats, surfels, rule, (tile, &rect), beside, &mut rest[0]);
         certificate.end(first);
         let right = self.right(rect, &nearest, &added.sums, &rest[0]);
         let sums = added.followed(|pixel| right[pixel].is_none());

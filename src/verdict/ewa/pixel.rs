@@ -17,6 +17,7 @@ use crate::verdict::checks::{
 };
 use crate::verdict::client::{Storage, StoredPlane};
 use crate::verdict::marks::Marks;
+use crate::verdict::supposed::Supposed;
 use std::borrow::Cow;
 
 /// The stages after visibility, by their index among the marks.
@@ -59,7 +60,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             brightest.at_least(r).at_least(g).at_least(b)
         });
         let colored = surfels.color().is_some();
-        let shading = Shading::new(job, colored);
+        let shading = Shading::new(job, colored).supposing(client_planes.supposed);
         let nowhere = sum::direction([Ball::ZERO; 3], Ball::ZERO);
         Self { client_planes, shading, colored, brightest, nowhere }
     }
@@ -208,13 +209,15 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     /// The sums as the client may have stored them between two additions. Each addition rounds a
     /// sum that is at most this large.
     fn stored<'s>(&self, sums: &'s Sums<Ball<P>>) -> Cow<'s, Sums<Ball<P>>> {
-        if self.client_planes.accumulator == Storage::Single {
-            return Cow::Borrowed(sums);
+        let ClientPlanes { accumulator, supposed, .. } = self.client_planes;
+        if *accumulator == Storage::Single {
+            return match supposed {
+                Supposed::Nothing => Cow::Borrowed(sums),
+                _ => Cow::Owned(supposed.sums(*sums)),
+            };
         }
         let heaviest = sums.weight.middle + sums.weight.radius;
-        let lost = |largest: f64| {
-            f64::from(sums.count) * self.client_planes.accumulator.radius(heaviest * largest)
-        };
+        let lost = |largest: f64| f64::from(sums.count) * accumulator.radius(heaviest * largest);
         Cow::Owned(Sums {
             weight: widened(sums.weight, lost(1.0)),
             normal: sums.normal.map_inline(|part| widened(part, lost(1.0))),
@@ -278,8 +281,17 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         };
         let some = weight.gt(Ball::ZERO).possibly();
         Averages {
-            normal: if some { sum::direction(normal, weight) } else { self.nowhere },
-            color: if self.colored { sum::average(color, weight) } else { [Ball::ZERO; 3] },
+            normal: match some {
+                true => self.client_planes.supposed.direction(normal, weight),
+                false => self.nowhere,
+            },
+            color: match self.colored {
+                true => {
+                    let count = sums.map(|sums| sums.count);
+                    self.client_planes.supposed.color(color, weight, count)
+                }
+                false => [Ball::ZERO; 3],
+            },
         }
     }
 

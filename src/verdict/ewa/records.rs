@@ -14,6 +14,7 @@ use crate::splat::project::project_as;
 use crate::splat::record::SplatRecord;
 use crate::splat::{Footprint, Projector, Reasons, Splat, Tally, View, batch};
 use crate::verdict::marks::Marks;
+use crate::verdict::supposed::Supposed;
 use crate::verdict::{Fault, StageVerdict};
 
 /// The name of the stage.
@@ -64,7 +65,7 @@ fn disc<P: Profile>(
 pub(super) fn judge<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
-    records: &[SplatRecord],
+    (records, supposed): (&[SplatRecord], Supposed),
 ) -> StageVerdict {
     let surfels = &job.scene.surfels;
     let projector =
@@ -74,7 +75,12 @@ pub(super) fn judge<P: Profile>(
     let found = job.exec.ordered(ranges, |range: std::ops::Range<usize>| {
         let of_surfel = |i: usize| {
             let at = records.binary_search_by_key(&(i as u32), |record| record.surfel);
-            judge_surfel(&projector, surfels, i as u32, at.ok().map(|at| &records[at]))
+            let other = |splat, certain| {
+                let possible = PossibleSplat { splat, certain };
+                supposed.splat(possible, &settings.kernel, &job.picture())
+            };
+            let record = at.ok().map(|at| &records[at]);
+            judge_surfel((&projector, &other), surfels, i as u32, record)
         };
         range.filter_map(of_surfel).collect::<Vec<_>>()
     });
@@ -145,9 +151,12 @@ impl What {
     }
 }
 
+/// Changes a splat that certainly is drawn, or may be, by the rules that are supposed.
+type Other<'o, P> = &'o dyn Fn(Splat<Ball<P>>, bool) -> PossibleSplat<P>;
+
 /// The worst error in the record of a surfel; none if the surfel has no record and needs none.
 fn judge_surfel<P: Profile>(
-    projector: &Projector<Ball<P>>,
+    (projector, other): (&Projector<Ball<P>>, Other<'_, P>),
     surfels: &Surfels,
     surfel: u32,
     record: Option<&SplatRecord>,
@@ -156,6 +165,7 @@ fn judge_surfel<P: Profile>(
     let mut best: Option<(f64, What)> = None;
     let mut missing = None;
     possible::each_possible(projector, &disc, surfel, &mut |splat, certain| {
+        let PossibleSplat { splat, certain } = other(splat, certain);
         let center = splat.footprint.center.map(Real::to_f32);
         missing = certain.then_some([center.x, center.y]);
         if let Some(record) = record {
@@ -223,6 +233,55 @@ fn numbers<R: Copy>(f: &Footprint<R>) -> [(&'static str, R); 11] {
         ("w_near", f.w_near),
         ("amplitude", f.amplitude),
     ]
+}
+
+/// A number of records: its name in a record, how many records have a wrong one, and how many times
+/// the right one it is, if that is the same in nearly all of them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct WrongField {
+    pub(crate) name: &'static str,
+    pub(crate) wrong: usize,
+    pub(crate) times: Option<f64>,
+}
+
+/// The numbers that are wrong in some record.
+pub(crate) fn wrong_fields<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    records: &[SplatRecord],
+) -> Vec<WrongField> {
+    let surfels = &job.scene.surfels;
+    let projector =
+        Projector::<Ball<P>>::new(View::new(job.camera), &settings.kernel, settings.cull);
+    let mut times: Vec<(&'static str, Vec<f64>)> = Vec::new();
+    for record in records {
+        let Some(disc) = disc(surfels, record) else { continue };
+        let mut truth = None;
+        possible::each_possible(&projector, &disc, record.surfel, &mut |splat, _| {
+            truth = Some(numbers(&splat.footprint));
+        });
+        let found = numbers(&record.footprint().map(Ball::<P>::from_f32));
+        for (i, (name, truth)) in truth.into_iter().flatten().enumerate() {
+            if times.len() <= i {
+                times.push((name, Vec::new()));
+            }
+            if truth.misfit(found[i].1) > 1.0 {
+                times[i].1.push(found[i].1.middle / truth.middle);
+            }
+        }
+    }
+    let wrong = times.into_iter().filter(|(_, times)| !times.is_empty());
+    wrong
+        .map(|(name, times)| WrongField { name, wrong: times.len(), times: usual(times) })
+        .collect()
+}
+
+/// The number that nearly all of some numbers are.
+fn usual(mut all: Vec<f64>) -> Option<f64> {
+    all.sort_by(f64::total_cmp);
+    let middle = all[all.len() / 2];
+    let near = |value: &&f64| (**value - middle).abs() <= 0.001 * middle.abs();
+    (10 * all.iter().filter(near).count() >= 9 * all.len()).then_some(middle)
 }
 
 /// Whether the record's copied attributes equal the surfel's.

@@ -22,6 +22,7 @@ use crate::number::{Ball, MapInline, Real};
 use crate::shade::phong::Shader;
 use crate::splat::View;
 use crate::verdict::client::{Storage, StoredPlane, known};
+use crate::verdict::supposed::Supposed;
 
 /// One number in each lane.
 type Numbers<P> = BallLanes<Common<P>>;
@@ -60,6 +61,7 @@ impl<'a, P: Profile> RightPixels<'a, P> {
         let other = client_planes.opacity.is_some()
             || client_planes.mask.is_some()
             || client_planes.weightless
+            || client_planes.supposed != Supposed::Nothing
             || client_planes.accumulator != Storage::Single
             || job.scene.environment.is_some();
         if other || !floats {
@@ -343,7 +345,7 @@ mod tests {
     /// and how many are wrong.
     fn compare<P: Profile>(job: &Job<'_>, settings: &Settings, client: &Client) -> [u64; 2] {
         let client_planes = ClientPlanes::new(client);
-        let mut judge = Judge::<P>::new(job, settings, &client_planes);
+        let mut judge = Judge::<P>::new(job, settings, (client, &client_planes));
         let mut found = [0; 2];
         for (tile, rect) in job.grid().rects().into_iter().enumerate() {
             let given = (&client_planes, judge.surfels);
@@ -351,7 +353,8 @@ mod tests {
             let nearest =
                 certificate::judge_among(&judge.splats, &[], given, (tile, &rect), &mut marks);
             let (surfels, at) = (judge.surfels, (tile, &rect));
-            let added = sums::add(&judge.splats, surfels, &nearest, at, None, &mut marks);
+            let rule = (Supposed::Nothing, &*nearest);
+            let added = sums::add(&judge.splats, surfels, rule, at, None, &mut marks);
             let right = judge.right(rect, &nearest, &added.sums, &marks);
             found[0] += right.iter().flatten().count() as u64;
         }

@@ -14,6 +14,7 @@ use crate::scene::Surfels;
 use crate::verdict::Doubt;
 use crate::verdict::marks::{Marks, PixelMarks};
 use crate::verdict::shift::{CUT_OFF, EPSILON, OpenDecision};
+use crate::verdict::supposed::Supposed;
 
 /// The most undecided fragments of a pixel for which all continuations are followed, 2^n of them.
 pub(crate) const MOST: u32 = 4;
@@ -51,16 +52,17 @@ pub(crate) fn continuations<'a, P: Profile>(
     tile: (usize, &Rect),
     marks: &mut Marks,
 ) -> TileSums<'a, P> {
-    add(splats, surfels, nearest, tile, None, marks).followed(|_| true)
+    let rule = (Supposed::Nothing, nearest);
+    add(splats, surfels, rule, tile, None, marks).followed(|_| true)
 }
 
-/// Adds the fragments that certainly are in the sums of each pixel of a tile, for the given nearest
-/// fragments. It also shows each fragment to the certificate, because most such fragments are in
+/// Adds the fragments that certainly are in the sums of each pixel of a tile, by the supposed rules
+/// and for the given nearest fragments. It also shows each fragment to the certificate, because most such fragments are in
 /// the sums.
 pub(super) fn add<'s, 'a, P: Profile>(
     splats: &'s SwiftSplats<P>,
     surfels: &'a Surfels,
-    nearest: &'s [Nearest<P>],
+    (supposed, nearest): (Supposed, &'s [Nearest<P>]),
     tile: (usize, &'s Rect),
     mut certificate: Option<(&Certificate<'_, P>, &mut Marks)>,
     marks: &mut Marks,
@@ -74,7 +76,7 @@ pub(super) fn add<'s, 'a, P: Profile>(
     let least: Vec<f64> = (0..limits.len()).map(least).collect();
     each_part(
         splats,
-        (nearest, &limits, &least),
+        (supposed, nearest, &limits, &least),
         tile,
         |pixel, fragment, depth| {
             if let Some((certificate, marks)) = &mut certificate {
@@ -91,7 +93,7 @@ pub(super) fn add<'s, 'a, P: Profile>(
             marks.at(pixel).doubt(Doubt::Side, part.back.decided().is_none());
         },
     );
-    Accumulation { splats, surfels, nearest, limits, tile, sums }
+    Accumulation { splats, surfels, supposed, nearest, limits, tile, sums }
 }
 
 /// The lesser of two bounds on a nearness. A NaN bounds nothing, so it is less than all.
@@ -103,6 +105,7 @@ fn lesser(a: f64, b: f64) -> f64 {
 pub(super) struct Accumulation<'s, 'a, P: Profile> {
     splats: &'s SwiftSplats<P>,
     surfels: &'a Surfels,
+    supposed: Supposed,
     nearest: &'s [Nearest<P>],
     limits: Vec<Limit<P>>,
     tile: (usize, &'s Rect),
@@ -112,7 +115,7 @@ pub(super) struct Accumulation<'s, 'a, P: Profile> {
 impl<'a, P: Profile> Accumulation<'_, 'a, P> {
     /// Follows the possible sums of the pixels that `asked` names.
     pub(super) fn followed(self, asked: impl Fn(usize) -> bool) -> TileSums<'a, P> {
-        let Self { splats, surfels, nearest, limits, tile, sums } = self;
+        let Self { splats, surfels, supposed, nearest, limits, tile, sums } = self;
         let followed = |pixel: usize| {
             asked(pixel)
                 && match sums.undecided[pixel] {
@@ -120,7 +123,7 @@ impl<'a, P: Profile> Accumulation<'_, 'a, P> {
                     n => n <= MOST,
                 }
         };
-        let parts = parts(splats, (nearest, &limits), tile, followed);
+        let parts = parts(splats, (supposed, nearest, &limits), tile, followed);
         TileSums { surfels, sums, parts }
     }
 }
@@ -249,12 +252,16 @@ fn limits<P: Profile>(splats: &SwiftSplats<P>, nearest: &[Nearest<P>]) -> Vec<Li
     nearest.iter().map(of_pixel).collect()
 }
 
+/// The supposed rules, and for each pixel the nearest fragment, its limit, and the least nearness that
+/// is asked for.
+type Limited<'l, P> = (Supposed, &'l [Nearest<P>], &'l [Limit<P>], &'l [f64]);
+
 /// Runs `take` for every fragment that is or may be in the sums, in ascending surfel index. Runs
 /// `meet` for all fragments other than the nearest whose nearness is not certainly below `least`.
 #[inline(always)]
 fn each_part<P: Profile>(
     splats: &SwiftSplats<P>,
-    (nearest, limits, least): (&[Nearest<P>], &[Limit<P>], &[f64]),
+    (supposed, nearest, limits, least): Limited<'_, P>,
     tile: (usize, &Rect),
     mut meet: impl FnMut(usize, &Fragment<'_, P>, Ball<P>),
     mut take: impl FnMut(usize, Part<P>, &FragmentDecisions),
@@ -267,7 +274,8 @@ fn each_part<P: Profile>(
         |fragment, pixel| {
             let &Fragment { splat, drawn, q, inside, .. } = fragment;
             // The nearest fragment always passes, by the law of the test.
-            let visible = if fragment.is_of(nearest[pixel].id) {
+            let is_nearest = fragment.is_of(nearest[pixel].id);
+            let visible = if is_nearest {
                 true.into()
             } else {
                 let depth = fragment.depth();
@@ -283,9 +291,12 @@ fn each_part<P: Profile>(
                         [([q, shared.limit], shared.limit), (depth, splats.epsilon)]
                     })
                 });
-                let weight = splat.footprint.weight(q);
-                let part = Part { surfel: splat.surfel, back: splat.back, weight, open };
-                take(pixel, part, &asked);
+                let weight = supposed.weight(&splat.footprint, q);
+                let back = supposed.turned(splat.back);
+                let part = Part { surfel: splat.surfel, back, weight, open };
+                for _ in 0..supposed.times(splat.surfel, is_nearest) {
+                    take(pixel, part, &asked);
+                }
             }
         },
     );
@@ -294,7 +305,7 @@ fn each_part<P: Profile>(
 /// All fragments of the pixels that are followed.
 fn parts<P: Profile>(
     splats: &SwiftSplats<P>,
-    (nearest, limits): (&[Nearest<P>], &[Limit<P>]),
+    (supposed, nearest, limits): (Supposed, &[Nearest<P>], &[Limit<P>]),
     tile: (usize, &Rect),
     followed: impl Fn(usize) -> bool,
 ) -> Fragments<P> {
@@ -304,7 +315,7 @@ fn parts<P: Profile>(
     if least.iter().any(|least| *least != f64::INFINITY) {
         each_part(
             splats,
-            (nearest, limits, &least),
+            (supposed, nearest, limits, &least),
             tile,
             |_, _, _| (),
             |pixel, part, _| parts.push((pixel, part)),
@@ -359,7 +370,8 @@ mod tests {
     /// Compares the sums of all pixels without an undecided fragment with sums that are added one
     /// by one. Returns how many have several fragments and are known.
     fn compare<P: Profile>(job: &Job<'_>, settings: &SplatSettings) -> usize {
-        let (surfels, splats) = (&job.scene.surfels, swift::project::<P>(job, settings));
+        let (surfels, splats) =
+            (&job.scene.surfels, swift::project::<P>(job, settings, Supposed::Nothing));
         let mut found = 0;
         for (tile, rect) in job.grid().rects().into_iter().enumerate() {
             let at_3 = Nearest { depth: Ball::exact(3.0), id: None };
@@ -367,7 +379,8 @@ mod tests {
             let mut marks = Marks::new(rect);
             let sums = continuations(&splats, surfels, &nearest, (tile, &rect), &mut marks);
             let limits = limits(&splats, &nearest);
-            let all = parts(&splats, (&nearest, &limits), (tile, &rect), |_| true);
+            let rule = (Supposed::Nothing, &*nearest, &*limits);
+            let all = parts(&splats, rule, (tile, &rect), |_| true);
             for pixel in 0..rect.pixels() {
                 let Continuations::One(own) = sums.continuations(pixel) else { continue };
                 let plain = chosen(surfels, of_one(&all, pixel), 0);

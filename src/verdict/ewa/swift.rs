@@ -15,6 +15,7 @@ use crate::method::prepare::Prepared;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, MapInline, Real, Truth};
 use crate::splat::{Footprint, Shared, Splat};
+use crate::verdict::supposed::Supposed;
 
 /// More than the rounding of the few operations that the bounds do not include.
 const ROUNDINGS: f64 = 16.0 / 16_777_216.0;
@@ -54,9 +55,15 @@ impl<P: Profile> SwiftSplat<P> {
     }
 }
 
-/// Projects the surfels that may be drawn.
-pub(super) fn project<P: Profile>(job: &Job<'_>, settings: &Settings) -> SwiftSplats<P> {
-    possible::project_into(job, settings, SwiftSplat::new, SwiftSplat::bounds)
+/// Projects the surfels that may be drawn, by the rules that are supposed.
+pub(super) fn project<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    supposed: Supposed,
+) -> SwiftSplats<P> {
+    let picture = job.picture();
+    let record = |possible| SwiftSplat::new(supposed.splat(possible, &settings.kernel, &picture));
+    possible::project_into(job, settings, record, SwiftSplat::bounds)
 }
 
 /// Projects a part of a scene. `whole` gives each of its surfels the number in the whole scene, and
@@ -258,7 +265,7 @@ mod tests {
     /// Compares every fragment of a scene's splats with its bounds. Returns how many fragments
     /// there are, and how many the bounds skip.
     fn compare<P: Profile>(job: &Job<'_>, settings: &Settings) -> [usize; 2] {
-        let splats = project::<P>(job, settings);
+        let splats = project::<P>(job, settings, Supposed::Nothing);
         let shared = &splats.shared;
         let mut found = [0; 2];
         for (tile, rect) in job.grid().rects().into_iter().enumerate() {

@@ -14,6 +14,7 @@ use crate::verdict::marks::{Marks, PixelMarks, StageMarks, Watch, counted};
 use crate::verdict::outcomes::{MOST, Outcome, outcomes};
 use crate::verdict::planes::RecordPlanes;
 use crate::verdict::projection::SamplePlanes;
+use crate::verdict::supposed::Supposed;
 
 /// The cells of a level.
 pub(super) type Level<P> = Plane<Cell<Ball<P>>>;
@@ -25,6 +26,7 @@ type Four<P> = [Cell<Ball<P>>; 4];
 pub(super) struct Levels<'a, P: Profile> {
     job: &'a Job<'a>,
     sizes: &'a [[u32; 2]],
+    supposed: Supposed,
     /// The planes of the levels 1 to the last after the pull, and of the levels 0 to the last but
     /// one after the push.
     planes: [&'a [RecordPlanes<'a>]; 2],
@@ -37,7 +39,7 @@ pub(super) struct Levels<'a, P: Profile> {
 impl<'a, P: Profile> Levels<'a, P> {
     pub(super) fn new(
         job: &'a Job<'a>,
-        sizes: &'a [[u32; 2]],
+        (sizes, supposed): (&'a [[u32; 2]], Supposed),
         finest: &SamplePlanes<'_>,
         planes: [&'a [RecordPlanes<'a>]; 2],
     ) -> Self {
@@ -50,7 +52,7 @@ impl<'a, P: Profile> Levels<'a, P> {
         pulled.extend(planes[0].iter().zip(&sizes[1..]).map(level));
         let mut pushed: Vec<_> = planes[1].iter().zip(sizes).map(level).collect();
         pushed.extend(pulled.last().cloned());
-        Self { job, sizes, planes, pulled, pushed }
+        Self { job, sizes, supposed, planes, pulled, pushed }
     }
 
     /// Level 0 after the push, if all its planes are there.
@@ -63,11 +65,11 @@ impl<'a, P: Profile> Levels<'a, P> {
         let mut found = Phase::new(self.job, watch);
         for (level, planes) in (1..).zip(self.planes[0]) {
             let Some(fine) = &self.pulled[level - 1] else { continue };
-            let side = pull::side(level - 1);
+            let (side, supposed) = (self.supposed.pull_side(level - 1), self.supposed);
             found.level(self.job, planes, self.sizes[level], |at, pixel| {
                 let finer = pull::four(fine, at.0, at.1);
                 let offsets = pull::offsets(&finer, side);
-                let (outcomes, doubts) = of_four(&finer, &offsets);
+                let (outcomes, doubts) = of_four(&finer, &offsets, supposed);
                 pixel.doubts(doubts);
                 let of = |outcome: &Outcome| match *outcome {
                     Some((takes, first)) => pull::merge(&finer, &offsets, takes, first),
@@ -88,7 +90,7 @@ impl<'a, P: Profile> Levels<'a, P> {
                 continue;
             };
             found.level(self.job, planes, self.sizes[level], |at, pixel| {
-                pushed((fine, coarse), at, level, settings, pixel)
+                pushed((fine, coarse), at, level, (settings, self.supposed), pixel)
             });
         }
         ("push", found.names, found.marks)
@@ -148,11 +150,16 @@ impl Phase {
 }
 
 /// The outcomes of four cells at these offsets.
-fn of_four<P: Profile>(cells: &Four<P>, offsets: &[Vector2<Ball<P>>; 4]) -> (Vec<Outcome>, u8) {
+fn of_four<P: Profile>(
+    cells: &Four<P>,
+    offsets: &[Vector2<Ball<P>>; 4],
+    supposed: Supposed,
+) -> (Vec<Outcome>, u8) {
     let tube = |j: usize| cells[j].kind == SampleKind::Tube;
     outcomes(Cell::inside(cells, offsets), cells.map_inline(|cell| cell.front), |j, first| {
         let overlaps = decide::overlaps(cells[j].front, cells[first].back);
-        overlaps & (tube(j) == tube(first)).into()
+        let all = supposed == Supposed::AllOverlap;
+        (overlaps | all.into()) & (tube(j) == tube(first)).into()
     })
 }
 
@@ -161,19 +168,21 @@ fn pushed<P: Profile>(
     (fine, coarse): (&Level<P>, &Level<P>),
     (x, y): (u32, u32),
     level: usize,
-    settings: &Settings,
+    (settings, supposed): (&Settings, Supposed),
     pixel: &mut PixelMarks<'_>,
 ) -> Vec<Cell<Ball<P>>> {
     let (cell, parent) = (fine.at(x, y), coarse.at(x / 2, y / 2));
-    let covered = push::occluded(cell, parent, settings.occlusion) | (!cell.is_valid()).into();
+    let none = supposed == Supposed::NothingOccluded;
+    let occluded = push::occluded(cell, parent, settings.occlusion) & (!none).into();
+    let covered = occluded | (!cell.is_valid()).into();
     pixel.doubt(Doubt::Fate, covered.decided().is_none());
     if !covered.possibly() {
         return vec![*cell];
     }
     let coarser = push::four(coarse, x, y);
     let even = (x.is_multiple_of(2), y.is_multiple_of(2));
-    let offsets = push::offsets(&coarser, even, pull::side(level));
-    let (outcomes, doubts) = of_four(&coarser, &offsets);
+    let offsets = push::offsets(&coarser, even, supposed.push_side(level));
+    let (outcomes, doubts) = of_four(&coarser, &offsets, supposed);
     pixel.doubts(doubts);
     let mut all = Vec::with_capacity(outcomes.len() + 1);
     if !covered.certainly() {

@@ -94,8 +94,10 @@ fn judge<P: Profile>(
     let cells = |fields| move |level| RecordPlanes::new(client, fields, level);
     let pulled: Vec<_> = (1..=last).map(cells(&Cell::<f32>::PULL)).collect();
     let pushed: Vec<_> = (0..last).map(cells(&Cell::<f32>::PUSH)).collect();
-    let projection = samples::judge::<P>(job, settings.cull, snap, &finest, watch);
-    let levels = Levels::<P>::new(job, &sizes, &finest, [&pulled, &pushed]);
+    let drawn = client.projection(job);
+    let projection = samples::judge::<P>(&drawn, settings.cull, snap, &finest, watch);
+    let of = (&sizes[..], client.supposed);
+    let levels = Levels::<P>::new(job, of, &finest, [&pulled, &pushed]);
     let before = vec![projection, levels.pull(watch), levels.push(settings, watch)];
     let client_planes = PicturePlanes::new(client);
     let judge = PixelJudge::new(job, levels.finest(), &client_planes);

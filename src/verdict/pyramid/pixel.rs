@@ -28,14 +28,14 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         client_planes: &'a PicturePlanes<'a>,
     ) -> Self {
         let has = Has::in_scene(job.scene);
-        let shading = Shading::new(job, has.color);
+        let shading = Shading::new(job, has.color).supposing(client_planes.supposed);
         Self { cells, client_planes, view: View::new(job.camera), shading, has }
     }
 
     /// The names of the judged planes. Without the finest level, only the planes of the picture
     /// that follow from others.
     pub(super) fn names(&self) -> Vec<&'static str> {
-        let PicturePlanes { shaded, alpha, depth, normal, tangent, kind } = self.client_planes;
+        let PicturePlanes { shaded, alpha, depth, normal, tangent, kind, .. } = self.client_planes;
         let copies = [
             depth.map(|plane| plane.name),
             normal.map(|plane| plane.name),
@@ -73,7 +73,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             [(&client_planes.normal, cell.normal), (&client_planes.tangent, cell.tangent)]
         {
             if let Some(plane) = plane {
-                triple(0, plane, at, world(&self.view, of), report);
+                let truth = client_planes.supposed.in_space(&self.view, world(&self.view, of));
+                triple(0, plane, at, truth, report);
             }
         }
     }

@@ -2,6 +2,7 @@
 
 use crate::method::pyramid::planes::{ALPHA, DEPTH, KIND, NORMAL, SHADED, TANGENT};
 use crate::verdict::client::{Client, StoredPlane};
+use crate::verdict::supposed::Supposed;
 
 /// The planes of the picture; each may be missing.
 #[derive(Clone, Copy, Debug)]
@@ -12,6 +13,7 @@ pub(super) struct PicturePlanes<'a> {
     pub(super) normal: Option<StoredPlane<'a, [f64; 3]>>,
     pub(super) tangent: Option<StoredPlane<'a, [f64; 3]>>,
     pub(super) kind: Option<StoredPlane<'a, u8>>,
+    pub(super) supposed: Supposed,
 }
 
 impl<'a> PicturePlanes<'a> {
@@ -23,6 +25,7 @@ impl<'a> PicturePlanes<'a> {
             normal: client.triple(&NORMAL),
             tangent: client.triple(&TANGENT),
             kind: client.count(&KIND),
+            supposed: client.supposed,
         }
     }
 }

@@ -12,6 +12,7 @@ use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
 use crate::splat::View;
 use crate::verdict::checks::anything;
+use crate::verdict::client::Band;
 use crate::verdict::ewa::client_planes::ClientPlanes;
 use crate::verdict::ewa::sums::{Continuations, MOST};
 use crate::verdict::marks::PixelMarks;
@@ -235,7 +236,7 @@ impl<'a, P: Profile> Compositing<'a, P> {
         id: Option<u32>,
         pixel: &mut PixelMarks<'_>,
     ) -> Option<Vec<Sums<Ball<P>>>> {
-        let limit = limit(nearest, self.epsilon);
+        let limit = self.end(nearest);
         let id = id.filter(|_| self.has_the_nearest(nearest));
         let seen: Vec<_> = choice
             .iter()
@@ -263,6 +264,19 @@ impl<'a, P: Profile> Compositing<'a, P> {
         Some((0..1 << undecided).map(of).collect())
     }
 
+    /// The end of the band behind the nearest depth, as assumed for the client.
+    fn end(&self, nearest: Ball<P>) -> Ball<P> {
+        match self.client_planes.band {
+            Band::Before => nearest - self.epsilon,
+            Band::OfNearness(unit) => {
+                let least = self.view.nearness(nearest) - self.epsilon * Ball::exact(unit);
+                let ends = !self.view.perspective || least.gt(Ball::ZERO).certainly();
+                if ends { self.view.nearness(least) } else { Ball::INFINITY }
+            }
+            Band::Depth | Band::AlongRay | Band::RadiiOfNearest(_) => limit(nearest, self.epsilon),
+        }
+    }
+
     /// Whether a sample is in the sums.
     fn visible(
         &self,
@@ -275,8 +289,10 @@ impl<'a, P: Profile> Compositing<'a, P> {
         let exact = depth.radius == 0.0 && nearest.radius == 0.0;
         let some = decide::before(depth, Ball::INFINITY);
         // The sample with the least depth always passes, by the law of the test.
-        if (id == Some(sample.surfel) && sample.surfel != NO_ID)
-            || (exact && depth.middle == nearest.middle)
+        let passes = self.client_planes.band != Band::Before;
+        if passes
+            && ((id == Some(sample.surfel) && sample.surfel != NO_ID)
+                || (exact && depth.middle == nearest.middle))
         {
             return some;
         }

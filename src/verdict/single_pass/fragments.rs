@@ -5,14 +5,15 @@ use crate::composite::decide;
 use crate::error::Result;
 use crate::frame::Rect;
 use crate::method::Job;
-use crate::method::ewa::possible::{PossibleSplat, PossibleSplats, project};
+use crate::method::ewa::possible::{PossibleSplat, PossibleSplats, project, project_into};
 use crate::method::fragment::each_pixel;
 use crate::method::single_pass::Settings;
-use crate::method::single_pass::geometry::ratio;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, MapInline, Truth};
 use crate::scene::Groups;
 use crate::splat::{Shared, SplatSettings, View, fragment};
+use crate::verdict::client::Client;
+use crate::verdict::supposed::Supposed;
 
 /// The splats of a picture, by their groups.
 pub(crate) struct GroupFragments<'a, P: Profile> {
@@ -22,6 +23,7 @@ pub(crate) struct GroupFragments<'a, P: Profile> {
     pub(crate) view: View<Ball<P>>,
     /// The bins of the Voronoi depth test; none for the plain test.
     bins: Option<DepthBins<Ball<P>>>,
+    supposed: Supposed,
 }
 
 /// A fragment that may be inside, or whose surfel the client names.
@@ -50,6 +52,7 @@ pub(crate) struct Keys<P: Profile> {
     bins: Option<[f64; 2]>,
     /// The distance from the centre of the splat. Under the plain depth test, the depth.
     part: Ball<P>,
+    supposed: Supposed,
 }
 
 /// The most bins for which each is tried as a key.
@@ -58,7 +61,7 @@ const MOST_BINS: f64 = 8.0;
 impl<P: Profile> Keys<P> {
     /// The key of a bin.
     fn of_bin(&self, bin: f64) -> Ball<P> {
-        DepthBins::within(Ball::exact(bin), self.part)
+        self.supposed.key(Ball::exact(bin), self.part)
     }
 
     /// The least key.
@@ -134,17 +137,22 @@ fn between<T>(all: &[(usize, T)], places: [usize; 2]) -> &[(usize, T)] {
 
 impl<'a, P: Profile> GroupFragments<'a, P> {
     /// Projects the surfels of all groups.
-    pub(crate) fn project(job: &Job<'a>, settings: &Settings) -> Result<Self> {
+    pub(crate) fn project(job: &Job<'a>, settings: &Settings, client: &Client) -> Result<Self> {
         let groups = Some(job.index.groups()?);
         let bins = settings.bins(&job.scene.surfels, job.camera)?;
-        let (splats, view) = (project(job, &settings.splats), View::new(job.camera));
-        Ok(Self { groups, splats, view, bins })
+        let (kernel, picture, supposed) = (&settings.splats.kernel, job.picture(), client.supposed);
+        let record = |possible| supposed.splat(possible, kernel, &picture);
+        let bounds = |possible: &PossibleSplat<P>| possible.splat.bounds;
+        let drawn = client.projection(job);
+        let mut splats = project_into(&drawn, &settings.splats, record, bounds);
+        splats.shared.limit = supposed.limit(splats.shared.limit);
+        Ok(Self { groups, splats, view: View::new(job.camera), bins, supposed })
     }
 
     /// Projects all surfels as one group, under the plain depth test.
     pub(crate) fn whole(job: &Job<'a>, settings: &SplatSettings) -> Self {
         let (splats, view) = (project(job, settings), View::new(job.camera));
-        Self { groups: None, splats, view, bins: None }
+        Self { groups: None, splats, view, bins: None, supposed: Supposed::Nothing }
     }
 
     /// Number of groups.
@@ -211,27 +219,32 @@ impl<'a, P: Profile> GroupFragments<'a, P> {
             inside,
             margin: q.distance(shared.limit),
             rim: q.middle / shared.limit.middle,
-            back: splat.back,
+            back: self.supposed.turned(splat.back),
             w,
             t,
-            weight: splat.footprint.weight(q),
+            weight: self.supposed.weight(&splat.footprint, q),
             keys: self.keys(q, t),
         })
     }
 
     fn keys(&self, q: Ball<P>, t: Ball<P>) -> Keys<P> {
-        let Some(bins) = &self.bins else { return Keys { bins: None, part: t } };
-        let ends = bin_ends(bins, t);
-        Keys { bins: Some(ends), part: ratio(q, self.shared().limit) }
+        let supposed = self.supposed;
+        let Some(bins) = &self.bins else { return Keys { bins: None, part: t, supposed } };
+        let ends = supposed.bins(bins, positions(bins, t));
+        Keys { bins: Some(ends), part: supposed.part(q, self.shared().limit), supposed }
     }
 }
 
 /// The least and the greatest bin of a depth.
 pub(crate) fn bin_ends<P: Profile>(bins: &DepthBins<Ball<P>>, t: Ball<P>) -> [f64; 2] {
+    Supposed::Nothing.bins(bins, positions(bins, t))
+}
+
+/// The least and the greatest position of a depth in bins.
+fn positions<P: Profile>(bins: &DepthBins<Ball<P>>, t: Ball<P>) -> [f64; 2] {
     let position = bins.position(t);
     // A little more than the radius, because comparisons of balls use that too.
     let reach = position.radius * (1.0 + f64::from(f32::EPSILON));
     let reach = if reach.is_nan() { f64::INFINITY } else { reach };
-    let ends = [position.middle - reach, position.middle + reach];
-    ends.map_inline(|end| bins.bin_of(Ball::exact(end)).middle)
+    [position.middle - reach, position.middle + reach]
 }

@@ -161,7 +161,7 @@ impl<'a, P: Profile> Judge<'a, P> {
     /// Projects the surfels of all groups.
     pub(crate) fn new(job: &Job<'a>, settings: &Settings, of: &'a GroupsOf<'a>) -> Result<Self> {
         let GroupsOf { client, client_planes, images: rows, layer } = of;
-        let fragments = GroupFragments::project(job, settings)?;
+        let fragments = GroupFragments::project(job, settings, client)?;
         let images = (0..fragments.groups()).map(|k| ImagePlanes::new(client, rows, k)).collect();
         let surfels = &job.scene.surfels;
         let epsilon = fragments.epsilon();

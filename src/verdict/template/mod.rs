@@ -95,7 +95,8 @@ fn judge<P: Profile>(
     let finest = SamplePlanes::new(client, job.scene);
     let coarser = |level| RecordPlanes::new(client, &Center::<f32>::PLANES, level);
     let coarser: Vec<_> = (1..sizes.len()).map(coarser).collect();
-    let projection = samples::judge::<P>(job, settings.cull, Snap::default(), &finest, watch);
+    let drawn = client.projection(job);
+    let projection = samples::judge::<P>(&drawn, settings.cull, Snap::default(), &finest, watch);
     let levels = Levels::<P>::new(job, settings, &sizes, &finest, &coarser);
     let propagation = levels.judge(watch);
     let client_planes = PicturePlanes::new(client);

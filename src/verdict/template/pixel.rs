@@ -3,7 +3,6 @@
 use super::gathering::outcomes;
 use super::levels::Level;
 use super::planes::PicturePlanes;
-use crate::composite::sum;
 use crate::frame::NO_ID;
 use crate::method::Job;
 use crate::method::projection::Has;
@@ -53,7 +52,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             brightest.at_least(r).at_least(g).at_least(b)
         });
         let view = View::new(job.camera);
-        let shading = Shading::new(job, has.color);
+        let shading = Shading::new(job, has.color).supposing(client_planes.supposed);
         let there = job.there(Keep::Stages);
         Self { settings, levels, client_planes, view, shading, has, there, brightest }
     }
@@ -125,6 +124,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         }
         if let Some(plane) = &client_planes.normal {
             let truth = normalization::normal(&self.view, own);
+            let truth = client_planes.supposed.in_space(&self.view, truth);
             triple(NORMALIZATION, plane, at, truth, report);
         }
         if let Some(plane) = &client_planes.weight_copy {
@@ -145,7 +145,10 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
                 depth: client_planes.depth.map_or_else(depth, |plane| input(&plane, at)),
                 normal: client_planes.normal.map_or_else(normal, |plane| inputs(&plane, at)),
                 tangent: None,
-                color: if self.has.color { sum::average(own.colors, weight) } else { own.colors },
+                color: match self.has.color {
+                    true => client_planes.supposed.color(own.colors, weight, Some(own.count)),
+                    false => own.colors,
+                },
             };
             triple(SHADING, plane, at, self.shading.color(at, &surface), report);
         }

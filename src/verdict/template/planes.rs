@@ -6,6 +6,7 @@ use crate::method::template::planes::{ALPHA, DEPTH, NORMAL, SHADED, WEIGHT};
 use crate::method::template::reconstruction::Gathered;
 use crate::verdict::client::{Client, Storage, StoredPlane};
 use crate::verdict::planes::RecordPlanes;
+use crate::verdict::supposed::Supposed;
 
 /// The planes of the picture and of its gathering; each may be missing.
 #[derive(Clone, Debug)]
@@ -21,6 +22,7 @@ pub(super) struct PicturePlanes<'a> {
     /// The picture.
     pub(super) shaded: Option<StoredPlane<'a, [f64; 3]>>,
     pub(super) alpha: Option<StoredPlane<'a, f64>>,
+    pub(super) supposed: Supposed,
 }
 
 /// A stage, and the planes that it judges.
@@ -37,6 +39,7 @@ impl<'a> PicturePlanes<'a> {
             weight_copy: client.scalar(&WEIGHT),
             shaded: client.triple(&SHADED),
             alpha: client.scalar(&ALPHA),
+            supposed: client.supposed,
         }
     }
 
