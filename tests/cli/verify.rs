@@ -288,7 +288,7 @@ fn a_single_wrong_plane_gets_a_verdict() {
             }
             let toml = format!("[planes.{plane}]\nfile = \"{shape}.exr\"\n");
             fs::write(at.path().join("one.toml"), toml).unwrap();
-            let verify = [&["verify", "sphere", "one.toml"], &options[..]].concat();
+            let verify = [&["verify", "sphere", "one.toml", "--no-cause"], &options[..]].concat();
             let output = splatref(at.path(), &verify);
             let said = String::from_utf8(output.stdout).unwrap();
             let name = format!("{}, {plane} of a {shape}: {said}", method.name());
