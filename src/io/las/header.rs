@@ -16,6 +16,7 @@ pub(super) struct Header {
     pub(super) scale: [f64; 3],
     pub(super) offset: [f64; 3],
     /// The bytes of the records of variable length.
+    #[cfg_attr(not(feature = "cli"), expect(dead_code, reason = "only LAZ is described there"))]
     variable: Range<usize>,
 }
 

@@ -186,6 +186,11 @@ fn what_no_rule_covers() {
         let place = format!(": planes.{plane}: {why}");
         assert!(line.contains(&place), "{line}");
     }
+}
+
+#[test]
+fn depth_tests_that_no_rule_covers() {
+    let at = folder();
     for (keys, why) in [
         (
             "meaning = \"z-buffer\"\nnear = 1",
