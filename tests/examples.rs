@@ -10,7 +10,8 @@ const MOST: usize = 60;
 fn examples(root: &Path) -> Vec<(String, String)> {
     let files = fs::read_dir(root.join("examples")).expect("a folder of examples");
     let paths = files.map(|entry| entry.expect("an example").path());
-    let named = paths.map(|path| {
+    // Folders hold the examples in other languages.
+    let named = paths.filter(|path| path.is_file()).map(|path| {
         assert_eq!(path.extension().and_then(|end| end.to_str()), Some("rs"), "{}", path.display());
         let name = path.file_stem().and_then(|name| name.to_str()).expect("a name in Unicode");
         (name.to_owned(), fs::read_to_string(&path).expect("an example"))

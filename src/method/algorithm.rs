@@ -32,6 +32,8 @@ pub struct Job<'a> {
     /// The one level that a stage makes, from the list of [`Algorithm::levels`]; none: the stage
     /// makes all levels.
     pub(crate) level: Option<usize>,
+    /// The only tiles that a verdict judges; none: all.
+    pub(crate) tiles: Option<&'a [usize]>,
 }
 
 impl<'a> Job<'a> {
@@ -39,7 +41,7 @@ impl<'a> Job<'a> {
     #[must_use]
     pub fn new(scene: &'a Scene, index: &'a Index, camera: &'a Camera, exec: &'a Exec) -> Self {
         let (buffers, key) = (Buffers::F32, DepthKey::WHOLE);
-        Self { scene, index, camera, exec, buffers, key, level: None }
+        Self { scene, index, camera, exec, buffers, key, level: None, tiles: None }
     }
 
     /// The levels that this job makes, from all `levels` of a stage.

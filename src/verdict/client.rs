@@ -140,6 +140,8 @@ pub struct Client {
     pub(crate) supposed: Supposed,
     /// The scene and the camera that are assumed for the client's projection, if they are others.
     pub(crate) drawn: Option<Arc<(Scene, Camera)>>,
+    /// The only tiles that are judged, by their numbers in the grid; none: all.
+    pub(crate) tiles: Option<Arc<[usize]>>,
     /// The format of the attribute pass's sums between two additions.
     pub accumulator: Storage,
     /// The splats that the client has projected, in ascending surfel index. The later stages are
@@ -255,6 +257,7 @@ impl Client {
             depth_test: Storage::Single,
             supposed: Supposed::default(),
             drawn: None,
+            tiles: None,
             accumulator: Storage::Single,
             records: None,
             unknown: Vec::new(),

@@ -326,7 +326,7 @@ impl Counts {
     }
 }
 
-/// The verdict on a method whose stages are judged tile by tile. `judge` marks the wrong pixels of
+/// The verdict on a method whose stages are judged tile by tile, on the tiles of the job. `judge` marks the wrong pixels of
 /// a rectangle in a tile.
 pub(crate) fn verdict<const N: usize>(
     job: &Job<'_>,
@@ -334,7 +334,9 @@ pub(crate) fn verdict<const N: usize>(
     budget: f64,
     judge: impl Fn((usize, Rect), &mut [Marks; N]) -> Counts + Sync + Send,
 ) -> Verdict {
-    let tiles = job.grid().rects().into_iter().enumerate().collect();
+    let all = job.grid().rects().into_iter().enumerate();
+    let is_judged = |tile: usize| job.tiles.is_none_or(|only| only.contains(&tile));
+    let tiles = all.filter(|(tile, _)| is_judged(*tile)).collect();
     let found = job.exec.ordered(tiles, |(tile, rect)| {
         let mut marks = [(); N].map_inline(|()| Marks::new(rect));
         let counts = judge((tile, rect), &mut marks);

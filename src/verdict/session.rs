@@ -4,7 +4,7 @@ use super::client::{Client, Rounding};
 use super::{Check, Verdict, ewa, table, unlike};
 use crate::error::{Error, Result};
 use crate::method::session::{Making, Names, named};
-use crate::method::{Method, Session};
+use crate::method::{Job, Method, Session};
 use crate::number::ball::{Gpu, Ieee, Precise};
 use crate::scene::Camera;
 use std::borrow::Cow;
@@ -33,7 +33,7 @@ impl Session<'_> {
         client: &Client,
         budget: f64,
     ) -> Result<Verdict> {
-        let job = self.job(camera)?;
+        let job = Job { tiles: client.tiles.as_deref(), ..self.job(camera)? };
         self.check_client(camera, client)?;
         self.ask(camera, Making::Verdict)?;
         let names = self.numbers();

@@ -57,7 +57,8 @@ pub(super) fn promised(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
         let later = Wrong::of(&found, case.wrong.stage);
         let left = Wrong { near: open as u64, all: later.all.max(open as u64), ..later };
         if case.explains(left, MOST_LEFT_WIDENED) {
-            return Ok(Some(Explanation { what: (*what).to_owned(), left }));
+            let (what, most) = ((*what).to_owned(), MOST_LEFT_WIDENED);
+            return Ok(Some(Explanation { what, change, most, left }));
         }
     }
     Ok(None)

@@ -26,6 +26,7 @@ mod fields;
 mod mistakes;
 mod plain;
 mod planes;
+mod sample;
 mod search;
 mod surfels;
 
@@ -62,9 +63,11 @@ struct Wrong {
 }
 
 /// A mistake that explains the wrong pixels.
-#[derive(Clone, Debug)]
 struct Explanation {
     what: String,
+    change: Change,
+    /// One in this many wrong pixels may stay wrong.
+    most: u64,
     left: Wrong,
 }
 
@@ -117,7 +120,7 @@ impl Case<'_, '_> {
             let Some(left) = self.judge(&change)? else { continue };
             let most = if change.widens() { MOST_LEFT_WIDENED } else { MOST_LEFT };
             if self.explains(left, most) {
-                found.push(Explanation { what, left });
+                found.push(Explanation { what, change, most, left });
             }
         }
         Ok(())
@@ -185,6 +188,16 @@ pub fn likely_cause(
     if let Some(plain) = plain::plain(&case) {
         return Ok(Some(plain));
     }
+    let found = match sample::client(&case) {
+        Some(part) => sample::confirmed(&case, sample::in_part(&case, &part, explanations)?)?,
+        None => explanations(&case)?,
+    };
+    fields::with(&case, case.in_words(found).or_else(|| plain::common(&case)))
+}
+
+/// The mistakes that explain the wrong pixels of a case.
+fn explanations(case: &Case<'_, '_>) -> Result<Vec<Explanation>> {
+    let Case { session, wrong, all, .. } = *case;
     let mut found = Vec::new();
     for supposed in [mistakes::common, mistakes::rare] {
         case.try_all(case.of_stages(supposed), &mut found)?;
@@ -197,22 +210,24 @@ pub fn likely_cause(
         // A client with another setting is right by that setting.
         found.retain(|one| one.left.all == 0);
     }
-    if found.is_empty() {
-        found.extend(search::best(&case)?);
+    // Where trials judge the whole of a large picture, a search takes too long.
+    if found.is_empty() && (case.client.tiles.is_some() || !sample::is_large(case)) {
+        found.extend(search::best(case)?);
     }
     if found.is_empty() {
-        found.extend(coarse::promised(&case)?);
+        found.extend(coarse::promised(case)?);
     }
     if found.is_empty() {
-        case.try_all(coarse::mistakes(&case), &mut found)?;
+        case.try_all(coarse::mistakes(case), &mut found)?;
     }
     let nearer = 20 * wrong.causes.below >= 19 * wrong.wrong;
     if found.is_empty() && wrong.stage == "visibility" && nearer && case.is_one_in(20) {
         // Quads may be a little larger than the crate's bounds, so more may stay wrong.
         let left = case.judge(&Change::Discarded)?;
         let what = "depth and id come from fragments that should be discarded".to_owned();
-        let most = left.filter(|left| 5 * left.near <= all.near);
-        found.extend(most.map(|left| Explanation { what, left }));
+        let (change, most) = (Change::Discarded, 5);
+        let left = left.filter(|left| most * left.near <= all.near);
+        found.extend(left.map(|left| Explanation { what, change, most, left }));
     }
-    fields::with(&case, case.in_words(found).or_else(|| plain::common(&case)))
+    Ok(found)
 }

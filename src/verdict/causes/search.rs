@@ -244,7 +244,9 @@ pub(super) fn best(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
         };
         let least = best.as_ref().is_none_or(|best| left.all < best.left.all);
         if case.explains(left, MOST_LEFT) && least {
-            best = Some(Explanation { what: (number.in_words)(digits(value)), left });
+            let Some(change) = (number.change)(value) else { continue };
+            let (what, most) = ((number.in_words)(digits(value)), MOST_LEFT);
+            best = Some(Explanation { what, change, most, left });
         }
     }
     Ok(best)
