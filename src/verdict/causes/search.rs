@@ -35,8 +35,11 @@ struct Number<'a> {
 fn numbers<'a>(case: &'a Case<'_, '_>) -> Vec<Number<'a>> {
     let is_in = |some: &[&str]| case.stages.iter().any(|stage| some.contains(stage));
     let mut all = Vec::new();
-    if is_in(&SHAPES) {
+    // Weights tell of the filter and the cut-off too, where no rim does.
+    if is_in(&SHAPES) || is_in(&SUMS) {
         all.extend(of_settings(case));
+    }
+    if is_in(&SHAPES) {
         all.extend(of_sizes(case));
         all.extend(of_clamps(case));
         all.extend(of_cameras(case.camera));
