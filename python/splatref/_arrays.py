@@ -37,7 +37,7 @@ def as_array(name: str, value: object) -> Array:
     return array
 
 
-def packed(array: Array, dtype: npt.DTypeLike = None) -> Array:
+def packed(array: Array, dtype: npt.DTypeLike | None = None) -> Array:
     """The array without gaps, aligned and in the byte order of the machine: as Rust takes it."""
     wanted = np.dtype(dtype if dtype is not None else array.dtype).newbyteorder("=")
     found: Array = np.require(array, wanted, ["C_CONTIGUOUS", "ALIGNED"])
