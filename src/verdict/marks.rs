@@ -334,9 +334,11 @@ pub(crate) fn verdict<const N: usize>(
     budget: f64,
     judge: impl Fn((usize, Rect), &mut [Marks; N]) -> Counts + Sync + Send,
 ) -> Verdict {
-    let all = job.grid().rects().into_iter().enumerate();
-    let is_judged = |tile: usize| job.tiles.is_none_or(|only| only.contains(&tile));
-    let tiles = all.filter(|(tile, _)| is_judged(*tile)).collect();
+    let rects = job.grid().rects();
+    let tiles = match job.tiles {
+        Some(only) => only.iter().map(|&tile| (tile, rects[tile])).collect(),
+        None => rects.into_iter().enumerate().collect(),
+    };
     let found = job.exec.ordered(tiles, |(tile, rect)| {
         let mut marks = [(); N].map_inline(|()| Marks::new(rect));
         let counts = judge((tile, rect), &mut marks);

@@ -57,6 +57,18 @@ fn splatref_is_right_by_every_method() {
     assert_eq!(json["settings"]["epsilon"], "2r");
 }
 
+/// A page that cannot be written ends the command; the renderer is not to blame.
+#[test]
+fn a_page_that_cannot_be_written_is_no_failure_of_the_renderer() {
+    let at = TempDir::new().unwrap();
+    fs::create_dir_all(at.path().join("out/conformance/ewa/rim/verdict.html/taken")).unwrap();
+    let command = itself("--stages --low-pass 0.6");
+    let words = ["conformance", "ewa", "--only", "rim", "--command", &command];
+    let line = fails(at.path(), &[&words[..], &["--report", "page.html"]].concat(), 2);
+    assert!(line.contains("verdict.html"), "{line}");
+    assert!(!at.path().join("page.html").exists());
+}
+
 #[test]
 fn a_wrong_command_is_found_by_the_rules_that_it_breaks() {
     let at = TempDir::new().unwrap();

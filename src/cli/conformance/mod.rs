@@ -158,16 +158,16 @@ fn try_all(
         let drawn = program.draw(&case);
         let seconds = start.elapsed().as_secs_f64();
         let name = rule.name.clone();
-        let mut shown = Shown::default();
-        let judged = drawn.and_then(|client| {
-            let judged = case.judge(&client, args.budget, exec)?;
-            if args.report.is_some() {
-                shown = page::rule((&case, &client, &judged), &place, exec)?;
+        let judged = drawn.and_then(|client| Ok((case.judge(&client, args.budget, exec)?, client)));
+        // A page that cannot be written is no failure of the renderer.
+        let shown = match &judged {
+            Ok((judged, client)) if args.report.is_some() => {
+                page::rule((&case, client, judged), &place, exec)?
             }
-            Ok(judged)
-        });
+            _ => Shown::default(),
+        };
         drop(steps);
-        let row = Row::new(rule, judged);
+        let row = Row::new(rule, judged.map(|(judged, _)| judged));
         say(format!("{name:<width$}  {row}"));
         tried.push(row, Run { seconds, folder: place, shown });
     }
