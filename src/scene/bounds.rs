@@ -1,25 +1,35 @@
-//! The box and the sphere around a whole scene, surfels and primitives.
+//! The box and the sphere around a whole scene: surfels and primitives, or Gaussians.
 
 use super::{Primitives, Scene, Surfels};
 use glam::{DVec3, Vec3};
 
 impl Scene {
     /// The corners of the smallest axis-parallel box around all positions: the surfels' positions,
-    /// and the vertices that a primitive uses. Both corners are the origin if the scene is empty.
+    /// and the vertices that a primitive uses; or the centres of Gaussians. Both corners are the
+    /// origin if the scene is empty.
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
-        corners(&self.surfels, &self.primitives)
+        match &self.gaussians {
+            Some(gaussians) => gaussians.bounds(),
+            None => corners(&self.surfels, &self.primitives),
+        }
     }
 
     /// A sphere around everything, in f64. If there are only surfels, it is their sphere, see
     /// [`super::Surfels::bounding_sphere`]. Otherwise it has the middle of [`Scene::bounds`] as its
     /// centre; its radius is the largest distance from there to a surfel plus its reach or to a
-    /// used vertex plus its radius. A scene of objects uses [`super::Objects::bounding_sphere`].
+    /// used vertex plus its radius. A scene of objects uses [`super::Objects::bounding_sphere`]. Of
+    /// Gaussians it reaches three standard deviations beyond their centres.
     #[must_use]
     pub fn bounding_sphere(&self) -> (DVec3, f64) {
-        match &self.objects {
-            Some(objects) => objects.bounding_sphere(),
-            None => sphere(&self.surfels, &self.primitives),
+        match (&self.objects, &self.gaussians) {
+            (Some(objects), _) => objects.bounding_sphere(),
+            (None, Some(gaussians)) => {
+                let (low, high) = gaussians.bounds();
+                let center = (low.as_dvec3() + high.as_dvec3()) / 2.0;
+                (center, gaussians.reach(center))
+            }
+            (None, None) => sphere(&self.surfels, &self.primitives),
         }
     }
 }

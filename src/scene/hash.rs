@@ -1,6 +1,7 @@
 //! Identify a scene by one hash over everything that a picture depends on, except camera and
 //! settings.
 
+use super::gaussians::{Encoding, Gaussians};
 use super::indexed::Indexed;
 use super::{Environment, Light, Mipmap, Objects, Phong, Primitives, Scene, Surfels};
 use crate::frame::NO_ID;
@@ -44,6 +45,9 @@ impl Scene {
     ///       0xFFFF_FFFF
     ///   prefiltered colours: nothing if no surfel has any; else a byte 5, then for the surfels, or for
     ///     those of each geometry, u64 count of levels, and the colours surfel by surfel (3 f32 each)
+    ///   Gaussians: nothing if there are none; else a byte 9, then u64 count; position (3 f32 each),
+    ///     scale (3 f32), rotation (x, y, z, w), opacity (f32); a byte for the degree, and one for the
+    ///     encoding, 0 sRGB or 1 linear; the coefficients of each (3 f32 each)
     /// ```
     ///
     /// A list of primitives without vertices takes 17 bytes: a count of 0, the byte for colours, a
@@ -102,6 +106,10 @@ impl Scene {
             hash.0.update([5]);
             all.iter().for_each(|surfels| hash.mipmap(surfels));
         }
+        if let Some(gaussians) = &self.gaussians {
+            hash.0.update([9]);
+            hash.gaussians(gaussians);
+        }
         hash.finish()
     }
 }
@@ -155,6 +163,17 @@ impl Hasher {
         self.count(surfels.mipmap().map_or(0, Mipmap::levels));
         let colors = surfels.mipmap().map(Mipmap::colors).unwrap_or_default();
         self.floats(colors.iter().flat_map(Vec3::to_array));
+    }
+
+    fn gaussians(&mut self, gaussians: &Gaussians) {
+        self.count(gaussians.len());
+        self.floats(gaussians.position().iter().flat_map(Vec3::to_array));
+        self.floats(gaussians.scale().iter().flat_map(Vec3::to_array));
+        self.floats(gaussians.rotation().iter().flatten().copied());
+        self.floats(gaussians.opacity().iter().copied());
+        let linear = u8::from(gaussians.encoding() == Encoding::Linear);
+        self.0.update([gaussians.degree() as u8, linear]);
+        self.floats(gaussians.all_harmonics().iter().flat_map(Vec3::to_array));
     }
 
     fn primitives(&mut self, primitives: &Primitives) {

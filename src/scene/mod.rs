@@ -9,6 +9,7 @@
 //! - [`coordinates`]: where points are in a texture.
 //! - `degenerate`: which points cannot be surfels.
 //! - [`environment`]: the light that surrounds a scene.
+//! - [`gaussians`]: 3D Gaussians, which one method draws.
 //! - [`groups`]: which surfels share a depth-image.
 //! - [`hash`]: the identity of a scene.
 //! - [`indexed`]: triangles, ribbons and tubes.
@@ -26,6 +27,7 @@ pub mod cloud;
 pub mod coordinates;
 mod degenerate;
 pub mod environment;
+pub mod gaussians;
 pub mod groups;
 pub mod hash;
 pub mod indexed;
@@ -46,6 +48,7 @@ pub use cloud::{Cloud, Property};
 pub use coordinates::Coordinates;
 pub use degenerate::Dropped;
 pub use environment::Environment;
+pub use gaussians::{GaussianArrays, Gaussians};
 pub use groups::Groups;
 pub(crate) use groups::MAX_GROUPS;
 pub use indexed::{Counts, Polylines, Primitives, Triangles, Vertices};
@@ -81,6 +84,8 @@ pub struct Scene {
     /// objects in their places, or there are none until [`crate::source::flatten()`] puts them
     /// there.
     pub objects: Option<Objects>,
+    /// 3D Gaussians, which the method `gaussians` draws; a scene that has any has nothing else.
+    pub gaussians: Option<Gaussians>,
     /// How large surfels are drawn as point primitives, if the view chose sizes.
     pub sides: Option<Sides>,
 }
@@ -90,6 +95,12 @@ impl Scene {
     #[must_use]
     pub fn lit(name: &str, surfels: Surfels) -> Self {
         Self { lights: vec![Light::DEFAULT], ..Self::unlit(name, surfels) }
+    }
+
+    /// Makes a scene of 3D Gaussians, which have no lights.
+    #[must_use]
+    pub fn of_gaussians(name: &str, gaussians: Gaussians) -> Self {
+        Self { gaussians: Some(gaussians), ..Self::unlit(name, Surfels::none()) }
     }
 
     /// Makes a scene of surfels that show their own colours.
@@ -104,6 +115,7 @@ impl Scene {
             offset: glam::DVec3::ZERO,
             environment: None,
             objects: None,
+            gaussians: None,
             sides: None,
         }
     }
