@@ -16,6 +16,7 @@
 //! | [`before`] | t < than | what came first stays | projection to pixels, merging, discs |
 //! | [`before_or_lower`] | t < than | the lower surfel index | average of groups |
 //! | [`opaque`] | alpha >= 1 | 1 is opaque | blending of layers |
+//! | [`dense`] | alpha >= least | the least is drawn | blending of Gaussians |
 //! | [`holds`] | 0 < square, form <= square | the rim is inside | pull, push, templates |
 //! | [`overlaps`] | front <= end | touching intervals overlap | pull, push |
 //! | [`occluded`] | front > end | touching intervals hide nothing | push |
@@ -34,6 +35,12 @@ use crate::number::Real;
 #[inline(always)]
 pub fn inside<R: Real>(q: R, limit: R) -> R::Truth {
     q.le(limit)
+}
+
+/// Whether a fragment is dense enough to be blended: `alpha >= least`.
+#[inline(always)]
+pub fn dense<R: Real>(alpha: R, least: R) -> R::Truth {
+    alpha.ge(least)
 }
 
 /// Whether a fragment of nearness `w` is in front of the nearest so far: `w > than`. The comparison

@@ -94,6 +94,8 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
     /// Whether the method draws the objects of a scene as they are; else the scene must be made
     /// flat.
     const DRAWS_OBJECTS: bool = false;
+    /// Whether the method draws a scene of 3D Gaussians.
+    const DRAWS_GAUSSIANS: bool = false;
     /// How the method groups surfels by default; none: the method draws no groups.
     const GROUPING: Option<Grouping> = None;
     /// Whether the method blends layers of surfels with opacities; else a surfel is opaque.

@@ -1,4 +1,4 @@
-//! Draw a scene by one of nine published methods, or read a method as its paper's pass list.
+//! Draw a scene by one of ten published methods, or read a method as its paper's pass list.
 //!
 //! [`Session`] draws a scene by one method. [`Method`] is the table of methods, one row a method.
 //! Each row is a folder whose page is the specification:
@@ -14,6 +14,7 @@
 //! - [`pyramid`]: pull-push interpolation, with ribbons, tubes and polygons \[MKC08\].
 //! - [`template`]: reconstruction with templates of k x k pixels \[MOC08\].
 //! - [`blue`]: oriented discs in squares, as progressive blue surfels are drawn \[BJFM19\].
+//! - [`gaussians`]: 3D Gaussian splats, or surfels as 2D ones, blended from front to back.
 //!
 //! [`mod@planes`] lists the planes that each method leaves.
 //!
@@ -69,6 +70,7 @@ pub mod deferred;
 pub mod ewa;
 mod fast;
 pub(crate) mod fragment;
+pub mod gaussians;
 mod input_planes;
 pub mod peeling;
 pub(crate) mod picture;

@@ -4,8 +4,8 @@
 use super::algorithm::{Algorithm, Job};
 use super::input_planes::InputPlanes;
 use super::{
-    Picture, Stage, blue, deferred, ewa, peeling, pyramid, single_pass, template, transparent,
-    transparent_hq,
+    Picture, Stage, blue, deferred, ewa, gaussians, peeling, pyramid, single_pass, template,
+    transparent, transparent_hq,
 };
 use crate::error::{Error, Result};
 use crate::frame::{Frame, Pool};
@@ -91,6 +91,12 @@ macro_rules! methods {
             pub fn draws_polygons(&self) -> bool {
                 let alone = match self { $(Self::$method(_) => <$settings>::DRAWS_POLYGONS,)* };
                 alone || self.draws_primitives()
+            }
+
+            /// Whether the method draws a scene of 3D Gaussians.
+            #[must_use]
+            pub fn draws_gaussians(&self) -> bool {
+                match self { $(Self::$method(_) => <$settings>::DRAWS_GAUSSIANS,)* }
             }
 
             /// Whether the method draws the objects of a scene as they are; else the scene must be
@@ -216,6 +222,8 @@ methods! {
     Template(template::Settings),
     /// Oriented discs in squares \[BJFM19\].
     Blue(blue::Settings),
+    /// 3D Gaussian splats.
+    Gaussians(gaussians::Settings),
 }
 
 impl Default for Method {
@@ -240,9 +248,17 @@ impl Method {
     /// Checks that the method can draw everything in a scene.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the scene has primitives and the method draws surfels alone, or if the
+    /// [`Error::Invalid`] if the scene has Gaussians and the method does not draw them, if the scene
+    /// has primitives and the method draws surfels alone, or if the
     /// scene consists of objects, has not been made flat, and the method does not draw objects.
     pub fn check_scene(&self, scene: &Scene) -> Result<()> {
+        if scene.gaussians.is_some() && !self.draws_gaussians() {
+            return Err(Error::Invalid(format!(
+                "{} has 3D Gaussians, but the method {} draws surfels; use --method gaussians",
+                scene.name,
+                self.name()
+            )));
+        }
         let flat = !scene.surfels.is_empty() || !scene.primitives.is_empty();
         // Objects of which this view draws nothing are flat too.
         let seen = |objects: &Objects| {

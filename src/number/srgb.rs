@@ -1,7 +1,7 @@
 //! Convert between stored colours and linear light by the transfer function of sRGB (IEC
 //! 61966-2-1).
 
-use super::elementary;
+use super::{Real, elementary};
 
 /// The linear value of a stored value, both in [0, 1].
 ///
@@ -19,6 +19,24 @@ pub fn from_linear(x: f64) -> f64 {
     if x <= 0.003_130_8 { 12.92 * x } else { 1.055 * elementary::pow(x, 1.0 / 2.4) - 0.055 }
 }
 
+/// [`to_linear`] in any number and for any colour, with constants rounded to `f32`: `c / 12.92` if
+/// `c <= 0.04045`, else `((c + 0.055) / 1.055)^2.4`.
+#[inline]
+pub fn decoded<R: Real>(c: R) -> R {
+    let n = R::from_f32;
+    let power = ((c.at_least(R::ZERO) + n(0.055)) / n(1.055)).pow(n(2.4));
+    R::select(c.le(n(0.040_45)), c / n(12.92), power)
+}
+
+/// [`from_linear`] in any number and for any colour, with constants rounded to `f32`: `12.92 x` if `x
+/// <= 0.0031308`, else `1.055 x^(1/2.4) - 0.055`.
+#[inline]
+pub fn encoded<R: Real>(x: R) -> R {
+    let n = R::from_f32;
+    let power = n(1.055) * x.at_least(R::ZERO).pow(n(1.0 / 2.4)) - n(0.055);
+    R::select(x.le(n(0.003_130_8)), n(12.92) * x, power)
+}
+
 /// The linear value of each code 0 to `max`, rounded to f32 once; code `max` is white, 1.
 #[must_use]
 pub fn table(max: u16) -> Vec<f32> {
@@ -28,6 +46,20 @@ pub fn table(max: u16) -> Vec<f32> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn both_ways_agree_in_every_number() {
+        for i in -10..=400 {
+            let code = f64::from(i) / 255.0;
+            // The constants have 24 bits; beyond them the formulas are those of f64.
+            let near = |a: f64, b: f64| (a - b).abs() <= 1e-6 * (1.0 + b.abs());
+            assert!(near(decoded(code), to_linear(code)), "{code}");
+            assert!(near(encoded(decoded(code)), code), "{code}");
+            let single = code as f32;
+            assert!(near(decoded(single).into(), to_linear(code)), "{code}");
+            assert!(near(encoded(decoded(single)).into(), code), "{code}");
+        }
+    }
 
     #[test]
     fn the_table_holds_known_values() {

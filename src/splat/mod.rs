@@ -23,6 +23,7 @@ pub mod ellipse;
 pub(crate) mod enclosed;
 mod fate;
 pub mod frustum;
+pub mod gaussian;
 pub mod project;
 mod projector;
 pub mod record;

@@ -8,7 +8,7 @@
 //!
 //! The page of each method says what a verdict tests in each of its stages: [`mod@ewa`],
 //! [`mod@deferred`], [`mod@single_pass`], [`mod@transparent`], [`mod@transparent_hq`],
-//! [`mod@peeling`], [`mod@pyramid`], [`mod@template`], [`mod@blue`]. The projection that `pyramid`
+//! [`mod@peeling`], [`mod@pyramid`], [`mod@template`], [`mod@blue`], [`mod@gaussians`]. The projection that `pyramid`
 //! and `template` begin with has a page too: [`mod@projection`].
 //!
 //! - [`client`]: the planes of a client, and how exactly each is stored. Files:
@@ -32,6 +32,7 @@ mod doubt;
 pub mod ewa;
 mod fault;
 mod findings;
+pub mod gaussians;
 mod marks;
 mod outcomes;
 pub mod peeling;

@@ -3,7 +3,8 @@
 use super::client::Client;
 use super::{Check, Verdict};
 use super::{
-    blue, deferred, ewa, peeling, pyramid, single_pass, template, transparent, transparent_hq,
+    blue, deferred, ewa, gaussians, peeling, pyramid, single_pass, template, transparent,
+    transparent_hq,
 };
 use crate::error::Result;
 use crate::method::{Job, Method};
@@ -32,6 +33,7 @@ pub(super) fn verify<P: Profile>(
         Method::Pyramid(settings) => Ok(pyramid::verify::<P>(job, settings, client, budget)),
         Method::Template(settings) => Ok(template::verify::<P>(job, settings, client, budget)),
         Method::Blue(settings) => Ok(blue::verify::<P>(job, settings, client, budget)),
+        Method::Gaussians(settings) => Ok(gaussians::verify::<P>(job, settings, client, budget)),
     }
 }
 
@@ -57,5 +59,6 @@ pub(super) fn checks<P: Profile>(
         Method::Pyramid(settings) => pyramid::checks::<P>(job, settings, client, pixel),
         Method::Template(settings) => template::checks::<P>(job, settings, client, pixel),
         Method::Blue(settings) => blue::checks::<P>(job, settings, client, pixel),
+        Method::Gaussians(settings) => gaussians::checks::<P>(job, settings, client, pixel),
     }
 }

@@ -5,7 +5,7 @@ use super::Session;
 use crate::error::Result;
 use crate::frame::pyramid;
 use crate::memory;
-use crate::method::{Holds, PlaneRow, When, peeling};
+use crate::method::{Holds, PlaneRow, When, gaussians, peeling};
 use crate::scene::{Camera, Objects};
 
 /// The call that makes a picture.
@@ -63,7 +63,7 @@ impl Session<'_> {
         if let (Making::Render, Some(members)) = (making, &self.index.members) {
             return members.splats() as u64;
         }
-        let items = self.index.order.as_ref().map_or(self.scene.surfels.len(), |_| {
+        let items = self.index.order.as_ref().map_or(gaussians::splats::count(self.scene), |_| {
             // A surfel is drawn once in each of its groups.
             self.index.groups.as_ref().map_or(0, |groups| groups.own().len() + groups.added().len())
         });

@@ -195,6 +195,11 @@ impl<P: Profile> Ball<P> {
         if self.radius == 0.0 { self.middle } else { self.middle + self.radius * SLACK }
     }
 
+    /// The least and the greatest value.
+    pub(crate) fn ends(self) -> [f64; 2] {
+        [self.low(), self.high()]
+    }
+
     #[inline(always)]
     fn is_bounded(&self) -> bool {
         self.radius.is_finite() && self.middle.is_finite()

@@ -1,0 +1,236 @@
+//! Blend the fragments of a pixel from front to back.
+
+use super::splats::{GaussianSplat, Solid, Source, Splats};
+use super::{Order, Settings, Support};
+use crate::composite::decide;
+use crate::composite::under::Under;
+use crate::frame::stencil::{Outcome, Stencil};
+use crate::frame::{NO_ID, Rect};
+use crate::method::buffer_formats::Buffers;
+use crate::method::tiled::pixels;
+use crate::number::{Exact, Real};
+use crate::splat::gaussian::ProjectedGaussian;
+
+/// A pixel after blending.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct GaussianPixel<R> {
+    /// C, A and T.
+    pub(crate) blend: Under<R>,
+    /// The sum of weight times depth.
+    pub(crate) moment: R,
+    /// The mean depth by weight; +inf where nothing is drawn.
+    pub(crate) expected: R,
+    /// The depth of the last fragment before which T > 1/2; +inf where nothing is drawn.
+    pub(crate) median: R,
+    /// The depth of the first fragment; +inf where nothing is drawn.
+    pub(crate) depth: R,
+    /// The first fragment.
+    pub(crate) id: u32,
+    /// The fragment of the greatest weight, the first of several.
+    pub(crate) heaviest: u32,
+    /// That weight.
+    pub(crate) weight: R,
+    /// How many fragments are drawn, up to 255.
+    pub(crate) count: u8,
+}
+
+impl<R: Real> GaussianPixel<R> {
+    /// Nothing.
+    pub(crate) const EMPTY: Self = Self {
+        blend: Under::CLEAR,
+        moment: R::ZERO,
+        expected: R::INFINITY,
+        median: R::INFINITY,
+        depth: R::INFINITY,
+        id: NO_ID,
+        heaviest: NO_ID,
+        weight: R::ZERO,
+        count: 0,
+    };
+
+    /// The numbers after one more fragment; ids and counts stay.
+    #[inline(always)]
+    pub(crate) fn after(&self, alpha: R, color: [R; 3], depth: R) -> Self {
+        let weight = self.blend.through * alpha;
+        let half = self.blend.through.gt(R::from_f32(0.5));
+        Self {
+            blend: self.blend.under(alpha, color),
+            moment: self.moment + weight * depth,
+            median: R::select(half, depth, self.median),
+            ..*self
+        }
+    }
+
+    /// The pixel when all fragments are drawn: the expected depth is a quotient.
+    pub(crate) fn finished(self) -> Self {
+        let some = self.blend.alpha.gt(R::ZERO);
+        let expected = R::select(some, self.moment / self.blend.alpha, R::INFINITY);
+        Self { expected, ..self }
+    }
+}
+
+/// The decisions on a fragment, in their order, with their operands.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct GaussianFragment<R: Real> {
+    /// q/2.
+    pub(crate) power: R,
+    /// alpha.
+    pub(crate) alpha: R,
+    /// Whether it is in reach: 0 <= q/2, and within the cut-off if there is one.
+    pub(crate) inside: R::Truth,
+    /// Whether alpha is not too small.
+    pub(crate) dense: R::Truth,
+}
+
+/// The rules of blending, as numbers.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Rules<R> {
+    /// k k / 2, if an ellipse cuts.
+    pub(crate) limit: Option<R>,
+    pub(crate) least: R,
+    pub(crate) most: R,
+    pub(crate) stop: R,
+    stop_at: bool,
+    stops: bool,
+}
+
+impl<R: Real> Rules<R> {
+    pub(crate) fn new(settings: &Settings) -> Self {
+        let n = R::from_f32;
+        let k = n(settings.cutoff);
+        Self {
+            limit: (settings.support == Support::Ellipse).then(|| (k * k) / n(2.0)),
+            least: n(settings.least_alpha),
+            most: n(settings.most_alpha),
+            stop: n(settings.stop),
+            stop_at: settings.stop_at,
+            stops: settings.stop > 0.0,
+        }
+    }
+
+    /// The fragment of a splat at a pixel within its bounds.
+    #[inline(always)]
+    pub(crate) fn fragment(&self, splat: &GaussianSplat<R>, at: (u32, u32)) -> GaussianFragment<R> {
+        let power = ProjectedGaussian::power(splat.center, splat.conic, at);
+        let alpha = (splat.alpha * (-power).exp()).at_most(self.most);
+        let reaches = power.ge(R::ZERO);
+        let inside = self.limit.map_or(reaches, |limit| reaches & decide::inside(power, limit));
+        GaussianFragment { power, alpha, inside, dense: decide::dense(alpha, self.least) }
+    }
+
+    /// Whether blending ends before a fragment that leaves this transmittance.
+    #[inline(always)]
+    pub(crate) fn ends(&self, through: R) -> R::Truth {
+        if !self.stops {
+            false.into()
+        } else if self.stop_at {
+            through.le(self.stop)
+        } else {
+            through.lt(self.stop)
+        }
+    }
+}
+
+/// Blends the pixels of a picture.
+#[derive(Debug)]
+pub(crate) struct Blending<'a, R> {
+    pub(crate) source: Source<'a, R>,
+    pub(crate) splats: &'a Splats<R>,
+    pub(crate) rules: Rules<R>,
+    pub(crate) buffers: Buffers,
+}
+
+/// A splat at a pixel: its place in the list, its fragment, and the depth that orders it.
+pub(crate) type Listed<R> = (usize, GaussianFragment<R>, R);
+
+impl<R: Exact> Blending<'_, R> {
+    /// The pixels of a rectangle in a tile, row by row.
+    pub(crate) fn tile(&self, tile: usize, rect: Rect) -> Vec<GaussianPixel<R>> {
+        let mut places = Vec::new();
+        self.splats.for_each(tile, |place| {
+            if !self.splats.all[place].bounds.intersection(&rect).is_empty() {
+                places.push(place);
+            }
+        });
+        pixels(rect).map(|at| self.pixel(&places, at, |_, _, _| ())).collect()
+    }
+
+    /// One pixel, from the splats that may touch it. `each` gets every fragment that is inside and
+    /// dense, with its weight; none if blending has ended before it.
+    pub(crate) fn pixel(
+        &self,
+        places: &[usize],
+        at: (u32, u32),
+        mut each: impl FnMut(usize, &GaussianFragment<R>, Option<R>),
+    ) -> GaussianPixel<R> {
+        let mut pixel = GaussianPixel::EMPTY;
+        let mut done = false;
+        let mut draw = |&(place, fragment, depth): &Listed<R>| {
+            let splat = &self.splats.all[place];
+            done = done || self.rules.ends(pixel.blend.through * (R::ONE - fragment.alpha));
+            let weight = pixel.blend.through * fragment.alpha;
+            each(place, &fragment, (!done).then_some(weight));
+            if !done {
+                pixel = self.add(pixel, splat, &fragment, depth);
+            }
+            !done
+        };
+        if self.source.settings.order == Order::Pixel {
+            let mut listed = Vec::new();
+            for &place in places {
+                let splat = &self.splats.all[place];
+                if let Some(fragment) = self.drawn(splat, at) {
+                    let Solid { place: center, adjugate } = &self.splats.solids[place];
+                    let depth = self.source.projector.deepest(adjugate, *center, at);
+                    listed.push((place, fragment, depth));
+                }
+            }
+            // Stable, so that ties stay in the order of the indices.
+            listed.sort_by(|a, b| a.2.to_f64().total_cmp(&b.2.to_f64()));
+            listed.iter().all(&mut draw);
+        } else {
+            for &place in places {
+                let splat = &self.splats.all[place];
+                if let Some(fragment) = self.drawn(splat, at) {
+                    if !draw(&(place, fragment, splat.depth)) {
+                        break;
+                    }
+                }
+            }
+        }
+        pixel.finished()
+    }
+
+    /// The fragment of a splat, if it takes part.
+    #[inline(always)]
+    fn drawn(&self, splat: &GaussianSplat<R>, (x, y): (u32, u32)) -> Option<GaussianFragment<R>> {
+        let Rect { x0, y0, x1, y1 } = splat.bounds;
+        if x < x0 || x >= x1 || y < y0 || y >= y1 {
+            return None;
+        }
+        let fragment = self.rules.fragment(splat, (x, y));
+        (fragment.inside && fragment.dense).then_some(fragment)
+    }
+
+    /// The pixel with one more fragment.
+    #[inline(always)]
+    fn add(
+        &self,
+        pixel: GaussianPixel<R>,
+        splat: &GaussianSplat<R>,
+        fragment: &GaussianFragment<R>,
+        depth: R,
+    ) -> GaussianPixel<R> {
+        let weight = pixel.blend.through * fragment.alpha;
+        let mut next = pixel.after(fragment.alpha, splat.color, depth);
+        next.blend = self.buffers.under(next.blend);
+        if pixel.id == NO_ID {
+            (next.id, next.depth) = (splat.index, depth);
+        }
+        if pixel.heaviest == NO_ID || weight > pixel.weight {
+            (next.heaviest, next.weight) = (splat.index, weight);
+        }
+        next.count = Stencil::COUNT.update(pixel.count, Outcome::Pass);
+        next
+    }
+}

@@ -1,0 +1,150 @@
+//! Explain every decision at one pixel, with its operands.
+
+use super::Settings;
+use super::blending::{Blending, GaussianFragment, GaussianPixel, Rules};
+use super::splats::{Projected, Source, Splats};
+use crate::error::Result;
+use crate::method::Job;
+use crate::method::decisions::Place;
+use crate::number::{Exact, MapInline, Real};
+use std::fmt;
+
+/// The replay of one pixel.
+#[derive(Clone, Debug)]
+pub struct GaussianReplay<R: Real> {
+    /// Column and row.
+    pub pixel: (u32, u32),
+    /// The splats whose bounds hold the pixel, in their order; in an order of the pixel's own, those
+    /// that are skipped come last.
+    pub fragments: Vec<FragmentAt<R>>,
+    pixel_after: GaussianPixel<R>,
+    rules: Rules<R>,
+}
+
+/// A splat at the pixel.
+#[derive(Clone, Debug)]
+pub struct FragmentAt<R: Real> {
+    /// The item of the scene.
+    pub index: u32,
+    /// Its weight T alpha, if it is drawn.
+    pub weight: Option<R>,
+    projected: Projected<R>,
+    fragment: GaussianFragment<R>,
+}
+
+/// Replays blending at one pixel.
+///
+/// # Errors
+/// [`crate::Error::Usage`] if the pixel is outside the picture.
+pub fn explain<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    pixel: (u32, u32),
+) -> Result<GaussianReplay<R>> {
+    let Place { tile, rect } = Place::new(job, pixel)?;
+    let source = Source::<R>::new(job.scene, job.camera, settings);
+    let splats = Splats::new(job, &source);
+    let rules = Rules::new(settings);
+    let blending = Blending { source, splats: &splats, rules, buffers: job.buffers };
+    let mut places = Vec::new();
+    splats.for_each(tile, |place| {
+        if !splats.all[place].bounds.intersection(&rect).is_empty() {
+            places.push(place);
+        }
+    });
+    let at = |place: usize, fragment: &GaussianFragment<R>, weight| {
+        let index = splats.all[place].index;
+        let projected = source.project(index as usize);
+        FragmentAt { index, weight, projected, fragment: *fragment }
+    };
+    let (mut drawn, mut seen) = (Vec::new(), vec![false; places.len()]);
+    let pixel_after = blending.pixel(&places, pixel, |place, fragment, weight| {
+        if let Ok(i) = places.binary_search(&place) {
+            seen[i] = true;
+        }
+        drawn.push(at(place, fragment, weight));
+    });
+    let skipped = places.iter().zip(&seen).filter(|(_, seen)| !**seen);
+    let skipped =
+        skipped.map(|(&place, _)| at(place, &rules.fragment(&splats.all[place], pixel), None));
+    let fragments = drawn.iter().cloned().chain(skipped).collect();
+    Ok(GaussianReplay { pixel, fragments, pixel_after, rules })
+}
+
+impl<R: Exact> fmt::Display for GaussianReplay<R> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let ((x, y), n) = (self.pixel, |value: R| value.to_f64());
+        writeln!(f, "pixel ({x}, {y}): {} splats reach it", self.fragments.len())?;
+        for fragment in &self.fragments {
+            fragment.fmt_projection(f)?;
+            fragment.fmt_decisions(f, &self.rules)?;
+        }
+        let GaussianPixel { blend, expected, median, id, heaviest, count, .. } = self.pixel_after;
+        if count == 0 {
+            return writeln!(f, "\nthe pixel is empty");
+        }
+        writeln!(
+            f,
+            "\nblending of {count} fragments: colour {:?} over black, {} of what is behind",
+            blend.color.map_inline(n),
+            n(blend.through)
+        )?;
+        writeln!(
+            f,
+            "  expected depth {}, median depth {}, first {id}, heaviest {heaviest}",
+            n(expected),
+            n(median)
+        )
+    }
+}
+
+impl<R: Exact> FragmentAt<R> {
+    /// Writes how the splat was projected.
+    fn fmt_projection(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let n = |value: R| value.to_f64();
+        let Projected { on_screen, opacity, raw, color, alpha, distance, .. } = &self.projected;
+        writeln!(f, "\nsplat {}", self.index)?;
+        writeln!(
+            f,
+            "  depth {}, distance {}, centre ({}, {})",
+            n(on_screen.place.z),
+            n(*distance),
+            n(on_screen.center.x),
+            n(on_screen.center.y)
+        )?;
+        writeln!(
+            f,
+            "  V0 {:?}, V {:?} px^2, conic {:?}",
+            on_screen.unfiltered.map_inline(n),
+            on_screen.ellipse.map_inline(n),
+            on_screen.conic.map_inline(n)
+        )?;
+        writeln!(
+            f,
+            "  opacity {} x compensation {} = {}, harmonics {:?}, colour {:?}",
+            n(*opacity),
+            n(on_screen.compensation),
+            n(*alpha),
+            raw.map_inline(n),
+            color.map_inline(n)
+        )
+    }
+
+    /// Writes the decisions on its fragment.
+    fn fmt_decisions(&self, f: &mut fmt::Formatter<'_>, rules: &Rules<R>) -> fmt::Result {
+        let n = |value: R| value.to_f64();
+        let GaussianFragment { power, alpha, inside, dense } = self.fragment;
+        write!(f, "  q/2 {}", n(power))?;
+        if !inside {
+            let limit = rules.limit.map_or(f64::INFINITY, n);
+            return writeln!(f, " is not in [0, {limit}]: skipped");
+        }
+        let sign = if dense { ">=" } else { "<" };
+        write!(f, ", alpha {} {sign} {}", n(alpha), n(rules.least))?;
+        match self.weight {
+            _ if !dense => writeln!(f, ": skipped"),
+            None => writeln!(f, ": after the end, T would be below {}", n(rules.stop)),
+            Some(weight) => writeln!(f, ", weight {}", n(weight)),
+        }
+    }
+}

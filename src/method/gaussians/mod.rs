@@ -1,0 +1,107 @@
+//! Draw 3D Gaussian splats as the programs that train and show them do.
+//!
+//! The scene has [`Gaussians`](crate::scene::Gaussians). Or it has surfels, which are Gaussians
+//! without extent along their normals (2D Gaussian splats), each with its opacity and its own
+//! colour, without light; the settings of the method do not cull them.
+//!
+//! Programs share the formulas and differ in details. Each detail is a setting, and
+//! [`Settings::KHR`], [`Settings::INRIA`], [`Settings::GSPLAT`], [`Settings::MIP`] and
+//! [`Settings::EXACT`] are presets of all of them.
+//!
+//! # Stages
+//!
+//! 1. **Projection**, see [`mod@crate::splat::gaussian`]. A splat then has a colour, an alpha and
+//!    bounds:
+//!    - Colour: [`crate::shade::harmonics`] up to [`Settings::degree`] in the unit direction from
+//!      the camera's centre to the splat's, in the world. The camera's centre is
+//!      [`Camera::eye`](crate::scene::Camera::eye), rounded to `f32` once. Under an orthographic
+//!      camera the direction is that of the rays, (-r2) of the view matrix. The colour is bounded
+//!      ([`ColorBounds`]), then put into the space of blending ([`BlendSpace`]).
+//!    - o = opacity times compensation.
+//!    - Bounds, in f64 from the numbers of this arithmetic: the pixels whose centres are within e of
+//!      the centre, with e as [`Support`] says. Under `none` e = sqrt(2 ln(o / least_alpha) Vxx)
+//!      (1 + 2^-10) + 1 px, and so for y; under `ellipse` e = k sqrt(Vxx) (1 + 2^-10) + 1. The 1 and
+//!      the factor exceed what rounding moves the rim of a splat that is not extremely thin.
+//!      `Decided:` a pixel out of bounds has no fragment, even where its rounded q says otherwise.
+//! 2. **Order** ([`Order`]): ascending, ties to the lower index.
+//! 3. **Blending**, at each pixel from front to back with T = 1 at first. Of each splat whose bounds
+//!    hold the pixel:
+//!    - q/2, see [`power`](crate::splat::gaussian::ProjectedGaussian::power). A fragment with q/2 < 0
+//!      is skipped. Under `ellipse` one is skipped unless q/2 <= (k k) / 2.
+//!    - alpha = the lesser of o e^(-q/2) and [`Settings::most_alpha`]. A fragment is skipped unless
+//!      alpha >= [`Settings::least_alpha`].
+//!    - T' = T (1 - alpha). If T' < [`Settings::stop`] (or T' = it, with [`Settings::stop_at`]), the
+//!      pixel is done, without this fragment.
+//!    - Else [`crate::composite::under`]: C += (T alpha) c, A += T alpha, T = T'. The other planes
+//!      follow, see [`planes`](mod@crate::method::planes).
+//! 4. **Display.** An environment is seen behind the layers: its light, in the space of blending,
+//!    times T is added to C, and the opacity becomes 1. Without one the opacity is 1 - T. If colours
+//!    were blended in sRGB, C is decoded: the plane of the picture holds linear light, and a PNG of it
+//!    shows the values that were blended.
+//!
+//! A scene stores its colours as [`Encoding`](crate::scene::gaussians::Encoding) says; surfels store
+//! linear light.
+//!
+//! # What the method gets wrong
+//!
+//! - One order for the picture is not the order of a pixel: splats pop when the camera turns.
+//! - An ellipse is a linearized projection: splats beside the camera are too long, which [`Clamp`]
+//!   hides.
+//! - Overlapping Gaussians are blended as if one were in front of the other.
+//!
+//! [`Clamp`]: crate::splat::gaussian::Clamp
+//!
+//! What a right implementation may leave of each stage: [`crate::verdict::gaussians`].
+
+pub(crate) mod blending;
+pub mod explain;
+pub(crate) mod picture;
+pub(crate) mod planes;
+mod settings;
+pub(crate) mod splats;
+
+pub use settings::{BlendSpace, ColorBounds, Order, Settings, Support};
+
+use crate::error::Result;
+use crate::frame::NamedPlane;
+use crate::method::algorithm::{Algorithm, Job};
+use crate::method::input_planes::InputPlanes;
+use crate::method::{Picture, Stage};
+use crate::number::Exact;
+use std::fmt::Display;
+
+impl Algorithm for Settings {
+    const NAME: &'static str = "gaussians";
+    const SUMMARY: &'static str =
+        "blend 3D Gaussian splats, or surfels as 2D ones, from front to back";
+    const STAGES: &'static [Stage] = planes::STAGES;
+    const DRAWS_GAUSSIANS: bool = true;
+    const BLENDS: bool = true;
+    type Memory = ();
+
+    fn check(&self) -> Result<()> {
+        Self::check(self)
+    }
+
+    fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
+        Ok(picture::define(job, self, stages))
+    }
+
+    fn stage<R: Exact>(
+        &self,
+        job: &Job<'_>,
+        stage: &str,
+        given: &InputPlanes<'_, R>,
+    ) -> Result<Vec<NamedPlane<R>>> {
+        picture::stage(job, self, stage, given)
+    }
+
+    fn explain<R: Exact>(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<impl Display> {
+        explain::explain::<R>(job, self, pixel)
+    }
+
+    fn weights(&self, job: &Job<'_>, pixel: (u32, u32)) -> Result<Vec<(u32, f64)>> {
+        let replay = explain::explain::<f64>(job, self, pixel)?;
+        Ok(replay.fragments.iter().filter_map(|f| Some((f.index, f.weight?))).collect())
+    }
+}

@@ -1,0 +1,103 @@
+//! Run all stages in one call, from a scene to named planes. Or run one stage on a client's planes.
+
+use super::Settings;
+use super::blending::{Blending, GaussianPixel, Rules};
+use super::planes::STAGES;
+use super::splats::{Source, Splats, in_space};
+use crate::error::Result;
+use crate::frame::{NamedPlane, Plane};
+use crate::method::Job;
+use crate::method::input_planes::InputPlanes;
+use crate::method::picture::{Clock, Picture};
+use crate::method::stage::{Keep, unknown};
+use crate::method::surface::{ALPHA, SHADED};
+use crate::method::tiled::Tiled;
+use crate::number::{Exact, MapInline, Real, srgb};
+use crate::scene::gaussians::Encoding;
+
+/// The definition, in any number type.
+pub(super) fn define<R: Exact>(job: &Job<'_>, settings: &Settings, stages: bool) -> Picture<R> {
+    let mut clock = Clock::default();
+    let source = Source::<R>::new(job.scene, job.camera, settings);
+    let splats = Splats::new(job, &source);
+    clock.lap(STAGES[0].name);
+    let blended = blend(job, source, &splats);
+    clock.lap(STAGES[1].name);
+    let keep = if stages { Keep::Stages } else { Keep::Picture };
+    let mut planes = blended.planes(&GaussianPixel::PLANES, 0, &job.there(keep));
+    let color = blended.plane(|pixel| pixel.blend.color);
+    let through = blended.plane(|pixel| pixel.blend.through);
+    planes.extend(display(job, &source, &color, &through));
+    clock.lap(STAGES[2].name);
+    let (frame, timings) = (job.frame(planes), clock.into_laps());
+    Picture { frame, tally: splats.tally, timings, seen: None }
+}
+
+fn blend<R: Exact>(
+    job: &Job<'_>,
+    source: Source<'_, R>,
+    splats: &Splats<R>,
+) -> Tiled<GaussianPixel<R>> {
+    let rules = Rules::new(source.settings);
+    let blending = Blending { source, splats, rules, buffers: job.buffers };
+    Tiled::new(job, |tile, rect| blending.tile(tile, rect))
+}
+
+/// The planes of the picture: the layers before the environment, as linear light.
+fn display<R: Exact>(
+    job: &Job<'_>,
+    source: &Source<'_, R>,
+    color: &Plane<[R; 3]>,
+    through: &Plane<R>,
+) -> [NamedPlane<R>; 2] {
+    let size = job.camera.size();
+    let shown = Plane::from_pixels(size, |x, y| {
+        let (color, through) = (*color.at(x, y), *through.at(x, y));
+        displayed(source, color, || {
+            let light = job.scene.environment.as_ref()?.radiance(source.projector.view.ray(x, y));
+            Some((through, light))
+        })
+    });
+    let before = job.scene.environment.is_some();
+    let alpha = through.map(|&through| if before { R::ONE } else { R::ONE - through });
+    [SHADED.triple(0, shown), ALPHA.scalar(0, alpha)]
+}
+
+/// The light of a pixel: the blended colours, before what is behind them, decoded.
+pub(crate) fn displayed<R: Real>(
+    source: &Source<'_, R>,
+    color: [R; 3],
+    behind: impl FnOnce() -> Option<(R, [R; 3])>,
+) -> [R; 3] {
+    let mut whole = color;
+    if let Some((through, light)) = behind() {
+        let light = in_space(light, source.space);
+        for (whole, light) in whole.iter_mut().zip(light) {
+            *whole = *whole + through * light;
+        }
+    }
+    if source.space == Encoding::Srgb { whole.map_inline(srgb::decoded) } else { whole }
+}
+
+/// Runs one stage on a client's planes.
+pub(super) fn stage<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    stage: &str,
+    given: &InputPlanes<'_, R>,
+) -> Result<Vec<NamedPlane<R>>> {
+    let source = Source::<R>::new(job.scene, job.camera, settings);
+    match stage {
+        "blending" => {
+            let splats = Splats::new(job, &source);
+            let blended = blend(job, source, &splats);
+            Ok(blended.planes(&GaussianPixel::PLANES, 0, &job.there(Keep::Alone)))
+        }
+        "display" => {
+            let color = given.triple(&GaussianPixel::<R>::COLOR.row, 0)?;
+            let through = given.scalar(&GaussianPixel::<R>::THROUGH.row, 0)?;
+            Ok(display(job, &source, color, through).into())
+        }
+        _ => Err(unknown(stage)),
+    }
+}

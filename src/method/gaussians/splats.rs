@@ -1,0 +1,339 @@
+//! Project all Gaussians of a scene, put them in order, and sort them into tiles.
+
+use super::{BlendSpace, ColorBounds, Order, Settings, Support};
+use crate::frame::{Bins, Exec, Rect};
+use crate::method::Job;
+use crate::method::prepare::batch_size;
+use crate::number::{Exact, MapInline, Real, Vector2, Vector3, elementary, srgb};
+use crate::scene::gaussians::Encoding;
+use crate::scene::{Camera, Gaussians, Scene};
+use crate::shade::harmonics;
+use crate::splat::gaussian::{GaussianProjector, GaussianShape, ProjectedGaussian, Symmetric};
+use crate::splat::{Fate, Tally, View};
+
+/// A splat that is drawn: all that its fragments need.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct GaussianSplat<R> {
+    pub(crate) index: u32,
+    /// The pixels that it may touch.
+    pub(crate) bounds: Rect,
+    pub(crate) center: Vector2<R>,
+    pub(crate) conic: [R; 3],
+    /// o, the opacity at the centre.
+    pub(crate) alpha: R,
+    /// The colour, in the space of blending.
+    pub(crate) color: [R; 3],
+    /// t of the centre.
+    pub(crate) depth: R,
+    /// What one order for the picture compares.
+    pub(crate) key: R,
+}
+
+/// The splat in the camera frame, for the order of a pixel.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Solid<R> {
+    pub(crate) place: Vector3<R>,
+    pub(crate) adjugate: Symmetric<R>,
+}
+
+/// The items of a scene, and what turns them into splats.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Source<'a, R> {
+    scene: &'a Scene,
+    pub(crate) settings: &'a Settings,
+    pub(crate) projector: GaussianProjector<R>,
+    eye: Vector3<R>,
+    size: [u32; 2],
+    /// The space of blending.
+    pub(crate) space: Encoding,
+}
+
+/// An item, projected, with its look.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Projected<R> {
+    pub(crate) shape: GaussianShape<R>,
+    pub(crate) on_screen: ProjectedGaussian<R>,
+    pub(crate) opacity: R,
+    /// The colour in the scene's encoding, before it is bounded.
+    pub(crate) raw: [R; 3],
+    pub(crate) color: [R; 3],
+    /// o, the opacity times the compensation.
+    pub(crate) alpha: R,
+    /// The distance from the camera's centre; t under an orthographic camera.
+    pub(crate) distance: R,
+}
+
+impl<'a, R: Real> Source<'a, R> {
+    pub(crate) fn new(scene: &'a Scene, camera: &Camera, settings: &'a Settings) -> Self {
+        let stored = stored(scene);
+        let space = match settings.blend {
+            BlendSpace::Stored => stored,
+            BlendSpace::Linear => Encoding::Linear,
+            BlendSpace::Srgb => Encoding::Srgb,
+        };
+        Self {
+            scene,
+            settings,
+            projector: GaussianProjector::new(View::new(camera), &settings.kernel),
+            eye: Vector3::from_glam(camera.eye().as_vec3()),
+            size: camera.size(),
+            space,
+        }
+    }
+
+    /// How many items there are.
+    pub(crate) fn len(&self) -> usize {
+        count(self.scene)
+    }
+
+    /// Projects an item.
+    #[inline]
+    pub(crate) fn project(&self, i: usize) -> Projected<R> {
+        let surfels = &self.scene.surfels;
+        let shape = match &self.scene.gaussians {
+            Some(gaussians) => GaussianShape::of_gaussian(gaussians, i),
+            None => GaussianShape::of_surfel(surfels, i, self.settings.cutoff),
+        };
+        let on_screen = self.projector.project(&shape);
+        let from_eye = shape.position - self.eye;
+        let perspective = self.projector.view.perspective;
+        let distance = if perspective { from_eye.length() } else { on_screen.place.z };
+        let (opacity, raw) = match &self.scene.gaussians {
+            Some(gaussians) => {
+                let degree = self.settings.degree.min(gaussians.degree());
+                let direction = if perspective {
+                    from_eye.normalized()
+                } else {
+                    let [x, y, z, _] = self.projector.view.rows[2];
+                    -Vector3::new(x, y, z)
+                };
+                let color = harmonics::color(degree, gaussians.harmonics(i), direction);
+                (gaussians.opacity()[i], color)
+            }
+            None => {
+                let color = surfels.color().map_or(self.scene.material.color, |colors| colors[i]);
+                (surfels.opacity_of(i), color.to_array().map_inline(R::from_f32))
+            }
+        };
+        let opacity = R::from_f32(opacity);
+        let alpha = opacity * on_screen.compensation;
+        let color = raw.map_inline(|part| self.shown(self.bounded(part)));
+        Projected { shape, on_screen, opacity, raw, color, alpha, distance }
+    }
+
+    #[inline(always)]
+    fn bounded(&self, part: R) -> R {
+        match self.settings.bounds {
+            ColorBounds::None => part,
+            ColorBounds::Zero => part.at_least(R::ZERO),
+            ColorBounds::Unit => part.clamped(R::ZERO, R::ONE),
+        }
+    }
+
+    /// A stored component in the space of blending.
+    #[inline(always)]
+    fn shown(&self, part: R) -> R {
+        match (stored(self.scene), self.space) {
+            (Encoding::Srgb, Encoding::Linear) => srgb::decoded(part),
+            (Encoding::Linear, Encoding::Srgb) => srgb::encoded(part),
+            _ => part,
+        }
+    }
+
+    /// The pixels that a splat may touch; from ranges of its numbers, those that it may touch for
+    /// any of them.
+    pub(crate) fn bounds(&self, center: [[f64; 2]; 2], [xx, xy, yy]: [f64; 3], alpha: f64) -> Rect {
+        let k = f64::from(self.settings.cutoff);
+        let least = f64::from(self.settings.least_alpha);
+        let wide = |q: f64| {
+            let side = |v: f64| (q * v).sqrt() * (1.0 + 1.0 / 1024.0) + 1.0;
+            rect(center, [side(xx), side(yy)], self.size, 1)
+        };
+        match self.settings.support {
+            Support::None if alpha < least => Rect::default(),
+            Support::None => wide(2.0 * elementary::ln(alpha / least)),
+            Support::Ellipse => wide(k * k),
+            Support::Tiles => {
+                let middle = 0.5 * (xx + yy);
+                let square = middle * middle - (xx * yy - xy * xy);
+                let square = if square < 0.1 { 0.1 } else { square };
+                let side = (k * (middle + square.sqrt()).sqrt()).ceil();
+                rect(center, [side, side], self.size, 16)
+            }
+            Support::Boxes if alpha * 255.0 < 1.0 => Rect::default(),
+            Support::Boxes => {
+                let own = (2.0 * elementary::ln(alpha * 255.0)).sqrt();
+                let k = if own < k { own } else { k };
+                rect(center, [(k * xx.sqrt()).ceil(), (k * yy.sqrt()).ceil()], self.size, 16)
+            }
+        }
+    }
+}
+
+/// How the colours of a scene are stored.
+fn stored(scene: &Scene) -> Encoding {
+    scene.gaussians.as_ref().map_or(Encoding::Linear, Gaussians::encoding)
+}
+
+/// How many items of a scene the method draws.
+pub(crate) fn count(scene: &Scene) -> usize {
+    scene.gaussians.as_ref().map_or(scene.surfels.len(), Gaussians::len)
+}
+
+/// The pixels of a picture within an extent of a range of centres, (least, greatest) for x and y. In
+/// tiles of 1 pixel, those whose centres are within it. In larger tiles, all pixels of the tiles
+/// that it touches.
+fn rect(center: [[f64; 2]; 2], extent: [f64; 2], size: [u32; 2], tile: u32) -> Rect {
+    let side = |axis: usize| {
+        let [low, high] = [center[axis][0] - extent[axis], center[axis][1] + extent[axis]];
+        let most = f64::from(size[axis]);
+        let (first, end) = if tile == 1 {
+            ((low - 0.5).ceil(), (high - 0.5).floor() + 1.0)
+        } else {
+            let wide = f64::from(tile);
+            ((low / wide).floor() * wide, (high / wide).ceil() * wide)
+        };
+        // A comparison with NaN is false, and a cast saturates.
+        if first < most && end > 0.0 { [first as u32, end.at_most(most) as u32] } else { [0, 0] }
+    };
+    let ([x0, x1], [y0, y1]) = (side(0), side(1));
+    Rect { x0, y0, x1, y1 }
+}
+
+/// All splats of a picture in their order, with the tiles that they may touch.
+#[derive(Debug)]
+pub(crate) struct Splats<R> {
+    pub(crate) tally: Tally,
+    pub(crate) all: Vec<GaussianSplat<R>>,
+    /// Beside each splat, if each pixel has its own order.
+    pub(crate) solids: Vec<Solid<R>>,
+    /// Runs of splats: where each begins, and its bins.
+    bins: Vec<(usize, Bins)>,
+}
+
+impl<R: Exact> Splats<R> {
+    pub(crate) fn new(job: &Job<'_>, source: &Source<'_, R>) -> Self {
+        let (count, exec) = (source.len(), job.exec);
+        let size = batch_size(&job.grid(), count);
+        let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
+        let batches = exec.ordered(ranges.collect(), |range| {
+            let (mut drawn, mut tally) = (Vec::with_capacity(range.len()), Tally::default());
+            for i in range {
+                let (splat, fate) = source.splat(i);
+                tally.count(fate);
+                if fate == Fate::Visible {
+                    drawn.push(splat);
+                }
+            }
+            (drawn, tally)
+        });
+        let tally = batches.iter().fold(Tally::default(), |sum, (_, tally)| sum.plus(tally));
+        let mut all: Vec<_> = batches.into_iter().flat_map(|(drawn, _)| drawn).collect();
+        if source.settings.order == Order::Steps {
+            steps(&mut all);
+        }
+        let own = source.settings.order == Order::Pixel;
+        if !own {
+            all = ordered(&all, exec);
+        }
+        let mut solids = Vec::new();
+        if own {
+            exec.extend(&mut solids, all.len(), |i| source.solid(all[i].index as usize));
+        }
+        let runs: Vec<usize> = (0..all.len()).step_by(size.max(1)).collect();
+        let bins = exec.ordered(runs, |first| {
+            let run = &all[first..all.len().min(first + size)];
+            (first, Bins::new(&job.grid(), run.len(), |i| run[i].bounds))
+        });
+        Self { tally, all, solids, bins }
+    }
+
+    /// Calls `visit` with the place of each splat that may touch a tile, in their order.
+    #[inline(always)]
+    pub(crate) fn for_each(&self, tile: usize, mut visit: impl FnMut(usize)) {
+        for (first, bins) in &self.bins {
+            bins.for_each(tile, |i| visit(first + i as usize));
+        }
+    }
+}
+
+impl<R: Exact> Source<'_, R> {
+    /// An item as a splat, and whether it is drawn.
+    #[inline]
+    pub(crate) fn splat(&self, i: usize) -> (GaussianSplat<R>, Fate) {
+        let projected = self.project(i);
+        let Projected { on_screen, color, alpha, distance, .. } = projected;
+        let ProjectedGaussian { place, center, ellipse, conic, .. } = on_screen;
+        let [x, y] = [center.x, center.y].map_inline(R::to_f64);
+        let behind = self.projector.behind(place);
+        let sound = !on_screen.degenerate();
+        let bounds = if sound && !behind {
+            self.bounds([[x, x], [y, y]], ellipse.map_inline(R::to_f64), alpha.to_f64())
+        } else {
+            Rect::default()
+        };
+        let fate = match (behind, sound, bounds.is_empty()) {
+            (true, _, _) => Fate::Behind,
+            (_, false, _) => Fate::Degenerate,
+            (_, _, true) => Fate::Outside,
+            _ => Fate::Visible,
+        };
+        let key = match self.settings.order {
+            Order::Depth | Order::Pixel => place.z,
+            Order::Distance | Order::Steps => distance,
+        };
+        let splat = GaussianSplat {
+            index: i as u32,
+            bounds,
+            center,
+            conic,
+            alpha,
+            color,
+            depth: place.z,
+            key,
+        };
+        (splat, fate)
+    }
+
+    fn solid(&self, i: usize) -> Solid<R> {
+        let projected = self.project(i);
+        let adjugate = self.projector.turned(&projected.shape.adjugate);
+        Solid { place: projected.on_screen.place, adjugate }
+    }
+}
+
+/// The splats in ascending order of their keys, which are > 0 or of an orthographic camera; ties to
+/// the lower index.
+fn ordered<R: Exact>(all: &[GaussianSplat<R>], exec: &Exec) -> Vec<GaussianSplat<R>> {
+    let mut order = Vec::with_capacity(all.len());
+    exec.extend(&mut order, all.len(), |i| (rank(all[i].key.to_f64()), i as u32));
+    exec.sort(&mut order);
+    let mut sorted = Vec::with_capacity(all.len());
+    exec.extend(&mut sorted, all.len(), |i| all[order[i].1 as usize]);
+    sorted
+}
+
+/// The place of a number in the ascending list of all numbers.
+fn rank(value: f64) -> u64 {
+    let bits = (value + 0.0).to_bits();
+    if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }
+}
+
+/// Replaces each key by its step: floor(((key - least) / (most - least)) 65535); 0 if all are equal.
+fn steps<R: Exact>(all: &mut [GaussianSplat<R>]) {
+    let keys = || all.iter().map(|splat| splat.key);
+    let least = keys().reduce(|a, b| a.at_most(b));
+    let most = keys().reduce(|a, b| a.at_least(b));
+    let (Some(least), Some(most)) = (least, most) else { return };
+    let range = most - least;
+    for splat in all {
+        let share = (splat.key - least) / range;
+        let step = (share * R::from_f32(65_535.0)).floor();
+        splat.key = if range > R::ZERO { step } else { R::ZERO };
+    }
+}
+
+/// The encoding of light in the space of blending.
+pub(crate) fn in_space<R: Real>(light: [R; 3], space: Encoding) -> [R; 3] {
+    if space == Encoding::Srgb { light.map_inline(srgb::encoded) } else { light }
+}

@@ -1,0 +1,178 @@
+//! Verify your planes of Gaussian splats: which planes a correct implementation may leave of each
+//! stage.
+//!
+//! Gaussians are projected in [`Ball`]s of a [`Profile`], with their
+//! colours, alphas and depths. Whatever is undecided is kept open, and the numbers of a pixel are hulls
+//! over all ways to decide:
+//!
+//! - Whether a splat is drawn: near plane, determinant, bounds.
+//! - Whether a fragment is inside, dense enough, or behind the end of blending.
+//! - Which of two splats is in front. Two splats are in the order of their indices only if their keys
+//!   are equal whatever rounds: the same numbers, or the same products with the row of the view
+//!   matrix. Of two or three splats whose order is open, every order is followed. Of more, each weight
+//!   lies between those that it has in front of all the others and behind all of them.
+//!
+//! **Blending**: C, T, the depths and the count are judged against these hulls. `id` must be a
+//! fragment before which no other certainly is drawn, and `Z` its depth. `heaviest` must be a
+//! fragment that may weigh as much as any other certainly does.
+//!
+//! **Display** is judged from the client's C and T, else from the hulls of blending, so that a picture
+//! alone is judged too.
+//!
+//! A pixel is undecided if a decision there is open.
+
+mod splats;
+mod walk;
+
+use crate::composite::over::Blend;
+use crate::error::Result;
+use crate::frame::Rect;
+use crate::method::Job;
+use crate::method::gaussians::Settings;
+use crate::method::gaussians::blending::GaussianPixel;
+use crate::method::gaussians::picture::displayed;
+use crate::method::gaussians::splats::Source;
+use crate::method::surface::{ALPHA, ID, SHADED};
+use crate::number::ball::Profile;
+use crate::number::{Ball, MapInline, Real};
+use crate::scene::Environment;
+use crate::verdict::checks::{input, inputs, number, triple, widened};
+use crate::verdict::client::{Client, Storage, StoredPlane};
+use crate::verdict::marks::{self, Counts, Marks, PixelMarks, counted};
+use crate::verdict::planes::RecordPlanes;
+use crate::verdict::{Check, Doubt, Verdict};
+use splats::PossibleSplats;
+use walk::{Walked, Walker};
+
+/// Judges the planes of a client.
+pub(super) fn verify<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    budget: f64,
+) -> Verdict {
+    let judge = Judge::<P>::new(job, settings, client);
+    marks::verdict(job, judge.stages(), budget, |tile, marks| judge.judge(tile, marks))
+}
+
+/// Every check at one pixel.
+pub(super) fn checks<P: Profile>(
+    job: &Job<'_>,
+    settings: &Settings,
+    client: &Client,
+    pixel: (u32, u32),
+) -> Result<Vec<Check>> {
+    let judge = Judge::<P>::new(job, settings, client);
+    let stages = judge.stages().map(|(stage, _)| stage);
+    marks::checks(job, stages, pixel, |tile, marks| judge.judge(tile, marks))
+}
+
+/// The parts that all tiles share.
+struct Judge<'a, P: Profile> {
+    source: Source<'a, Ball<P>>,
+    splats: PossibleSplats<P>,
+    planes: RecordPlanes<'a>,
+    color: Option<StoredPlane<'a, [f64; 3]>>,
+    through: Option<StoredPlane<'a, f64>>,
+    id: Option<StoredPlane<'a, u32>>,
+    heaviest: Option<StoredPlane<'a, u32>>,
+    count: Option<StoredPlane<'a, u8>>,
+    shaded: Option<StoredPlane<'a, [f64; 3]>>,
+    alpha: Option<StoredPlane<'a, f64>>,
+    environment: Option<&'a Environment>,
+    accumulator: Storage,
+}
+
+impl<'a, P: Profile> Judge<'a, P> {
+    fn new(job: &Job<'a>, settings: &'a Settings, client: &'a Client) -> Self {
+        let source = Source::new(job.scene, job.camera, settings);
+        let fields = &GaussianPixel::<f32>::PLANES;
+        Self {
+            splats: PossibleSplats::new(job, &source),
+            source,
+            planes: RecordPlanes::new(client, fields, 0),
+            color: client.triple(&GaussianPixel::<f32>::COLOR.row),
+            through: client.scalar(&GaussianPixel::<f32>::THROUGH.row),
+            id: client.index(&ID),
+            heaviest: client.index(&GaussianPixel::<f32>::HEAVIEST.row),
+            count: client.count(&GaussianPixel::<f32>::COUNT.row),
+            shaded: client.triple(&SHADED),
+            alpha: client.scalar(&ALPHA),
+            environment: job.scene.environment.as_ref(),
+            accumulator: client.accumulator,
+        }
+    }
+
+    /// The stages, each with the planes that it judges.
+    fn stages(&self) -> [(&'static str, Vec<&'static str>); 2] {
+        let shown = [self.shaded.map(|plane| plane.name), self.alpha.map(|plane| plane.name)];
+        [
+            ("blending", self.planes.names().to_vec()),
+            ("display", shown.into_iter().flatten().collect()),
+        ]
+    }
+
+    /// Marks the wrong pixels of a rectangle in a tile.
+    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
+        let [blending, display] = marks;
+        let mut counts = Counts::default();
+        let mut walker = Walker::new(&self.source, &self.splats, (tile, rect));
+        for y in rect.y0..rect.y1 {
+            for (column, at) in counted(Rect { y0: y, y1: y + 1, ..rect }) {
+                let pixel = (y - rect.y0) as usize * rect.columns() + column;
+                let walked = walker.walk(at);
+                self.blended(at, &walked, &mut blending.at(pixel));
+                let judged = self.shown(at, &walked, &mut display.at(pixel));
+                counts.covered += u64::from(walked.most > 0);
+                counts.undecided += u64::from(walked.doubts & Doubt::OF_SUMS != 0 || !judged);
+            }
+        }
+        counts
+    }
+
+    /// Marks wrong planes of blending at a pixel.
+    fn blended(&self, at: (u32, u32), walked: &Walked<P>, pixel: &mut PixelMarks<'_>) {
+        pixel.doubts(walked.doubts);
+        let mut truth = walked.truth(
+            self.id.map(|plane| *plane.plane.at(at.0, at.1)),
+            self.heaviest.map(|plane| *plane.plane.at(at.0, at.1)),
+            self.count.map(|plane| *plane.plane.at(at.0, at.1)),
+        );
+        // Each layer rounds the stored values again.
+        let lost = |largest: f64| f64::from(walked.most) * self.accumulator.radius(largest);
+        let blend = &mut truth.blend;
+        blend.color = blend.color.map_inline(|part| widened(part, lost(walked.brightest)));
+        blend.through = widened(blend.through, lost(1.0));
+        let report = &mut |_: usize, error: f64, fault: &dyn Fn() -> _| pixel.found(error, fault);
+        self.planes.check((0, &GaussianPixel::PLANES), at, &truth, report);
+    }
+
+    /// Marks a wrong picture at a pixel. Returns whether its colour is judged, or is not there.
+    fn shown(&self, at: (u32, u32), walked: &Walked<P>, pixel: &mut PixelMarks<'_>) -> bool {
+        let lost = |largest: f64| f64::from(walked.most) * self.accumulator.radius(largest);
+        let own = walked.numbers.blend;
+        let color = self.color.as_ref().map_or_else(
+            || own.color.map_inline(|part| widened(part, lost(walked.brightest))),
+            |plane| inputs(plane, at),
+        );
+        let through = self
+            .through
+            .as_ref()
+            .map_or_else(|| widened(own.through, lost(1.0)), |plane| input(plane, at));
+        let light = displayed(&self.source, color, || {
+            let environment = self.environment?;
+            let ray = self.source.projector.view.ray(at.0, at.1);
+            Some((through, environment.enclosure(ray)))
+        });
+        let alpha = if self.environment.is_some() { Ball::ONE } else { Ball::ONE - through };
+        let shown = Blend { color: light, alpha };
+        let report = &mut |_: usize, error: f64, fault: &dyn Fn() -> _| pixel.found(error, fault);
+        if let Some(plane) = &self.shaded {
+            triple(0, plane, at, shown.color, report);
+        }
+        if let Some(plane) = &self.alpha {
+            number(0, plane, at, shown.alpha, report);
+        }
+        self.shaded.is_none() || shown.color.iter().all(|part| part.radius.is_finite())
+    }
+}

@@ -1,0 +1,144 @@
+//! Project all Gaussians in balls.
+
+use crate::frame::{Bins, Rect};
+use crate::method::Job;
+use crate::method::gaussians::Order;
+use crate::method::gaussians::splats::{GaussianSplat, Projected, Solid, Source};
+use crate::number::ball::Profile;
+use crate::number::{Ball, MapInline, Real, Truth};
+
+/// A splat that may be drawn.
+pub(super) struct PossibleSplat<P: Profile> {
+    /// Its bounds hold every pixel that it may touch.
+    pub(super) splat: GaussianSplat<Ball<P>>,
+    /// The pixels that its bounds certainly hold.
+    pub(super) certain: Rect,
+    /// Whether it certainly is neither behind nor degenerate.
+    pub(super) sound: bool,
+    /// The products of its position with the row of depth: equal products give equal depths,
+    /// whatever rounds.
+    pub(super) products: [f64; 3],
+    /// In the camera frame, if each pixel has its own order.
+    pub(super) solid: Option<Solid<Ball<P>>>,
+}
+
+/// All splats that may be drawn, ascending in the middles of their keys, with the tiles that they
+/// may touch.
+pub(super) struct PossibleSplats<P: Profile> {
+    pub(super) all: Vec<PossibleSplat<P>>,
+    bins: Bins,
+}
+
+impl<P: Profile> PossibleSplats<P> {
+    pub(super) fn new(job: &Job<'_>, source: &Source<'_, Ball<P>>) -> Self {
+        /// Items that one job projects.
+        const SIZE: usize = 1024;
+        let firsts: Vec<usize> = (0..source.len()).step_by(SIZE).collect();
+        let batches = job.exec.ordered(firsts, |first| {
+            let range = first..source.len().min(first + SIZE);
+            range.filter_map(|i| possible(job, source, i)).collect::<Vec<_>>()
+        });
+        let mut all: Vec<_> = batches.into_iter().flatten().collect();
+        if source.settings.order == Order::Steps {
+            steps(&mut all);
+        }
+        let key = |splat: &PossibleSplat<P>| (splat.splat.key.middle, splat.splat.index);
+        all.sort_by(|a, b| {
+            let ((a, i), (b, j)) = (key(a), key(b));
+            a.total_cmp(&b).then(i.cmp(&j))
+        });
+        let bins = Bins::new(&job.grid(), all.len(), |i| all[i].splat.bounds);
+        Self { all, bins }
+    }
+
+    /// The places of the splats that may touch some pixels of a tile, ascending.
+    pub(super) fn places(&self, (tile, rect): (usize, Rect)) -> Vec<usize> {
+        let mut places = Vec::new();
+        self.bins.for_each(tile, |i| {
+            if !self.all[i as usize].splat.bounds.intersection(&rect).is_empty() {
+                places.push(i as usize);
+            }
+        });
+        places
+    }
+}
+
+/// An item, if it may be drawn.
+fn possible<P: Profile>(
+    job: &Job<'_>,
+    source: &Source<'_, Ball<P>>,
+    i: usize,
+) -> Option<PossibleSplat<P>> {
+    let Projected { shape, on_screen, color, alpha, distance, .. } = source.project(i);
+    let place = on_screen.place;
+    let (behind, degenerate) = (source.projector.behind(place), on_screen.degenerate());
+    if behind.certainly() || (degenerate.certainly() && !behind.possibly()) {
+        return None;
+    }
+    let sound = !behind.possibly() && !degenerate.possibly();
+    let [x, y] = [on_screen.center.x, on_screen.center.y].map_inline(|at| at.ends());
+    let ellipse = on_screen.ellipse.map_inline(Ball::ends);
+    let [least, most] = alpha.ends();
+    let known = ellipse.iter().chain([&x, &y]).flatten().all(|end| end.is_finite());
+    let (bounds, certain) = if known {
+        let [xx, xy, yy] = ellipse;
+        // The extents grow with each element; that of the cross term by its magnitude.
+        let across = [xy[0].abs(), xy[1].abs()];
+        let [small, large] = if across[0] < across[1] { across } else { [across[1], across[0]] };
+        let small = if xy[0] < 0.0 && xy[1] > 0.0 { 0.0 } else { small };
+        let positive = |end: f64| if end > 0.0 { end } else { 0.0 };
+        let widest = source.bounds([x, y], [xx[1], large, yy[1]], most);
+        let ends = [[x[1], x[0]], [y[1], y[0]]];
+        (widest, source.bounds(ends, [positive(xx[0]), small, positive(yy[0])], least))
+    } else {
+        (job.picture(), Rect::default())
+    };
+    if bounds.is_empty() {
+        return None;
+    }
+    let key = match source.settings.order {
+        Order::Depth | Order::Pixel => place.z,
+        Order::Distance | Order::Steps => distance,
+    };
+    let [a, b, c, _] = source.projector.view.rows[2].map_inline(|part| part.middle);
+    let p = shape.position.map(|part| part.middle);
+    let own = source.settings.order == Order::Pixel;
+    let solid = own.then(|| {
+        let adjugate = source.projector.turned(&shape.adjugate);
+        Solid { place, adjugate }
+    });
+    let splat = GaussianSplat {
+        index: i as u32,
+        bounds,
+        center: on_screen.center,
+        conic: on_screen.conic,
+        alpha,
+        color,
+        depth: place.z,
+        key,
+    };
+    Some(PossibleSplat { splat, certain, sound, products: [a * p.x, b * p.y, c * p.z], solid })
+}
+
+/// Replaces each key by its step, over all that may be drawn.
+fn steps<P: Profile>(all: &mut [PossibleSplat<P>]) {
+    // One that may not be drawn may widen the range or not.
+    let range = |splats: &mut dyn Iterator<Item = Ball<P>>| {
+        splats.fold(None, |range: Option<[Ball<P>; 2]>, key| match range {
+            None => Some([key, key]),
+            Some([least, most]) => Some([least.at_most(key), most.at_least(key)]),
+        })
+    };
+    let every = range(&mut all.iter().map(|splat| splat.splat.key));
+    let drawn = |splat: &&PossibleSplat<P>| splat.sound && !splat.certain.is_empty();
+    let certain = range(&mut all.iter().filter(drawn).map(|splat| splat.splat.key));
+    let Some([least, most]) = every else { return };
+    let [least, most] =
+        certain.map_or([least, most], |[inner, outer]| [least.either(inner), most.either(outer)]);
+    let range = most - least;
+    for PossibleSplat { splat, .. } in all {
+        let share = (splat.key - least) / range;
+        let step = (share * Ball::from_f32(65_535.0)).floor();
+        splat.key = Ball::select(range.gt(Ball::ZERO), step, Ball::ZERO);
+    }
+}

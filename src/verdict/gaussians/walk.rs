@@ -1,0 +1,378 @@
+//! Blend a pixel in balls, with every decision that is open.
+
+use super::splats::{PossibleSplat, PossibleSplats};
+use crate::composite::under::Under;
+use crate::frame::{NO_ID, Rect};
+use crate::method::gaussians::Order;
+use crate::method::gaussians::blending::{GaussianFragment, GaussianPixel, Rules};
+use crate::method::gaussians::splats::Source;
+use crate::number::ball::{Profile, Three};
+use crate::number::{Ball, MapInline, Real, Truth};
+use crate::verdict::Doubt;
+
+/// A fragment that may be drawn.
+struct Possible<'s, P: Profile> {
+    splat: &'s PossibleSplat<P>,
+    alpha: Ball<P>,
+    /// Whether it is inside, dense, and of a splat that is drawn.
+    drawn: Three,
+    /// What orders the fragments of the pixel.
+    key: Ball<P>,
+    depth: Ball<P>,
+}
+
+/// Whether a fragment that may be drawn certainly is, and what it would be at the pixel.
+#[derive(Clone, Copy, Debug)]
+struct Candidate<P: Profile> {
+    index: u32,
+    weight: Ball<P>,
+    drawn: Three,
+}
+
+/// What may be at a pixel.
+pub(super) struct Walked<P: Profile> {
+    /// The numbers; ids and count mean nothing.
+    pub(super) numbers: GaussianPixel<Ball<P>>,
+    /// The fragments that may be the first, in their order; with none, nothing is drawn for certain.
+    firsts: Vec<(u32, Ball<P>)>,
+    /// Whether a fragment certainly is drawn.
+    covered: bool,
+    /// The items that may be the heaviest.
+    heaviest: Vec<u32>,
+    /// The least and the greatest count.
+    least: u32,
+    pub(super) most: u32,
+    /// The largest component of a colour.
+    pub(super) brightest: f64,
+    pub(super) doubts: u8,
+}
+
+/// Walks the pixels of a rectangle in a tile.
+pub(super) struct Walker<'a, P: Profile> {
+    source: &'a Source<'a, Ball<P>>,
+    splats: &'a PossibleSplats<P>,
+    rules: Rules<Ball<P>>,
+    places: Vec<usize>,
+}
+
+impl<'a, P: Profile> Walker<'a, P> {
+    pub(super) fn new(
+        source: &'a Source<'a, Ball<P>>,
+        splats: &'a PossibleSplats<P>,
+        part: (usize, Rect),
+    ) -> Self {
+        let (rules, places) = (Rules::new(source.settings), splats.places(part));
+        Self { source, splats, rules, places }
+    }
+
+    /// What may be at a pixel.
+    pub(super) fn walk(&mut self, at: (u32, u32)) -> Walked<P> {
+        let own = self.source.settings.order == Order::Pixel;
+        let splats = self.places.iter().map(|&place| &self.splats.all[place]);
+        let mut all: Vec<_> = splats.filter_map(|splat| self.possible(splat, at)).collect();
+        if own {
+            all.sort_by(|a, b| {
+                let by_key = a.key.middle.total_cmp(&b.key.middle);
+                by_key.then(a.splat.splat.index.cmp(&b.splat.splat.index))
+            });
+        }
+        let mut walk = Walk {
+            rules: &self.rules,
+            own,
+            numbers: GaussianPixel::EMPTY,
+            alive: true.into(),
+            candidates: Vec::with_capacity(all.len()),
+            firsts: Vec::new(),
+            covered: false,
+            doubts: 0,
+            brightest: 0.0,
+        };
+        let widest = all.iter().map(|one| one.key.radius);
+        // NaN stands for any number.
+        let widest = widest.fold(0.0, |most, r| if r <= most { most } else { r * 1.000_001 });
+        let mut rest = &all[..];
+        while !rest.is_empty() && walk.alive.possibly() {
+            let (group, after) = rest.split_at(walk.tied(rest, widest));
+            walk.group(group);
+            rest = after;
+        }
+        walk.finished()
+    }
+
+    /// The fragment of a splat, if it may be drawn.
+    fn possible(&self, splat: &'a PossibleSplat<P>, at: (u32, u32)) -> Option<Possible<'a, P>> {
+        let own = &splat.splat;
+        if !holds(&own.bounds, at) {
+            return None;
+        }
+        let GaussianFragment { alpha, inside, dense, .. } = self.rules.fragment(own, at);
+        let alpha = bounded(alpha, own.alpha.at_most(self.rules.most));
+        let certain = splat.sound && holds(&splat.certain, at);
+        let drawn = inside & dense & Three::new([certain, true, true]);
+        if !drawn.possibly() {
+            return None;
+        }
+        let depth = match &splat.solid {
+            Some(solid) => self.source.projector.deepest(&solid.adjugate, solid.place, at),
+            None => own.depth,
+        };
+        let key = if splat.solid.is_some() { depth } else { own.key };
+        Some(Possible { splat, alpha, drawn, key, depth })
+    }
+}
+
+/// An alpha without bounds lies between 0 and the alpha at the centre.
+fn bounded<P: Profile>(alpha: Ball<P>, most: Ball<P>) -> Ball<P> {
+    if alpha.radius.is_finite() {
+        return alpha;
+    }
+    let half = most.ends()[1] * 0.5;
+    let half = if half.is_finite() { half } else { 0.5 };
+    Ball::new(half, half)
+}
+
+fn holds(&Rect { x0, y0, x1, y1 }: &Rect, (x, y): (u32, u32)) -> bool {
+    (x0..x1).contains(&x) && (y0..y1).contains(&y)
+}
+
+/// The state of a walk through the fragments of a pixel.
+struct Walk<'r, P: Profile> {
+    rules: &'r Rules<Ball<P>>,
+    /// Whether the pixel has its own order.
+    own: bool,
+    numbers: GaussianPixel<Ball<P>>,
+    /// Whether blending has not ended.
+    alive: Three,
+    candidates: Vec<Candidate<P>>,
+    firsts: Vec<(u32, Ball<P>)>,
+    covered: bool,
+    doubts: u8,
+    brightest: f64,
+}
+
+/// The most fragments of which every order is followed.
+const ORDERS: usize = 3;
+
+impl<P: Profile> Walk<'_, P> {
+    /// How many of the next fragments may come in another order: all of them certainly come before
+    /// every fragment after them.
+    fn tied(&self, rest: &[Possible<'_, P>], widest: f64) -> usize {
+        let (mut end, mut last) = (1, 1);
+        while end < rest.len() {
+            let own = &rest[end - 1];
+            let reach = own.key.ends()[1] + widest;
+            // Keys rise with their middles, so none that lies farther may come before.
+            let near = rest[end..].iter().take_while(|one| !(one.key.middle > reach)).count();
+            let farthest = (end..end + near).rev().find(|&j| !self.before(own, &rest[j]));
+            last = last.max(farthest.map_or(end, |j| j + 1));
+            if last <= end {
+                break;
+            }
+            end += 1;
+        }
+        last
+    }
+
+    /// Whether a fragment certainly comes before one that stands after it.
+    fn before(&self, a: &Possible<'_, P>, b: &Possible<'_, P>) -> bool {
+        let same = !self.own && a.splat.products == b.splat.products;
+        let exact = a.key.radius == 0.0 && b.key.radius == 0.0;
+        a.key.lt(b.key).certainly()
+            || ((same || exact)
+                && a.key.middle == b.key.middle
+                && a.splat.splat.index < b.splat.splat.index)
+    }
+
+    /// Blends fragments whose order is open.
+    fn group(&mut self, group: &[Possible<'_, P>]) {
+        for one in group {
+            let parts = one.splat.splat.color.map_inline(|part| part.middle.abs());
+            self.brightest = parts.into_iter().fold(self.brightest, f64::at_least);
+        }
+        if let [one] = group {
+            self.candidate(one, self.numbers.blend.through, self.alive);
+            (self.numbers, self.alive) = self.next((self.numbers, self.alive), one);
+        } else {
+            self.doubts |= Doubt::Nearer as u8;
+            self.any_order(group);
+        }
+        if self.candidates.iter().any(|one| one.drawn.certainly()) {
+            self.covered = true;
+        }
+    }
+
+    /// The state after one more fragment, which may be drawn or not.
+    fn next(
+        &mut self,
+        (numbers, alive): (GaussianPixel<Ball<P>>, Three),
+        one: &Possible<'_, P>,
+    ) -> (GaussianPixel<Ball<P>>, Three) {
+        let left = numbers.blend.through * (Ball::ONE - one.alpha);
+        let goes_on = alive & !(one.drawn & self.rules.ends(left));
+        let drawn = goes_on & one.drawn;
+        if drawn.possibly() && !drawn.certainly() {
+            self.doubts |= Doubt::CutOff as u8;
+        }
+        let after = numbers.after(one.alpha, one.splat.splat.color, one.depth);
+        (select(drawn, &after, &numbers), goes_on)
+    }
+
+    /// Follows every order of a few fragments, and bounds the weights of many.
+    fn any_order(&mut self, group: &[Possible<'_, P>]) {
+        let through = self.numbers.blend.through;
+        let alive = self.alive;
+        let cover = |skip: usize| {
+            let others = group.iter().enumerate().filter(|(j, _)| *j != skip);
+            others.fold(Ball::ONE, |cover, (_, one)| cover * seen(one, Ball::ONE))
+        };
+        let weights: Vec<Ball<P>> =
+            (0..group.len()).map(|i| through.either(through * cover(i))).collect();
+        for (one, before) in group.iter().zip(&weights) {
+            self.candidate(one, *before, alive);
+        }
+        if group.len() <= ORDERS {
+            let state = (self.numbers, self.alive);
+            let mut all: Option<(GaussianPixel<Ball<P>>, Three)> = None;
+            for order in orders(group.len()) {
+                let mut own = state;
+                for i in order {
+                    own = self.next(own, &group[i]);
+                }
+                all = Some(all.map_or(own, |(numbers, alive)| {
+                    (hull(&numbers, &own.0), either(alive, own.1))
+                }));
+            }
+            (self.numbers, self.alive) = all.unwrap_or(state);
+            return;
+        }
+        for (one, before) in group.iter().zip(weights) {
+            let here = GaussianPixel {
+                blend: Under { through: before, ..self.numbers.blend },
+                ..self.numbers
+            };
+            let ends = one.drawn & self.rules.ends(before * (Ball::ONE - one.alpha));
+            let drawn = alive & one.drawn & !ends;
+            let after = here.after(one.alpha, one.splat.splat.color, one.depth);
+            let blended = select(drawn, &after, &here);
+            let through = self.numbers.blend.through;
+            let median = self.numbers.median.either(after.median);
+            self.numbers = GaussianPixel { median, ..blended };
+            self.numbers.blend.through =
+                Ball::select(drawn, through * (Ball::ONE - one.alpha), through);
+            if drawn.possibly() && !drawn.certainly() {
+                self.doubts |= Doubt::CutOff as u8;
+            }
+            self.alive = self.alive & !ends;
+        }
+    }
+
+    /// Remembers a fragment in front of which this much is seen.
+    fn candidate(&mut self, one: &Possible<'_, P>, through: Ball<P>, alive: Three) {
+        let ends = self.rules.ends(through * (Ball::ONE - one.alpha));
+        let drawn = alive & one.drawn & !ends;
+        if drawn.possibly() {
+            let index = one.splat.splat.index;
+            let weight = through * one.alpha;
+            self.candidates.push(Candidate { index, weight, drawn });
+            if !self.covered {
+                self.firsts.push((index, one.depth));
+            }
+        }
+    }
+
+    fn finished(self) -> Walked<P> {
+        let certain = self.candidates.iter().filter(|one| one.drawn.certainly());
+        let least = certain.clone().count() as u32;
+        let bar = certain.map(|one| one.weight.ends()[0]).fold(0.0, f64::at_least);
+        let heavy = self.candidates.iter().filter(|one| !(one.weight.ends()[1] < bar));
+        Walked {
+            heaviest: heavy.map(|one| one.index).collect(),
+            least,
+            most: self.candidates.len() as u32,
+            numbers: self.numbers.finished(),
+            firsts: self.firsts,
+            covered: self.covered,
+            brightest: self.brightest,
+            doubts: self.doubts,
+        }
+    }
+}
+
+/// How much is seen behind a fragment that may be drawn.
+fn seen<P: Profile>(one: &Possible<'_, P>, through: Ball<P>) -> Ball<P> {
+    Ball::select(one.drawn, through * (Ball::ONE - one.alpha), through)
+}
+
+/// A truth that holds if either of two may hold.
+fn either(a: Three, b: Three) -> Three {
+    let certain = a.certainly() && b.certainly();
+    let possible = a.possibly() || b.possibly();
+    Three::new([certain, possible, possible])
+}
+
+/// One of two pixels, or the hull of both.
+fn select<P: Profile>(
+    truth: Three,
+    yes: &GaussianPixel<Ball<P>>,
+    no: &GaussianPixel<Ball<P>>,
+) -> GaussianPixel<Ball<P>> {
+    let of = |yes, no| Ball::select(truth, yes, no);
+    let color = [0, 1, 2].map_inline(|c| of(yes.blend.color[c], no.blend.color[c]));
+    GaussianPixel {
+        blend: Under {
+            color,
+            alpha: of(yes.blend.alpha, no.blend.alpha),
+            through: of(yes.blend.through, no.blend.through),
+        },
+        moment: of(yes.moment, no.moment),
+        median: of(yes.median, no.median),
+        ..*yes
+    }
+}
+
+/// The hull of two pixels.
+fn hull<P: Profile>(
+    a: &GaussianPixel<Ball<P>>,
+    b: &GaussianPixel<Ball<P>>,
+) -> GaussianPixel<Ball<P>> {
+    select(Three::new([false, true, true]), a, b)
+}
+
+/// All orders of 2 or 3 items.
+fn orders(count: usize) -> Vec<Vec<usize>> {
+    if count == 2 {
+        return vec![vec![0, 1], vec![1, 0]];
+    }
+    let firsts = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
+    firsts.map(|order| order.to_vec()).to_vec()
+}
+
+impl<P: Profile> Walked<P> {
+    /// The pixel with the ids and the count that the client has, if it may have them. Its depth is that
+    /// of its first fragment.
+    pub(super) fn truth(
+        &self,
+        id: Option<u32>,
+        heaviest: Option<u32>,
+        count: Option<u8>,
+    ) -> GaussianPixel<Ball<P>> {
+        let empty = (NO_ID, Ball::INFINITY);
+        let may_be_empty = (!self.covered).then_some(empty);
+        let mut firsts = self.firsts.iter().copied().chain(may_be_empty);
+        let found = id.and_then(|id| firsts.clone().find(|(first, _)| *first == id));
+        let (id, depth) = match (id, found) {
+            (_, Some(found)) => found,
+            // Without an id, the depth may be that of any first fragment.
+            (None, None) => firsts.clone().reduce(|a, b| (a.0, a.1.either(b.1))).unwrap_or(empty),
+            (Some(_), None) => firsts.next().unwrap_or(empty),
+        };
+        let may_weigh = |own: u32| self.heaviest.contains(&own) || (own == NO_ID && !self.covered);
+        let heaviest = heaviest
+            .filter(|own| may_weigh(*own))
+            .or_else(|| self.heaviest.first().copied())
+            .unwrap_or(NO_ID);
+        let (least, most) = (self.least.min(255) as u8, self.most.min(255) as u8);
+        let count = count.map_or(least, |count| count.clamp(least, most));
+        GaussianPixel { id, depth, heaviest, count, ..self.numbers }
+    }
+}
