@@ -88,6 +88,8 @@ pub(crate) struct Rules<R> {
     /// k k / 2, if an ellipse cuts.
     pub(crate) limit: Option<R>,
     pub(crate) least: R,
+    /// Whether the least alpha is 0, so that every fragment is dense enough.
+    all: bool,
     pub(crate) most: R,
     pub(crate) stop: R,
     stop_at: bool,
@@ -101,6 +103,7 @@ impl<R: Real> Rules<R> {
         Self {
             limit: (settings.support == Support::Ellipse).then(|| (k * k) / n(2.0)),
             least: n(settings.least_alpha),
+            all: settings.least_alpha == 0.0,
             most: n(settings.most_alpha),
             stop: n(settings.stop),
             stop_at: settings.stop_at,
@@ -111,11 +114,17 @@ impl<R: Real> Rules<R> {
     /// The fragment of a splat at a pixel within its bounds.
     #[inline(always)]
     pub(crate) fn fragment(&self, splat: &GaussianSplat<R>, at: (u32, u32)) -> GaussianFragment<R> {
-        let power = ProjectedGaussian::power(splat.center, splat.conic, at);
+        self.with_power(splat, ProjectedGaussian::power(splat.center, splat.conic, at))
+    }
+
+    /// The fragment of a splat where q/2 is this.
+    #[inline(always)]
+    pub(crate) fn with_power(&self, splat: &GaussianSplat<R>, power: R) -> GaussianFragment<R> {
         let alpha = (splat.alpha * (-power).exp()).at_most(self.most);
         let reaches = power.ge(R::ZERO);
         let inside = self.limit.map_or(reaches, |limit| reaches & decide::inside(power, limit));
-        GaussianFragment { power, alpha, inside, dense: decide::dense(alpha, self.least) }
+        let dense = if self.all { true.into() } else { decide::dense(alpha, self.least) };
+        GaussianFragment { power, alpha, inside, dense }
     }
 
     /// Whether blending ends before a fragment that leaves this transmittance.

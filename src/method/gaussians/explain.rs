@@ -43,7 +43,7 @@ pub fn explain<R: Exact>(
 ) -> Result<GaussianReplay<R>> {
     let Place { tile, rect } = Place::new(job, pixel)?;
     let source = Source::<R>::new(job.scene, job.camera, settings);
-    let splats = Splats::new(job, &source);
+    let splats = Splats::new(job, &job.grid(), &source);
     let rules = Rules::new(settings);
     let blending = Blending { source, splats: &splats, rules, buffers: job.buffers };
     let mut places = Vec::new();

@@ -55,6 +55,7 @@
 
 pub(crate) mod blending;
 pub mod explain;
+mod fast;
 pub(crate) mod picture;
 pub(crate) mod planes;
 mod settings;
@@ -63,7 +64,7 @@ pub(crate) mod splats;
 pub use settings::{BlendSpace, ColorBounds, Order, Settings, Support};
 
 use crate::error::Result;
-use crate::frame::NamedPlane;
+use crate::frame::{NamedPlane, Pool};
 use crate::method::algorithm::{Algorithm, Job};
 use crate::method::input_planes::InputPlanes;
 use crate::method::{Picture, Stage};
@@ -77,6 +78,7 @@ impl Algorithm for Settings {
     const STAGES: &'static [Stage] = planes::STAGES;
     const DRAWS_GAUSSIANS: bool = true;
     const BLENDS: bool = true;
+    const FAST_BYTES_A_PIXEL: Option<u64> = Some(80);
     type Memory = ();
 
     fn check(&self) -> Result<()> {
@@ -85,6 +87,10 @@ impl Algorithm for Settings {
 
     fn define<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
         Ok(picture::define(job, self, stages))
+    }
+
+    fn draw(&self, job: &Job<'_>, (): &mut (), pool: &mut Pool) -> Result<Picture<f32>> {
+        Ok(fast::draw(job, self, pool))
     }
 
     fn stage<R: Exact>(

@@ -19,7 +19,7 @@ use crate::scene::gaussians::Encoding;
 pub(super) fn define<R: Exact>(job: &Job<'_>, settings: &Settings, stages: bool) -> Picture<R> {
     let mut clock = Clock::default();
     let source = Source::<R>::new(job.scene, job.camera, settings);
-    let splats = Splats::new(job, &source);
+    let splats = Splats::new(job, &job.grid(), &source);
     clock.lap(STAGES[0].name);
     let blended = blend(job, source, &splats);
     clock.lap(STAGES[1].name);
@@ -44,7 +44,7 @@ fn blend<R: Exact>(
 }
 
 /// The planes of the picture: the layers before the environment, as linear light.
-fn display<R: Exact>(
+pub(super) fn display<R: Exact>(
     job: &Job<'_>,
     source: &Source<'_, R>,
     color: &Plane<[R; 3]>,
@@ -89,7 +89,7 @@ pub(super) fn stage<R: Exact>(
     let source = Source::<R>::new(job.scene, job.camera, settings);
     match stage {
         "blending" => {
-            let splats = Splats::new(job, &source);
+            let splats = Splats::new(job, &job.grid(), &source);
             let blended = blend(job, source, &splats);
             Ok(blended.planes(&GaussianPixel::PLANES, 0, &job.there(Keep::Alone)))
         }

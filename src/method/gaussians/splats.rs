@@ -1,7 +1,7 @@
 //! Project all Gaussians of a scene, put them in order, and sort them into tiles.
 
 use super::{BlendSpace, ColorBounds, Order, Settings, Support};
-use crate::frame::{Bins, Exec, Rect};
+use crate::frame::{Bins, Exec, Grid, Rect};
 use crate::method::Job;
 use crate::method::prepare::batch_size;
 use crate::number::{Exact, MapInline, Real, Vector2, Vector3, elementary, srgb};
@@ -86,14 +86,25 @@ impl<'a, R: Real> Source<'a, R> {
         count(self.scene)
     }
 
+    /// The shape of an item.
+    #[inline]
+    pub(crate) fn shape(&self, i: usize) -> GaussianShape<R> {
+        match &self.scene.gaussians {
+            Some(gaussians) => GaussianShape::of_gaussian(gaussians, i),
+            None => GaussianShape::of_surfel(&self.scene.surfels, i, self.settings.cutoff),
+        }
+    }
+
     /// Projects an item.
     #[inline]
     pub(crate) fn project(&self, i: usize) -> Projected<R> {
+        self.project_as(i, self.shape(i))
+    }
+
+    /// Projects an item as if it had this shape.
+    #[inline]
+    pub(crate) fn project_as(&self, i: usize, shape: GaussianShape<R>) -> Projected<R> {
         let surfels = &self.scene.surfels;
-        let shape = match &self.scene.gaussians {
-            Some(gaussians) => GaussianShape::of_gaussian(gaussians, i),
-            None => GaussianShape::of_surfel(surfels, i, self.settings.cutoff),
-        };
         let on_screen = self.projector.project(&shape);
         let from_eye = shape.position - self.eye;
         let perspective = self.projector.view.perspective;
@@ -212,9 +223,10 @@ pub(crate) struct Splats<R> {
 }
 
 impl<R: Exact> Splats<R> {
-    pub(crate) fn new(job: &Job<'_>, source: &Source<'_, R>) -> Self {
+    /// The splats of a picture, for the tiles of a grid.
+    pub(crate) fn new(job: &Job<'_>, grid: &Grid, source: &Source<'_, R>) -> Self {
         let (count, exec) = (source.len(), job.exec);
-        let size = batch_size(&job.grid(), count);
+        let size = batch_size(grid, count);
         let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
         let batches = exec.ordered(ranges.collect(), |range| {
             let (mut drawn, mut tally) = (Vec::with_capacity(range.len()), Tally::default());
@@ -243,7 +255,7 @@ impl<R: Exact> Splats<R> {
         let runs: Vec<usize> = (0..all.len()).step_by(size.max(1)).collect();
         let bins = exec.ordered(runs, |first| {
             let run = &all[first..all.len().min(first + size)];
-            (first, Bins::new(&job.grid(), run.len(), |i| run[i].bounds))
+            (first, Bins::new(grid, run.len(), |i| run[i].bounds))
         });
         Self { tally, all, solids, bins }
     }

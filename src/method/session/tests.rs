@@ -121,7 +121,7 @@ fn every_method_has_a_name_of_its_own_and_is_found_by_it() {
     }
     let line = Method::by_name("evva").unwrap_err().to_string();
     let names = "ewa, deferred, single-pass, transparent, transparent-hq, peeling, pyramid, template, \
-         blue";
+         blue, gaussians";
     assert_eq!(line, format!("method `evva`; give one of {names}"));
 }
 

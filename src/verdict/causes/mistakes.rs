@@ -1,7 +1,7 @@
 //! The mistakes that are tried: each in words and as a change, under the stage where it shows first.
 
 use super::change::Change;
-use super::{Case, Mistakes, depths, epsilon, surfels};
+use super::{Case, Mistakes, depths, epsilon, gaussians, surfels};
 use crate::method::{Method, Session};
 use crate::number::MapInline;
 use crate::scene::Camera;
@@ -20,6 +20,9 @@ const PICTURES: [&str; 3] = ["normalization", "shading", "compositing"];
 /// The mistakes that show first in this stage and are made often.
 pub(super) fn common(case: &Case<'_, '_>, stage: &str) -> Mistakes {
     let Case { session, camera, .. } = case;
+    if let Method::Gaussians(settings) = session.method() {
+        return gaussians::mistakes(case, settings);
+    }
     let mut all = Mistakes::new();
     if SHAPES.contains(&stage) {
         all.extend(moved_by_half(session, camera));

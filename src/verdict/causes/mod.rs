@@ -23,6 +23,7 @@ mod coarse;
 mod depths;
 mod epsilon;
 mod fields;
+mod gaussians;
 mod mistakes;
 mod plain;
 mod planes;

@@ -1,4 +1,4 @@
-//! Draft a scene: discs, meshes, a camera, lights and settings, with defaults that a rule changes.
+//! Draft a scene: discs or Gaussians, meshes, a camera, lights and settings, with defaults that a rule changes.
 //!
 //! The default camera stands at (0, 0, 8), looks along -z, and shows one world unit at z = 0 as 8
 //! pixels, so that numbers of a sketch are short decimals of pixels: the picture has 48 x 40 pixels,
@@ -11,13 +11,14 @@ use crate::index::mipmap;
 use crate::method::Method;
 use crate::number::random::unit;
 use crate::scene::cloud::half_axes;
+use crate::scene::gaussians::{Encoding, MAX_DEGREE, coefficients};
 use crate::scene::{
-    Camera, Cloud, Environment, Lens, Light, Phong, Polylines, Pose, Primitives, Scene, Surfels,
-    Triangles,
+    Camera, Cloud, Environment, GaussianArrays, Gaussians, Lens, Light, Phong, Polylines, Pose,
+    Primitives, Scene, Surfels, Triangles,
 };
 use crate::setting::{Fields, Refused};
 use crate::source::{Shape, derive};
-use glam::{DVec3, Vec3};
+use glam::{DVec3, Quat, Vec3, Vec4};
 
 /// A surfel of a sketch.
 #[derive(Clone, Copy, Debug)]
@@ -31,10 +32,38 @@ pub(super) struct Disc {
     pub(super) axes: Option<[Vec3; 2]>,
 }
 
+/// A Gaussian of a sketch.
+#[derive(Clone, Debug)]
+pub(super) struct Blob {
+    pub(super) at: Vec3,
+    pub(super) scale: Vec3,
+    pub(super) rotation: Quat,
+    pub(super) opacity: f32,
+    /// 1, 4, 9 or 16 coefficients.
+    pub(super) harmonics: Vec<Vec3>,
+}
+
+impl Blob {
+    /// Gives the splat a look that depends on the direction.
+    pub(super) fn look(&mut self, degree: u8) {
+        let rows = usize::from(degree) + 1;
+        let seed = u64::from(self.at.x.to_bits());
+        let part = |k: u64| unit(seed, k) - 0.5;
+        let first = self.harmonics[0];
+        let more = (1..(rows * rows) as u64)
+            .map(|k| Vec3::new(part(3 * k), part(3 * k + 1), part(3 * k + 2)) * 0.5);
+        self.harmonics = std::iter::once(first).chain(more).collect();
+    }
+}
+
 /// A scene, a camera and settings that are still to be changed.
 #[derive(Clone, Debug)]
 pub(super) struct Sketch {
     pub(super) discs: Vec<Disc>,
+    /// Gaussians in place of surfels.
+    pub(super) blobs: Vec<Blob>,
+    /// Whether Gaussians store linear light.
+    pub(super) linear: bool,
     pub(super) meshes: Vec<(Cloud, Draws)>,
     pub(super) size: [u32; 2],
     pub(super) pose: Pose,
@@ -70,6 +99,8 @@ impl Default for Sketch {
     fn default() -> Self {
         Self {
             discs: Vec::new(),
+            blobs: Vec::new(),
+            linear: false,
             meshes: Vec::new(),
             size: [48, 40],
             pose: Pose { eye: DVec3::new(0.0, 0.0, 8.0), target: DVec3::ZERO, up: DVec3::Y },
@@ -102,6 +133,35 @@ impl Sketch {
         let (at, normal) = (at.into(), normal.into());
         self.discs.push(Disc { at, normal, radius, color, opacity: 1.0, axes: None });
         &mut self.discs[at_once]
+    }
+
+    /// Adds a Gaussian along the axes of the world, of opacity 0.9 and of one colour.
+    pub(super) fn blob(&mut self, at: [f32; 3], scale: [f32; 3]) -> &mut Blob {
+        let at_once = self.blobs.len();
+        // Of degree 0: (color - 1/2) / 0.28209.
+        let color = (Vec3::from(PALETTE[at_once % PALETTE.len()]) - 0.5) * 3.544_907_7;
+        self.blobs.push(Blob {
+            at: at.into(),
+            scale: scale.into(),
+            rotation: Quat::IDENTITY,
+            opacity: 0.9,
+            harmonics: vec![color],
+        });
+        &mut self.blobs[at_once]
+    }
+
+    /// Adds Gaussians at random places in front of the camera, with random rotations and looks.
+    pub(super) fn scatter_blobs(&mut self, count: u64, scale: f32) {
+        for i in 0..count {
+            let random = |k: u64| 2.0 * unit(11, 12 * i + k) - 1.0;
+            let at = [2.5 * random(0), 2.0 * random(1), random(2)];
+            let size = |k: u64| scale * (1.05 + random(k));
+            let blob = self.blob(at, [size(3), size(4), size(5)]);
+            let parts = Vec4::new(random(6), random(7), random(8), 1.5).normalize();
+            blob.rotation = Quat::from_vec4(parts);
+            blob.opacity = 0.5 + 0.5 * random(9);
+            blob.look(3);
+        }
     }
 
     /// Adds the surfels of a shape, scaled.
@@ -154,6 +214,7 @@ impl Sketch {
             disc.radius *= factor;
             disc.axes = disc.axes.map(|axes| axes.map(|axis| axis * factor));
         }
+        self.blobs.iter_mut().for_each(|blob| blob.scale *= factor);
     }
 
     /// The case that this sketch makes for a method with its default settings.
@@ -161,13 +222,16 @@ impl Sketch {
         let mut method = method;
         self.settings.iter().try_for_each(|(name, value)| set(&mut method, name, value))?;
         method.check()?;
-        let surfels = self.grouped(&method, exec)?;
+        let surfels =
+            if self.blobs.is_empty() { self.grouped(&method, exec)? } else { Surfels::none() };
+        let gaussians = self.gaussians()?;
         let (camera, meshes) = (self.camera()?, self.meshes.clone());
         let scene = Scene {
             lights: self.lights,
             material: self.material,
             environment: self.sky.then_some(Environment::Sky),
             primitives: primitives(self.meshes, exec)?,
+            gaussians,
             ..Scene::unlit(rule, surfels)
         };
         Ok(Case { rule: rule.to_owned(), scene, meshes, camera, method })
@@ -182,6 +246,29 @@ impl Sketch {
         camera.near = self.near.unwrap_or(camera.near);
         camera.check()?;
         Ok(camera)
+    }
+
+    /// The Gaussians, if there are any, all of the greatest degree.
+    fn gaussians(&self) -> Result<Option<Gaussians>> {
+        let blobs = &self.blobs;
+        let Some(most) = blobs.iter().map(|blob| blob.harmonics.len()).max() else {
+            return Ok(None);
+        };
+        let padded = |blob: &Blob| {
+            let mut all = blob.harmonics.clone();
+            all.resize(most, Vec3::ZERO);
+            all
+        };
+        let arrays = GaussianArrays {
+            position: blobs.iter().map(|blob| blob.at).collect(),
+            scale: blobs.iter().map(|blob| blob.scale).collect(),
+            rotation: blobs.iter().map(|blob| blob.rotation.to_array()).collect(),
+            opacity: blobs.iter().map(|blob| blob.opacity).collect(),
+            degree: (0..=MAX_DEGREE).find(|&d| coefficients(d) == most).unwrap_or(MAX_DEGREE),
+            harmonics: blobs.iter().flat_map(padded).collect(),
+            encoding: if self.linear { Encoding::Linear } else { Encoding::Srgb },
+        };
+        Ok(Some(Gaussians::new(arrays)?.0))
     }
 
     fn surfels(&self, exec: &Exec) -> Result<Surfels> {

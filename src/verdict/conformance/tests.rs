@@ -1,6 +1,7 @@
 //! Every case is right by its own reference, and wrong by a renderer that does not keep its rule.
 
 use super::*;
+use crate::scene::Gaussians;
 use crate::setting::{Fields, Words};
 use crate::verdict::Outcome;
 use crate::verdict::client::Rounding;
@@ -35,9 +36,10 @@ fn every_method_has_25_small_rules_with_names_of_their_own() {
 
 #[test]
 fn every_setting_has_a_rule() {
-    // Culling has rules of its own, a preset sets other settings, and the last two change only the
+    // Culling has rules of its own, a preset sets other settings, whether blending ends at its
+    // limit shows at one number that no promise of rounding settles, and the last two change only the
     // frames after the first.
-    let others = ["cull", "kernel", "flags", "share"];
+    let others = ["cull", "kernel", "preset", "stop_at", "flags", "share"];
     for mut method in Method::all() {
         let rules = Rule::all(method.name()).unwrap();
         let name = method.name();
@@ -59,7 +61,8 @@ fn flaws(method: &str, large: bool, promises: &[Rounding], exec: &Exec) -> Vec<S
         let (case, broken) = (rule.case(exec).unwrap(), rule.broken(exec).unwrap());
         let most = if large { (5100, 320) } else { (100, 64) };
         let size = case.camera.size();
-        if case.scene.surfels.len() > most.0 || size.iter().any(|&side| side > most.1) {
+        let gaussians = case.scene.gaussians.as_ref().map_or(0, Gaussians::len);
+        if case.scene.surfels.len() + gaussians > most.0 || size.iter().any(|&side| side > most.1) {
             flaws.push(format!("{method} {}: too large", rule.name));
         }
         let (own, other) = (drawn(&case, exec), drawn(&broken, exec));

@@ -40,6 +40,7 @@ use crate::verdict::checks::{input, inputs, number, triple, widened};
 use crate::verdict::client::{Client, Storage, StoredPlane};
 use crate::verdict::marks::{self, Counts, Marks, PixelMarks, counted};
 use crate::verdict::planes::RecordPlanes;
+use crate::verdict::supposed::Supposed;
 use crate::verdict::{Check, Doubt, Verdict};
 use splats::PossibleSplats;
 use walk::{Walked, Walker};
@@ -81,6 +82,7 @@ struct Judge<'a, P: Profile> {
     alpha: Option<StoredPlane<'a, f64>>,
     environment: Option<&'a Environment>,
     accumulator: Storage,
+    supposed: Supposed,
 }
 
 impl<'a, P: Profile> Judge<'a, P> {
@@ -88,7 +90,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         let source = Source::new(job.scene, job.camera, settings);
         let fields = &GaussianPixel::<f32>::PLANES;
         Self {
-            splats: PossibleSplats::new(job, &source),
+            splats: PossibleSplats::new(job, &source, client.supposed),
             source,
             planes: RecordPlanes::new(client, fields, 0),
             color: client.triple(&GaussianPixel::<f32>::COLOR.row),
@@ -100,6 +102,7 @@ impl<'a, P: Profile> Judge<'a, P> {
             alpha: client.scalar(&ALPHA),
             environment: job.scene.environment.as_ref(),
             accumulator: client.accumulator,
+            supposed: client.supposed,
         }
     }
 
@@ -116,7 +119,7 @@ impl<'a, P: Profile> Judge<'a, P> {
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
         let [blending, display] = marks;
         let mut counts = Counts::default();
-        let mut walker = Walker::new(&self.source, &self.splats, (tile, rect));
+        let mut walker = Walker::new((&self.source, self.supposed), &self.splats, (tile, rect));
         for y in rect.y0..rect.y1 {
             for (column, at) in counted(Rect { y0: y, y1: y + 1, ..rect }) {
                 let pixel = (y - rect.y0) as usize * rect.columns() + column;
@@ -162,6 +165,8 @@ impl<'a, P: Profile> Judge<'a, P> {
         let light = displayed(&self.source, color, || {
             let environment = self.environment?;
             let ray = self.source.projector.view.ray(at.0, at.1);
+            let twice = self.supposed == Supposed::BackgroundTwice;
+            let through = if twice { through + through } else { through };
             Some((through, environment.enclosure(ray)))
         });
         let alpha = if self.environment.is_some() { Ball::ONE } else { Ball::ONE - through };

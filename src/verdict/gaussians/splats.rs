@@ -6,6 +6,10 @@ use crate::method::gaussians::Order;
 use crate::method::gaussians::splats::{GaussianSplat, Projected, Solid, Source};
 use crate::number::ball::Profile;
 use crate::number::{Ball, MapInline, Real, Truth};
+use crate::splat::gaussian::{GaussianShape, ProjectedGaussian};
+use crate::verdict::checks::widened;
+use crate::verdict::client::Storage;
+use crate::verdict::supposed::Supposed;
 
 /// A splat that may be drawn.
 pub(super) struct PossibleSplat<P: Profile> {
@@ -30,17 +34,20 @@ pub(super) struct PossibleSplats<P: Profile> {
 }
 
 impl<P: Profile> PossibleSplats<P> {
-    pub(super) fn new(job: &Job<'_>, source: &Source<'_, Ball<P>>) -> Self {
+    pub(super) fn new(job: &Job<'_>, source: &Source<'_, Ball<P>>, supposed: Supposed) -> Self {
         /// Items that one job projects.
         const SIZE: usize = 1024;
         let firsts: Vec<usize> = (0..source.len()).step_by(SIZE).collect();
         let batches = job.exec.ordered(firsts, |first| {
             let range = first..source.len().min(first + SIZE);
-            range.filter_map(|i| possible(job, source, i)).collect::<Vec<_>>()
+            range.filter_map(|i| possible(job, source, supposed, i)).collect::<Vec<_>>()
         });
         let mut all: Vec<_> = batches.into_iter().flatten().collect();
         if source.settings.order == Order::Steps {
             steps(&mut all);
+        }
+        if supposed == Supposed::BackToFront {
+            all.iter_mut().for_each(|splat| splat.splat.key = -splat.splat.key);
         }
         let key = |splat: &PossibleSplat<P>| (splat.splat.key.middle, splat.splat.index);
         all.sort_by(|a, b| {
@@ -67,9 +74,12 @@ impl<P: Profile> PossibleSplats<P> {
 fn possible<P: Profile>(
     job: &Job<'_>,
     source: &Source<'_, Ball<P>>,
+    supposed: Supposed,
     i: usize,
 ) -> Option<PossibleSplat<P>> {
-    let Projected { shape, on_screen, color, alpha, distance, .. } = source.project(i);
+    let projected = source.project_as(i, supposed_shape(source.shape(i), supposed));
+    let Projected { shape, on_screen, color, alpha, distance, .. } = projected;
+    let on_screen = supposed_ellipse(on_screen, supposed);
     let place = on_screen.place;
     let (behind, degenerate) = (source.projector.behind(place), on_screen.degenerate());
     if behind.certainly() || (degenerate.certainly() && !behind.possibly()) {
@@ -118,6 +128,37 @@ fn possible<P: Profile>(
         key,
     };
     Some(PossibleSplat { splat, certain, sound, products: [a * p.x, b * p.y, c * p.z], solid })
+}
+
+/// A shape by the rule that is supposed.
+fn supposed_shape<P: Profile>(
+    shape: GaussianShape<Ball<P>>,
+    supposed: Supposed,
+) -> GaussianShape<Ball<P>> {
+    if supposed != Supposed::HalfCovariance {
+        return shape;
+    }
+    let half = |part: Ball<P>| widened(part, Storage::Half.radius(part.middle));
+    GaussianShape { covariance: shape.covariance.map_inline(half), ..shape }
+}
+
+/// An ellipse by the rule that is supposed.
+fn supposed_ellipse<P: Profile>(
+    own: ProjectedGaussian<Ball<P>>,
+    supposed: Supposed,
+) -> ProjectedGaussian<Ball<P>> {
+    let ([xx, xy, yy], [a, b, c]) = (own.ellipse, own.conic);
+    match supposed {
+        Supposed::Mirrored => ProjectedGaussian { conic: [a, -b, c], ..own },
+        Supposed::Transposed => {
+            ProjectedGaussian { ellipse: [yy, xy, xx], conic: [c, b, a], ..own }
+        }
+        Supposed::CentersWhole => {
+            let center = own.center.map(|at| at.floor() + Ball::from_f32(0.5));
+            ProjectedGaussian { center, ..own }
+        }
+        _ => own,
+    }
 }
 
 /// Replaces each key by its step, over all that may be drawn.

@@ -9,6 +9,7 @@ use crate::method::gaussians::splats::Source;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, MapInline, Real, Truth};
 use crate::verdict::Doubt;
+use crate::verdict::supposed::Supposed;
 
 /// A fragment that may be drawn.
 struct Possible<'s, P: Profile> {
@@ -51,18 +52,19 @@ pub(super) struct Walked<P: Profile> {
 pub(super) struct Walker<'a, P: Profile> {
     source: &'a Source<'a, Ball<P>>,
     splats: &'a PossibleSplats<P>,
+    supposed: Supposed,
     rules: Rules<Ball<P>>,
     places: Vec<usize>,
 }
 
 impl<'a, P: Profile> Walker<'a, P> {
     pub(super) fn new(
-        source: &'a Source<'a, Ball<P>>,
+        (source, supposed): (&'a Source<'a, Ball<P>>, Supposed),
         splats: &'a PossibleSplats<P>,
         part: (usize, Rect),
     ) -> Self {
         let (rules, places) = (Rules::new(source.settings), splats.places(part));
-        Self { source, splats, rules, places }
+        Self { source, splats, supposed, rules, places }
     }
 
     /// What may be at a pixel.
@@ -78,6 +80,7 @@ impl<'a, P: Profile> Walker<'a, P> {
         }
         let mut walk = Walk {
             rules: &self.rules,
+            supposed: self.supposed,
             own,
             numbers: GaussianPixel::EMPTY,
             alive: true.into(),
@@ -105,7 +108,13 @@ impl<'a, P: Profile> Walker<'a, P> {
         if !holds(&own.bounds, at) {
             return None;
         }
-        let GaussianFragment { alpha, inside, dense, .. } = self.rules.fragment(own, at);
+        let fragment = self.rules.fragment(own, at);
+        let fragment = if self.supposed == Supposed::ExpWithoutHalf {
+            self.rules.with_power(own, fragment.power + fragment.power)
+        } else {
+            fragment
+        };
+        let GaussianFragment { alpha, inside, dense, .. } = fragment;
         let alpha = bounded(alpha, own.alpha.at_most(self.rules.most));
         let certain = splat.sound && holds(&splat.certain, at);
         let drawn = inside & dense & Three::new([certain, true, true]);
@@ -138,6 +147,7 @@ fn holds(&Rect { x0, y0, x1, y1 }: &Rect, (x, y): (u32, u32)) -> bool {
 /// The state of a walk through the fragments of a pixel.
 struct Walk<'r, P: Profile> {
     rules: &'r Rules<Ball<P>>,
+    supposed: Supposed,
     /// Whether the pixel has its own order.
     own: bool,
     numbers: GaussianPixel<Ball<P>>,
@@ -201,6 +211,16 @@ impl<P: Profile> Walk<'_, P> {
         }
     }
 
+    /// The colour of a fragment by the rule that is supposed.
+    fn color(&self, one: &Possible<'_, P>) -> [Ball<P>; 3] {
+        let color = one.splat.splat.color;
+        if self.supposed == Supposed::ColorsTwice {
+            color.map_inline(|part| part * one.alpha)
+        } else {
+            color
+        }
+    }
+
     /// The state after one more fragment, which may be drawn or not.
     fn next(
         &mut self,
@@ -213,7 +233,7 @@ impl<P: Profile> Walk<'_, P> {
         if drawn.possibly() && !drawn.certainly() {
             self.doubts |= Doubt::CutOff as u8;
         }
-        let after = numbers.after(one.alpha, one.splat.splat.color, one.depth);
+        let after = numbers.after(one.alpha, self.color(one), one.depth);
         (select(drawn, &after, &numbers), goes_on)
     }
 
@@ -252,7 +272,7 @@ impl<P: Profile> Walk<'_, P> {
             };
             let ends = one.drawn & self.rules.ends(before * (Ball::ONE - one.alpha));
             let drawn = alive & one.drawn & !ends;
-            let after = here.after(one.alpha, one.splat.splat.color, one.depth);
+            let after = here.after(one.alpha, self.color(one), one.depth);
             let blended = select(drawn, &after, &here);
             let through = self.numbers.blend.through;
             let median = self.numbers.median.either(after.median);

@@ -92,6 +92,14 @@ pub(crate) enum Supposed {
     AllOverlap,
     /// No cell that the pull has filled is occluded.
     NothingOccluded,
+    /// Gaussians come in the reverse order.
+    BackToFront,
+    /// Colours of Gaussians are multiplied by alpha twice.
+    ColorsTwice,
+    /// The light behind Gaussians is added twice.
+    BackgroundTwice,
+    /// Covariances of Gaussians may be rounded to half floats.
+    HalfCovariance,
 }
 
 impl Supposed {

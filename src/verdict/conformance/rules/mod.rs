@@ -2,6 +2,7 @@
 //! what a renderer draws that does not keep it.
 
 mod cameras;
+mod gaussians;
 mod layers;
 mod lights;
 mod meshes;
@@ -66,7 +67,9 @@ impl Of {
 
 /// The rules of a method, the simple ones first and the large scenes last.
 pub(super) fn of_method(method: &Method) -> Vec<Rule> {
-    let tables = [surfels::ROWS, cameras::ROWS, lights::ROWS, layers::ROWS, meshes::ROWS];
+    let of_surfels = [surfels::ROWS, cameras::ROWS, lights::ROWS, layers::ROWS, meshes::ROWS];
+    let of_gaussians = [gaussians::ROWS];
+    let tables = if method.draws_gaussians() { &of_gaussians[..] } else { &of_surfels[..] };
     let rule = |row: &'static Row| Rule {
         name: row.name.to_owned(),
         tests: row.tests.to_owned(),
@@ -76,7 +79,7 @@ pub(super) fn of_method(method: &Method) -> Vec<Rule> {
         varies: Varies::Otherwise(row.otherwise),
     };
     let own = |row: &&'static Row| row.of.has(method);
-    let simple = tables.into_iter().flatten().filter(own).map(rule);
+    let simple = tables.iter().copied().flatten().filter(own).map(rule);
     let settings = settings::ROWS.iter().filter(|row| row.of.has(method));
     let settings = settings.map(|row| setting(method, row));
     let large = settings::LARGE.iter().map(|row| Rule { large: true, ..rule(row) });

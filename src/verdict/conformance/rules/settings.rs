@@ -11,6 +11,7 @@ const LAYERS: Of = Of::Only(&["transparent", "transparent-hq"]);
 const HQ: Of = Of::Only(&["transparent-hq"]);
 const PEELING: Of = Of::Only(&["peeling"]);
 const PYRAMID: Of = Of::Only(&["pyramid"]);
+const GAUSSIANS: Of = Of::Only(&["gaussians"]);
 const TEMPLATE: Of = Of::Only(&["template"]);
 
 /// Three tilted discs under a wide lens, at different depths.
@@ -45,6 +46,40 @@ fn glass(s: &mut Sketch) {
 fn mesh(s: &mut Sketch) {
     square(s, [[-1.71, -1.23, 0.5], [1.37, -1.09, -0.5], [1.63, 1.11, -0.4], [-1.43, 1.31, 0.6]]);
     s.disc([0.3, 0.2, 0.1], 0.9);
+}
+
+/// Splats of all sizes and looks.
+fn blobs(s: &mut Sketch) {
+    s.scatter_blobs(40, 0.2);
+}
+
+/// Opaque splats, one behind the other.
+fn opaque(s: &mut Sketch) {
+    s.scatter_blobs(60, 0.5);
+    s.blobs.iter_mut().for_each(|blob| blob.opacity = 1.0);
+}
+
+/// Splats so close that their order shows.
+fn crowd(s: &mut Sketch) {
+    s.scatter_blobs(80, 0.4);
+    s.blobs.iter_mut().for_each(|blob| blob.at.z *= 0.02);
+}
+
+/// Splats of colours below 0 and above 1.
+fn bright(s: &mut Sketch) {
+    blobs(s);
+    s.blobs.iter_mut().for_each(|blob| blob.harmonics[0] *= 3.0);
+}
+
+/// Long splats beside the picture.
+fn beside(s: &mut Sketch) {
+    s.blob([-5.5, 0.4, 1.0], [0.6, 0.3, 1.5]);
+    s.blob([0.3, 4.6, 1.0], [0.3, 0.6, 1.5]);
+}
+
+/// A splat whose square ends just before a tile, and whose least alpha does not.
+fn rim(s: &mut Sketch) {
+    s.blob([-0.006_25, 0.0, 0.0], [0.3184; 3]).opacity = 1.0;
 }
 
 pub(super) const ROWS: &[SettingRow] = &[
@@ -92,6 +127,56 @@ pub(super) const ROWS: &[SettingRow] = &[
         },
     },
     SettingRow { of: TEMPLATE, name: "falloff", value: "gaussian", draw: ball },
+    SettingRow {
+        of: GAUSSIANS,
+        name: "near_depth",
+        value: "8",
+        draw: |s| s.scatter_blobs(60, 0.3),
+    },
+    SettingRow { of: GAUSSIANS, name: "clamp", value: "none", draw: beside },
+    SettingRow {
+        of: GAUSSIANS,
+        name: "clamp",
+        value: "edges",
+        // About the middle both bounds are the same.
+        draw: |s| {
+            beside(s);
+            s.shift = [5.25, -3.5];
+        },
+    },
+    SettingRow { of: GAUSSIANS, name: "low_pass", value: "0", draw: blobs },
+    SettingRow { of: GAUSSIANS, name: "low_pass", value: "0.1", draw: blobs },
+    SettingRow { of: GAUSSIANS, name: "compensation", value: "ratio", draw: blobs },
+    SettingRow { of: GAUSSIANS, name: "compensation", value: "floor", draw: blobs },
+    SettingRow { of: GAUSSIANS, name: "degree", value: "0", draw: blobs },
+    SettingRow { of: GAUSSIANS, name: "degree", value: "1", draw: blobs },
+    SettingRow { of: GAUSSIANS, name: "degree", value: "2", draw: blobs },
+    SettingRow { of: GAUSSIANS, name: "color_bounds", value: "none", draw: bright },
+    SettingRow { of: GAUSSIANS, name: "color_bounds", value: "unit", draw: bright },
+    SettingRow { of: GAUSSIANS, name: "order", value: "distance", draw: crowd },
+    SettingRow { of: GAUSSIANS, name: "order", value: "steps", draw: crowd },
+    SettingRow { of: GAUSSIANS, name: "order", value: "pixel", draw: crowd },
+    SettingRow { of: GAUSSIANS, name: "support", value: "none", draw: rim },
+    SettingRow { of: GAUSSIANS, name: "support", value: "ellipse", draw: blobs },
+    SettingRow { of: GAUSSIANS, name: "support", value: "boxes", draw: opaque },
+    SettingRow { of: GAUSSIANS, name: "cutoff", value: "1", draw: blobs },
+    SettingRow { of: GAUSSIANS, name: "cutoff", value: "2", draw: blobs },
+    SettingRow { of: GAUSSIANS, name: "least_alpha", value: "0", draw: blobs },
+    SettingRow { of: GAUSSIANS, name: "least_alpha", value: "0.05", draw: blobs },
+    SettingRow { of: GAUSSIANS, name: "most_alpha", value: "0.999", draw: opaque },
+    SettingRow { of: GAUSSIANS, name: "most_alpha", value: "0.5", draw: opaque },
+    SettingRow { of: GAUSSIANS, name: "stop", value: "0", draw: opaque },
+    SettingRow { of: GAUSSIANS, name: "stop", value: "0.1", draw: opaque },
+    SettingRow { of: GAUSSIANS, name: "blend", value: "linear", draw: blobs },
+    SettingRow {
+        of: GAUSSIANS,
+        name: "blend",
+        value: "srgb",
+        draw: |s| {
+            blobs(s);
+            s.linear = true;
+        },
+    },
 ];
 
 /// The large scenes, which every method has.

@@ -1,0 +1,79 @@
+use super::*;
+use crate::frame::Exec;
+use crate::method::{Method, Session};
+use crate::number::random::unit;
+use crate::scene::gaussians::{Encoding, GaussianArrays, Gaussians, coefficients};
+use crate::scene::{Camera, Environment, Lens, Pose, Scene};
+use crate::setting::Words;
+use glam::{DVec3, Vec3};
+
+/// Splats of all shapes and opacities, some of them huge, tiny, flat, behind the camera or at one
+/// depth.
+fn scene(count: u64, degree: u32, seed: u64) -> Scene {
+    let random = |i: u64, k: u64| 2.0 * unit(seed, 97 * i + k) - 1.0;
+    let vector = |i: u64, k: u64| Vec3::new(random(i, k), random(i, k + 1), random(i, k + 2));
+    let each = coefficients(degree) as u64;
+    let sizes = [0.02, 0.1, 0.4, 3.0, 0.0];
+    let arrays = GaussianArrays {
+        position: (0..count)
+            .map(|i| {
+                let at = vector(i, 0) * Vec3::new(2.5, 2.0, 4.0);
+                if i % 3 == 0 { Vec3::new(at.x, at.y, 0.5) } else { at }
+            })
+            .collect(),
+        scale: (0..count).map(|i| (vector(i, 3).abs() + 0.05) * sizes[(i % 5) as usize]).collect(),
+        rotation: (0..count)
+            .map(|i| [random(i, 6), random(i, 7), random(i, 8), random(i, 9)])
+            .collect(),
+        opacity: (0..count)
+            .map(|i| match i % 7 {
+                0 => 1.0,
+                1 => 0.0,
+                _ => random(i, 10).abs(),
+            })
+            .collect(),
+        degree,
+        harmonics: (0..count).flat_map(|i| (0..each).map(move |k| vector(i, 11 + 3 * k))).collect(),
+        encoding: if seed.is_multiple_of(2) { Encoding::Srgb } else { Encoding::Linear },
+    };
+    Scene::of_gaussians("splats", Gaussians::new(arrays).unwrap().0)
+}
+
+fn cameras() -> Vec<Camera> {
+    let pose = Pose { eye: DVec3::new(0.3, 0.2, 5.0), target: DVec3::ZERO, up: DVec3::Y };
+    let camera = |w, h, lens| Camera::new(w, h, pose, lens).unwrap();
+    let mut odd = camera(67, 41, Lens::FieldOfView(70.0));
+    (odd.cx, odd.fy) = (odd.cx + 9.0, odd.fy * 1.3);
+    vec![
+        camera(1, 1, Lens::FieldOfView(50.0)),
+        camera(96, 64, Lens::FieldOfView(50.0)),
+        odd,
+        camera(70, 33, Lens::Orthographic(4.0)),
+    ]
+}
+
+#[test]
+fn every_pixel_has_the_bits_of_the_definition() {
+    for (number, (_, preset)) in Settings::WORDS.iter().enumerate() {
+        let others = [
+            *preset,
+            Settings { order: Order::Steps, stop: 0.3, stop_at: true, ..*preset },
+            Settings { cutoff: 1.5, least_alpha: 0.1, most_alpha: 0.4, degree: 1, ..*preset },
+        ];
+        for (k, settings) in others.into_iter().enumerate() {
+            let mut scene = scene(300, (k + number) as u32 % 4, (3 * number + k) as u64);
+            scene.environment = (k == 1).then_some(Environment::Sky);
+            for (exec, camera) in [8, 16, 64, 32].into_iter().zip(cameras()) {
+                let exec = Exec::new(2, exec).unwrap();
+                let method = Method::Gaussians(settings);
+                let mut session = Session::new(&scene, method, &exec).unwrap();
+                let definition = session.define::<f32>(&camera, false).unwrap().frame;
+                let picture = session.render(&camera).unwrap();
+                assert_eq!(picture.frame.planes.len(), definition.planes.len());
+                for (own, other) in picture.frame.planes.iter().zip(&definition.planes) {
+                    assert!(own == other, "{settings:?} {}", own.name);
+                }
+            }
+        }
+    }
+}
