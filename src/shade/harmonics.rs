@@ -19,6 +19,8 @@
 //!               c30 = 0.37317633   c3 = 1.4453057
 //! ```
 
+pub mod rotation;
+
 use crate::number::{Real, Vector3};
 use crate::scene::gaussians;
 
