@@ -53,6 +53,13 @@ pub(super) fn run(args: &Args) -> Ended {
     let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
     let mut loaded = file.load(&exec, &show)?;
+    if loaded.scene.gaussians.is_some() {
+        let name = &loaded.scene.name;
+        let what = format!(
+            "{name} has 3D Gaussians, but only surfels are divided into groups; give points or a mesh"
+        );
+        return Err(Error::Invalid(what));
+    }
     loaded.scene = flatten(&loaded.scene, &exec)?;
     let Scene { name, primitives, .. } = &loaded.scene;
     if !primitives.is_empty() {

@@ -5,6 +5,7 @@ use super::{Ended, Ending, hierarchy, progress, say, warn, warn_of};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::exr::{self, ChannelType};
+use splatref::io::gaussians;
 use splatref::io::hierarchy::Hierarchy;
 use splatref::io::ply::ReadOptions;
 use splatref::io::scene_file::{Draw, EnvironmentChoice, FileKind, Model, SceneFile, Source};
@@ -28,12 +29,25 @@ pub(super) fn run(args: &Args) -> Ended {
         hierarchy::info(&args.file)?;
         return Ok(Ending::Good);
     }
-    match FileKind::from_extension(&args.file)? {
+    let kind = FileKind::from_extension(&args.file)?;
+    if kind.is_model() && gaussians::holds(&args.file) {
+        gaussians_of(&args.file)?;
+        return Ok(Ending::Good);
+    }
+    match kind {
         FileKind::Ply | FileKind::Obj | FileKind::Las | FileKind::E57 => points(&args.file)?,
         FileKind::Toml => scene(&args.file)?,
         FileKind::Exr => picture(&args.file)?,
     }
     Ok(Ending::Good)
+}
+
+fn gaussians_of(path: &Path) -> Result<()> {
+    let loaded = SceneFile::open(path)?.load(&Exec::sequential(), &|_, _, _| ())?;
+    warn(&loaded.warnings);
+    report::scene(&loaded);
+    line("  sha256", loaded.scene.sha256());
+    Ok(())
 }
 
 fn points(path: &Path) -> Result<()> {

@@ -5,13 +5,15 @@ use glam::{DVec3, Vec3};
 use splatref::frame::Exec;
 use splatref::index::grouping::GroupCoverage;
 use splatref::index::seen::Seen;
-use splatref::io::scene_file::{Colored, Loaded, ModelReport, OutputSettings, SceneFile};
+use splatref::io::scene_file::{Colored, GaussianReport, Loaded, ModelReport};
+use splatref::io::scene_file::{OutputSettings, SceneFile};
 use splatref::method::Method;
 use splatref::method::session::Made;
 pub(super) use splatref::report::short;
 use splatref::scene::objects::detail::prefix::Estimate;
 use splatref::scene::objects::{Detail, Split};
-use splatref::scene::{Camera, Counts, Dropped, Groups, Objects, Projection, Scene, Surfels};
+use splatref::scene::{Camera, Counts, Dropped, Gaussians, Groups, Objects, Projection};
+use splatref::scene::{Scene, Surfels};
 use splatref::setting::{Fields, Word};
 use splatref::source::derive::Origin;
 use splatref::splat::Tally;
@@ -27,6 +29,9 @@ pub(super) fn scene(loaded: &Loaded) {
     let scene = &loaded.scene;
     if let Some(objects) = &scene.objects {
         return objects_of(loaded, objects);
+    }
+    if let (Some(gaussians), Some(report)) = (&scene.gaussians, &loaded.gaussians) {
+        return gaussians_of(scene, gaussians, report);
     }
     let (name, all) = (&scene.name, content(scene.surfels.len() as u64, scene.primitives.counts()));
     match loaded.models.as_slice() {
@@ -44,6 +49,27 @@ pub(super) fn scene(loaded: &Loaded) {
     offset(scene.offset);
     bounds(scene.bounds());
     radius(&scene.surfels);
+}
+
+/// Prints a scene of 3D Gaussians, and how its file stores them.
+fn gaussians_of(scene: &Scene, gaussians: &Gaussians, report: &GaussianReport) {
+    let (count, degree) = (gaussians.len(), gaussians.degree());
+    let name = &scene.name;
+    line("scene", format!("{name}: {count} Gaussians, spherical harmonics of degree {degree}"));
+    line("  read as", &report.convention);
+    line("  colours", gaussians.encoding().name());
+    line(
+        "  dropped",
+        match report.dropped {
+            0 => "none".into(),
+            n => format!(
+                "{n} Gaussians with a number that is not finite, a scale < 0, a rotation of \
+                 length 0 or an opacity outside [0, 1]"
+            ),
+        },
+    );
+    offset(scene.offset);
+    bounds(scene.bounds());
 }
 
 /// How many geometries get a line; a hierarchy may have thousands of nodes.

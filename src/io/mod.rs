@@ -7,6 +7,7 @@
 //!   picture from a name.
 //! - [`cameras`]: read cameras from files of other programs.
 //! - [`ply`]: read and write point clouds and meshes.
+//! - [`gaussians`]: read 3D Gaussians.
 //! - [`obj`]: read meshes and points as text.
 //! - [`las`]: read point clouds of laser scanners, LAS and LAZ.
 //! - `e57`: read scans; needs the feature `cli`.
@@ -44,6 +45,7 @@ pub mod e57;
 pub mod environment;
 pub mod exr;
 mod far;
+pub mod gaussians;
 mod guard;
 pub mod hierarchy;
 mod input;

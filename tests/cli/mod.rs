@@ -8,6 +8,7 @@ mod compare;
 mod conformance;
 mod damage;
 mod foreign;
+mod gaussians;
 mod golden;
 mod groups;
 mod guide;

@@ -71,7 +71,7 @@
 //! # What the reader refuses
 //!
 //! A file of 3D Gaussians is refused by name, packed or not: its opacities are logits and its scales
-//! are logarithms, so that points drawn from it would be wrong.
+//! are logarithms, so that points drawn from it would be wrong. [`crate::io::gaussians`] reads it.
 //!
 //! A vector must be declared completely or not at all. The reader does not judge values: NaN and
 //! infinite values go into the cloud, and are dropped and counted when surfels are made from the
@@ -106,6 +106,7 @@ mod values;
 mod vertices;
 mod write;
 
+pub(in crate::io) use gaussians::{holds_gaussians, read_gaussians};
 pub(in crate::io) use numbers::numbers;
 pub use order::write_ordered;
 pub(in crate::io) use properties::check_properties;

@@ -25,10 +25,21 @@ pub struct Loaded {
     pub dropped: Dropped,
     /// Triangles and edges of all models that should have become primitives, and did not.
     pub dropped_primitives: u64,
+    /// How the Gaussians of the scene were read, if it has Gaussians.
+    pub gaussians: Option<GaussianReport>,
     /// What is to be doubted about the files, each once: one line with the file and the remedy.
     pub warnings: Vec<String>,
     /// The hierarchy from which views read what they need.
     pub(super) unread: Option<Hierarchy>,
+}
+
+/// A report on a loaded model of 3D Gaussians.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct GaussianReport {
+    /// How the file stores its numbers, in words.
+    pub convention: String,
+    /// How many Gaussians of the file cannot be drawn; see [`crate::scene::Gaussians::new`].
+    pub dropped: u64,
 }
 
 /// A report on a loaded model.
@@ -70,6 +81,7 @@ impl SceneFile {
     /// - A model cannot be drawn as chosen.
     /// - A model that is not drawn as points has an opacity or mipmaps.
     /// - A model in one colour has a texture or mipmaps, or a model drawn as lines has a texture.
+    /// - A model of 3D Gaussians is not alone, or has a choice that applies to surfels.
     pub fn load(&self, exec: &Exec, progress: Progress<'_>) -> Result<Loaded> {
         self.load_for(Purpose::Scene, exec, progress)
     }
@@ -113,6 +125,7 @@ impl SceneFile {
         exec: &Exec,
         progress: Progress<'_>,
     ) -> Result<Loaded> {
+        let gaussians = self.gaussians(purpose)?;
         self.all_models().try_for_each(|model| check_draw(model, purpose))?;
         let hierarchy = self.hierarchy.as_deref().map(Hierarchy::open).transpose()?;
         // Check the objects before large files are read.
@@ -130,8 +143,19 @@ impl SceneFile {
             ..Scene::unlit(&self.name, Surfels::none())
         };
         let (models, dropped, warnings) = (Vec::new(), Dropped::default(), Vec::new());
-        let mut loaded =
-            Loaded { scene, models, dropped, dropped_primitives: 0, warnings, unread: None };
+        let mut loaded = Loaded {
+            scene,
+            models,
+            dropped,
+            dropped_primitives: 0,
+            gaussians: None,
+            warnings,
+            unread: None,
+        };
+        if let Some((model, path)) = gaussians {
+            loaded.read_gaussians(model, path)?;
+            return Ok(loaded);
+        }
         match (hierarchy, objects) {
             (Some(hierarchy), _) => {
                 let view = purpose == Purpose::View;
@@ -264,7 +288,7 @@ fn of_hierarchy(
 
 impl Loaded {
     /// Moves what is in world coordinates by the offset of the files.
-    fn move_to(&mut self, offset: DVec3) {
+    pub(super) fn move_to(&mut self, offset: DVec3) {
         self.scene.offset = offset;
         for light in &mut self.scene.lights {
             if let Light::Point { position, .. } = light {

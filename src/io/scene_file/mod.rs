@@ -24,6 +24,12 @@
 //! name = "pyramid"
 //! ```
 //!
+//! # 3D Gaussians
+//!
+//! A scene may have one model whose file holds [3D Gaussians](crate::io::gaussians), and then no other
+//! model and no object. It may have a `transform`, but no choice that applies to surfels: `radius`, `prefix`, `texture`,
+//! `color_range`, `color_by`, `draw`, `color`, `opacity`, `mipmaps`, `progressive`, lights or a material.
+//!
 //! # Objects that move over a sequence of frames
 //!
 //! A scene of objects has frames (see [`crate::scene::objects`]):
@@ -82,6 +88,7 @@ mod approximate;
 mod camera;
 mod choice;
 mod draw;
+mod gaussians;
 mod load;
 mod model;
 mod objects;
@@ -96,7 +103,7 @@ mod text;
 pub use camera::{CameraChoice, Matrices, Views};
 pub use choice::{Choice, GroupChoice, MethodChoice, Number, OutputSettings};
 pub use draw::Draw;
-pub use load::{Loaded, ModelReport};
+pub use load::{GaussianReport, Loaded, ModelReport};
 pub use model::Colored;
 pub use objects::{Geometry, MOST_FRAMES, ObjectChoice, Places};
 pub use open::{FileKind, TREE, read_model, read_properties, shapes};

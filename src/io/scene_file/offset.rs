@@ -15,23 +15,27 @@ use super::Model;
 use super::model::ModelParts;
 use crate::number::Real;
 use crate::scene::Similarity;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 /// See the module.
 const FAR: f64 = 8.0;
 
 /// The offset of a scene of these models.
 pub(super) fn shared<'a>(all: impl IntoIterator<Item = (&'a Model, &'a ModelParts)>) -> DVec3 {
-    let of = |(model, parts): (&Model, &ModelParts)| {
-        if parts.offset == DVec3::ZERO {
-            return None;
-        }
-        let place = place(model, parts.offset);
-        let reach = reach(parts) * model.transform.scale;
-        let far = |value: f64| if value.abs() >= FAR * reach { value } else { 0.0 };
-        Some(DVec3::new(far(place.x), far(place.y), far(place.z)))
-    };
+    let of = |(model, parts): (&Model, &ModelParts)| of_model(model, parts.offset, || reach(parts));
     all.into_iter().find_map(of).unwrap_or_default()
+}
+
+/// The offset of a scene that begins with a model, which was read with its `own` offset and then
+/// reaches so far from 0. `None` if it was read without one.
+pub(super) fn of_model(model: &Model, own: DVec3, reach: impl Fn() -> f64) -> Option<DVec3> {
+    if own == DVec3::ZERO {
+        return None;
+    }
+    let place = place(model, own);
+    let reach = reach() * model.transform.scale;
+    let far = |value: f64| if value.abs() >= FAR * reach { value } else { 0.0 };
+    Some(DVec3::new(far(place.x), far(place.y), far(place.z)))
 }
 
 /// Where the transform of a model moves its offset.
@@ -50,8 +54,13 @@ fn reach(parts: &ModelParts) -> f64 {
     let lines = [&primitives.ribbons, &primitives.tubes];
     let lines = lines.into_iter().flat_map(|lines| &lines.vertices().position);
     let triangles = &primitives.triangles.vertices().position;
-    let all = surfels.chain(triangles).chain(lines).filter(|place| place.is_finite());
-    all.fold(0.0, |most, place| most.at_least(place.abs().max_element())).into()
+    greatest(surfels.chain(triangles).chain(lines))
+}
+
+/// The greatest finite coordinate, whatever its sign.
+pub(super) fn greatest<'a>(positions: impl Iterator<Item = &'a Vec3>) -> f64 {
+    let finite = positions.filter(|place| place.is_finite());
+    finite.fold(0.0, |most, place| most.at_least(place.abs().max_element())).into()
 }
 
 /// The model with a transform from what was read with its `own` offset to the scene's.

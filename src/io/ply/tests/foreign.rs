@@ -25,7 +25,7 @@ fn gaussians_are_refused_by_name() {
     for names in [&harmonics[..], &bare, &with_normals, &rgb, &flat] {
         let error = with(names, &[POINT; 9].join(" ")).unwrap_err();
         assert!(error.contains("this PLY holds 3D Gaussians: opacities are logits"), "{error}");
-        assert!(error.contains("does not draw Gaussian splats yet"), "{error}");
+        assert!(error.contains("only `--method gaussians` draws them"), "{error}");
     }
     let packed = "ply\nformat binary_little_endian 1.0\nelement chunk 1\nproperty float min_x\n\
                   element vertex 1\nproperty uint packed_position\nproperty uint packed_rotation\n\

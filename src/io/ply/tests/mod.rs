@@ -3,6 +3,7 @@
 mod coordinates;
 mod far;
 mod foreign;
+mod gaussians;
 mod refused;
 mod rows;
 
