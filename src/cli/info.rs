@@ -20,7 +20,7 @@ Examples:
   splatref info bunny.ply
   splatref info out/cluster.exr")]
 pub(super) struct Args {
-    /// A .ply, .obj, .las, .laz or .e57, a scene .toml, an .exr, or a folder that "splatref surfels" wrote
+    /// A .ply, .obj, .las, .laz, .e57, .glb, .gltf or .splat, a scene .toml, an .exr, or a folder that "splatref surfels" wrote
     file: PathBuf,
 }
 
@@ -35,7 +35,9 @@ pub(super) fn run(args: &Args) -> Ended {
         return Ok(Ending::Good);
     }
     match kind {
-        FileKind::Ply | FileKind::Obj | FileKind::Las | FileKind::E57 => points(&args.file)?,
+        FileKind::Ply | FileKind::Obj | FileKind::Las | FileKind::E57 | FileKind::Gaussians => {
+            points(&args.file)?
+        }
         FileKind::Toml => scene(&args.file)?,
         FileKind::Exr => picture(&args.file)?,
     }

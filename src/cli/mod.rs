@@ -9,6 +9,7 @@ mod camera;
 mod claims;
 mod compare;
 mod conformance;
+mod convert;
 mod destination;
 mod draw;
 mod ending;
@@ -100,7 +101,9 @@ enum Command {
     Quality(quality::Args),
     /// Write the visible splats as records for a backend to upload
     Project(project::Args),
-    /// Describe a PLY, a scene file, an EXR or a folder of surfels
+    /// Convert 3D Gaussians to PLY or GLB, from these or a .splat
+    Convert(convert::Args),
+    /// Describe a model, a scene file, an EXR or a folder of surfels
     Info(info::Args),
 }
 
@@ -134,6 +137,7 @@ pub(crate) fn run() -> ExitCode {
         Command::Plan(args) => plan::run(&args),
         Command::Quality(args) => quality::run(&args),
         Command::Project(args) => project::run(&args),
+        Command::Convert(args) => convert::run(&args),
         Command::Info(args) => info::run(&args),
     };
     match outcome.and_then(|ending| printed().map(|()| ending)) {

@@ -58,18 +58,20 @@ fn gaussians_of(scene: &Scene, gaussians: &Gaussians, report: &GaussianReport) {
     line("scene", format!("{name}: {count} Gaussians, spherical harmonics of degree {degree}"));
     line("  read as", &report.convention);
     line("  colours", gaussians.encoding().name());
-    line(
-        "  dropped",
-        match report.dropped {
-            0 => "none".into(),
-            n => format!(
-                "{n} Gaussians with a number that is not finite, a scale < 0, a rotation of \
-                 length 0 or an opacity outside [0, 1]"
-            ),
-        },
-    );
+    line("  dropped", dropped_gaussians(report.dropped));
     offset(scene.offset);
     bounds(scene.bounds());
+}
+
+/// How many Gaussians were dropped, and why.
+pub(super) fn dropped_gaussians(count: u64) -> String {
+    match count {
+        0 => "none".into(),
+        n => format!(
+            "{n} Gaussians with a number that is not finite, a scale < 0, a rotation of length 0 or \
+             an opacity outside [0, 1]"
+        ),
+    }
 }
 
 /// How many geometries get a line; a hierarchy may have thousands of nodes.

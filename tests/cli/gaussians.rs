@@ -111,3 +111,70 @@ fn choices_and_commands_of_surfels_are_refused() {
         assert!(line.contains("3D Gaussians"), "{arguments:?}: {line}");
     }
 }
+
+#[test]
+fn gaussians_are_converted_and_described_in_every_format() {
+    let at = TempDir::new().unwrap();
+    write(&at.path().join("g.ply"), &ROWS);
+    let said = succeeds(at.path(), &["convert", "g.ply", "g.glb"]);
+    assert!(said.contains("gaussians  3, spherical harmonics of degree 0"), "{said}");
+    assert!(
+        said.contains("  changed  nothing: the file gives the same Gaussians, bit for bit"),
+        "{said}"
+    );
+    let line = |name: &str, key: &str| {
+        let said = succeeds(at.path(), &["info", name]);
+        said.lines().find(|line| line.trim().starts_with(key)).unwrap().to_owned()
+    };
+    assert_eq!(line("g.glb", "sha256"), line("g.ply", "sha256"), "the same scene");
+    assert!(line("g.glb", "read as").contains("glTF with KHR_gaussian_splatting: linear scales"));
+    // A file that splatref wrote once keeps every bit on its way to GLB and back.
+    succeeds(at.path(), &["convert", "g.glb", "a.ply"]);
+    succeeds(at.path(), &["convert", "a.ply", "a.glb"]);
+    let said = succeeds(at.path(), &["convert", "a.glb", "b.ply"]);
+    assert!(said.contains("  changed  nothing"), "{said}");
+    let [a, b] = ["a.ply", "b.ply"].map(|name| fs::read(at.path().join(name)).unwrap());
+    assert!(a == b);
+
+    let floats = [1.0_f32, 2.0, 3.0, 500.25, 0.25, 0.125];
+    let mut row: Vec<u8> = floats.iter().flat_map(|value| value.to_le_bytes()).collect();
+    row.extend([255, 0, 51, 204, 192, 128, 64, 128]);
+    fs::write(at.path().join("s.splat"), row).unwrap();
+    assert!(line("s.splat", "read as").contains(".splat: linear scales"));
+    let said = succeeds(at.path(), &["convert", "s.splat", "s.ply"]);
+    assert!(said.contains("1 of 3 scales, by at most"), "{said}");
+    assert!(said.contains("because of logarithms in f32"), "{said}");
+}
+
+#[test]
+fn what_cannot_be_converted_is_refused() {
+    let at = TempDir::new().unwrap();
+    write(&at.path().join("g.ply"), &ROWS);
+    let before = fs::read(at.path().join("g.ply")).unwrap();
+    for (arguments, code, what) in [
+        (["g.ply", "g.ply"], 2, "g.ply is also an input; give another name"),
+        (["g.ply", "./g.ply"], 2, "is also an input"),
+        (["g.ply", "g.obj"], 2, "g.obj: Gaussians are written as .ply or .glb"),
+        (["g.ply", "no/g.glb"], 1, "no/g.glb"),
+        (["none.ply", "g.glb"], 1, "none.ply"),
+        (["g.spz", "g.glb"], 1, "g.spz: SPZ is not read"),
+    ] {
+        let line = fails(at.path(), &[&["convert"], &arguments[..]].concat(), code);
+        assert!(line.contains(what), "{line}");
+    }
+    assert!(fs::read(at.path().join("g.ply")).unwrap() == before);
+    fs::write(
+        at.path().join("p.ply"),
+        "ply\nformat ascii 1.0\nelement vertex 1\nproperty float x\n\
+        property float y\nproperty float z\nend_header\n0 0 0\n",
+    )
+    .unwrap();
+    let line = fails(at.path(), &["convert", "p.ply", "o.glb"], 1);
+    assert!(line.contains("p.ply: this PLY holds no Gaussians"), "{line}");
+    succeeds(at.path(), &["convert", "g.ply", "g.glb"]);
+    for arguments in [&["surfels", "g.glb", "-o", "o.ply"] as &[&str], &["quality", "g.glb"]] {
+        let line = fails(at.path(), arguments, 1);
+        assert!(line.contains("g.glb: the file holds 3D Gaussians"), "{line}");
+    }
+    assert_eq!(names(at.path()), ["g.glb", "g.ply", "p.ply"]);
+}

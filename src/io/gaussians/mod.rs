@@ -1,8 +1,12 @@
-//! Read 3D Gaussians from the files of the programs that train and store them.
+//! Read and write 3D Gaussians: the files of the programs that train, store and show them.
 //!
 //! | file | what it holds | what the reader does |
 //! |---|---|---|
-//! | `.ply` of the original program, of gsplat and of their kin | log scales, logit opacities, quaternions w x y z of any length, coefficients channel by channel | see [the properties](#the-properties-of-a-ply) |
+//! | `.ply` of the original program, of gsplat and of their kin | log scales, logit opacities, quaternions w x y z of any length, coefficients channel by channel | activates them, see [the properties](#the-properties-of-a-ply) |
+//! | `.gltf`, `.glb` with [`KHR_gaussian_splatting`] | scales, opacities in \[0, 1\], quaternions x y z w, coefficients one by one | applies the transforms of nodes, see [below](#gltf); needs the feature `cli` |
+//! | `.splat` | rows of 32 bytes: position and scale as floats, red, green, blue and opacity as bytes, a quaternion w x y z as bytes b that mean (b - 128) / 128 | a colour byte c becomes the coefficient (c / 255 - 1/2) / 0.2820947917738781, in f64, rounded once |
+//!
+//! [`KHR_gaussian_splatting`]: https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_gaussian_splatting
 //!
 //! [`read`] activates the numbers. [`crate::scene::Gaussians::new`] checks them, and counts what cannot be
 //! drawn.
@@ -28,12 +32,39 @@
 //!   them on photographs.
 //! - Normals and all other properties are skipped. So are other elements.
 //! - A compressed PLY, with `packed_position` and its like, is refused by name.
+//!
+//! # glTF
+//!
+//! - The reader joins all primitives that have the extension, in the order of the nodes, depth first.
+//!   A node may turn, move and scale them by one positive scale; the coefficients turn with it.
+//! - Attributes may be floats, or the integers that the extension allows, with strides and sparse
+//!   accessors. An integer is decoded in f64 and rounded once. Buffers may be in the GLB, in the text as base64, or in
+//!   files beside it.
+//! - `Decided:` if a scale is negative, all scales that are floats are logarithms, as in the release
+//!   candidate of the extension until 2026. The final text has linear scales, which are never negative.
+//! - `colorSpace` is the [encoding](crate::scene::gaussians::Encoding). `COLOR_0` and materials are skipped.
+//! - The reader warns about a kernel, a projection or a sorting method other than the extension's own, and
+//!   about primitives without the extension. It refuses other required extensions by name: compression.
+//!
+//! The reader is our own, on `serde_json`. The crate `gltf` refuses attributes whose names have a prefix, and
+//! brings eight crates for what is a page of code here.
+//!
+//! SPZ, another compressed format, is refused by name.
 
 mod activation;
+#[cfg(feature = "cli")]
+mod gltf;
+mod splat;
+#[cfg(feature = "cli")]
+mod write_ply;
 
-use crate::error::Result;
-use crate::io::ply;
+#[cfg(feature = "cli")]
+use super::replace::write_atomically;
+use super::{extension, ply};
+use crate::error::{Error, Result};
 use crate::scene::GaussianArrays;
+#[cfg(feature = "cli")]
+use crate::scene::{Gaussians, gaussians::Encoding};
 use glam::DVec3;
 use std::path::Path;
 
@@ -54,17 +85,87 @@ pub struct GaussianFile {
     pub warnings: Vec<String>,
 }
 
+/// The kinds of files, by their extension.
+enum Kind {
+    Gltf,
+    Splat,
+    Spz,
+    /// A PLY, or anything else, which only its header tells.
+    Other,
+}
+
+fn kind(path: &Path) -> Kind {
+    match extension(path).as_deref() {
+        Some("gltf" | "glb") => Kind::Gltf,
+        Some("splat") => Kind::Splat,
+        Some("spz") => Kind::Spz,
+        _ => Kind::Other,
+    }
+}
+
 /// Whether a file holds 3D Gaussians, by its name and its header. False if it cannot be read.
 #[must_use]
 pub fn holds(path: &Path) -> bool {
-    ply::holds_gaussians(path)
+    match kind(path) {
+        Kind::Gltf | Kind::Splat | Kind::Spz => true,
+        Kind::Other => ply::holds_gaussians(path),
+    }
 }
 
-/// Reads a file.
+/// Reads a file by its extension; without a known one, as a PLY.
 ///
 /// # Errors
-/// [`crate::Error::Io`] if the file cannot be read. [`crate::Error::Format`] if it holds no Gaussians,
-/// is truncated or differs from its header, or lacks a number that Gaussians need.
+/// [`Error::Io`] if the file cannot be read. [`Error::Format`] if it holds no Gaussians, is truncated
+/// or differs from its header, or lacks a number that Gaussians need.
 pub fn read(path: &Path) -> Result<GaussianFile> {
-    ply::read_gaussians(path)
+    match kind(path) {
+        #[cfg(feature = "cli")]
+        Kind::Gltf => gltf::read(path),
+        #[cfg(not(feature = "cli"))]
+        Kind::Gltf => {
+            Err(Error::format(path, "glTF is read with the feature `cli` of this crate only"))
+        }
+        Kind::Splat => splat::read(path),
+        Kind::Spz => Err(Error::format(
+            path,
+            "SPZ is not read, because it is compressed with loss; convert it to a plain PLY or GLB",
+        )),
+        Kind::Other => ply::read_gaussians(path),
+    }
+}
+
+/// Checks that [`write()`] writes files of this name.
+///
+/// # Errors
+/// [`Error::Usage`] if not.
+#[cfg(feature = "cli")]
+pub fn check_name(path: &Path) -> Result<()> {
+    if matches!(extension(path).as_deref(), Some("ply" | "glb")) {
+        return Ok(());
+    }
+    let path = path.display();
+    let what = format!("{path}: Gaussians are written as .ply or .glb; give such a name");
+    Err(Error::Usage(what))
+}
+
+/// Writes Gaussians, as they are less `offset`, to a `.ply` or a `.glb`. Needs the feature `cli`.
+///
+/// A GLB gives the same Gaussians back, bit for bit. A PLY holds logarithms and logits: of those that
+/// `f32` has, the writer takes one that gives the same number back, or else the nearest.
+///
+/// # Errors
+/// As [`check_name`]. [`Error::Format`] if a PLY would hold linear colours,
+/// which it cannot say, or a GLB 4 GiB. [`Error::Io`] as [`write_atomically`].
+#[cfg(feature = "cli")]
+pub fn write(path: &Path, gaussians: &Gaussians, offset: DVec3) -> Result<()> {
+    check_name(path)?;
+    if extension(path).as_deref() == Some("glb") {
+        let write = gltf::write(gaussians, offset).map_err(|what| Error::format(path, what))?;
+        return write_atomically(path, |out| write(out));
+    }
+    if gaussians.encoding() == Encoding::Linear {
+        let what = "the colours are linear, but colours of a PLY are sRGB; give a .glb";
+        return Err(Error::format(path, what));
+    }
+    write_atomically(path, |out| write_ply::write(gaussians, offset, out))
 }

@@ -31,6 +31,8 @@ pub enum FileKind {
     Las,
     /// Scans.
     E57,
+    /// 3D Gaussians: glTF, GLB, .splat and SPZ. A PLY may hold them too.
+    Gaussians,
     /// A scene file.
     Toml,
     /// A picture.
@@ -41,12 +43,18 @@ pub enum FileKind {
 /// read, see [`crate::io::texture::paint`]. An OBJ takes no options, and an E57 no colour range.
 ///
 /// # Errors
-/// As [`obj::read`], [`las::read`], `e57::read` and [`ply::read_with`].
+/// As [`obj::read`], [`las::read`], `e57::read` and [`ply::read_with`]; [`Error::Format`] for files of
+/// 3D Gaussians.
 pub fn read_model(path: &Path, options: &ReadOptions, exec: &Exec) -> Result<Cloud> {
     match FileKind::from_extension(path) {
         Ok(FileKind::Obj) => obj::read(path),
         Ok(FileKind::Las) => las::read(path, options),
         Ok(FileKind::E57) => e57(path, options),
+        Ok(FileKind::Gaussians) => Err(Error::format(
+            path,
+            "the file holds 3D Gaussians, which only `--method gaussians` draws; give a point cloud \
+             or a mesh",
+        )),
         Ok(FileKind::Ply | FileKind::Toml | FileKind::Exr) | Err(_) => {
             ply::read_with(path, options, exec)
         }
@@ -72,7 +80,7 @@ fn e57(path: &Path, _: &ReadOptions) -> Result<Cloud> {
 pub fn read_properties(path: &Path, names: &[String], cloud: &mut Cloud) -> Result<()> {
     let there = std::mem::take(&mut cloud.properties);
     cloud.properties = match FileKind::from_extension(path) {
-        Ok(FileKind::Obj | FileKind::Las | FileKind::E57) => {
+        Ok(FileKind::Obj | FileKind::Las | FileKind::E57 | FileKind::Gaussians) => {
             names.iter().map(|name| named(path, name, &there)).collect::<Result<_>>()?
         }
         Ok(FileKind::Ply | FileKind::Toml | FileKind::Exr) | Err(_) => {
@@ -104,7 +112,9 @@ pub(super) fn read_number(path: &Path, name: &str, cloud: &Cloud) -> Result<(Vec
         return Ok((cloud.position.iter().map(|p| p[axis]).collect(), cloud.offset[axis]));
     }
     let property = match FileKind::from_extension(path) {
-        Ok(FileKind::Obj | FileKind::Las | FileKind::E57) => named(path, name, &cloud.properties)?,
+        Ok(FileKind::Obj | FileKind::Las | FileKind::E57 | FileKind::Gaussians) => {
+            named(path, name, &cloud.properties)?
+        }
         Ok(FileKind::Ply | FileKind::Toml | FileKind::Exr) | Err(_) => ply::number(path, name)?,
     };
     Ok((property.values, 0.0))
@@ -115,7 +125,7 @@ impl FileKind {
     #[must_use]
     pub fn is_model(self) -> bool {
         match self {
-            Self::Ply | Self::Obj | Self::Las | Self::E57 => true,
+            Self::Ply | Self::Obj | Self::Las | Self::E57 | Self::Gaussians => true,
             Self::Toml | Self::Exr => false,
         }
     }
@@ -130,13 +140,14 @@ impl FileKind {
             Some("obj") => Ok(Self::Obj),
             Some("las" | "laz") => Ok(Self::Las),
             Some("e57") => Ok(Self::E57),
+            Some("gltf" | "glb" | "splat" | "spz") => Ok(Self::Gaussians),
             Some("toml") => Ok(Self::Toml),
             Some("exr") => Ok(Self::Exr),
             _ => Err(Error::Usage(match input::no_file(path) {
                 Some(what) => format!("{}: {what}", path.display()),
                 None => format!(
-                    "{}: unknown kind of file; give a .ply, .obj, .las, .laz or .e57, a scene \
-                     .toml, an .exr, or a shape: {}",
+                    "{}: unknown kind of file; give a .ply, .obj, .las, .laz, .e57, .glb, .gltf or \
+                     .splat, a scene .toml, an .exr, or a shape: {}",
                     path.display(),
                     shapes()
                 ),
@@ -226,7 +237,7 @@ impl SceneFile {
             return Ok(Self::of_hierarchy(path));
         }
         match FileKind::from_extension(path)? {
-            FileKind::Ply | FileKind::Obj | FileKind::Las | FileKind::E57 => {
+            FileKind::Ply | FileKind::Obj | FileKind::Las | FileKind::E57 | FileKind::Gaussians => {
                 Ok(Self::of_model(Source::File {
                     path: path.to_owned(),
                     radius: None,
