@@ -36,7 +36,8 @@
 //! # glTF
 //!
 //! - The reader joins all primitives that have the extension, in the order of the nodes, depth first.
-//!   A node may turn, move and scale them by one positive scale; the coefficients turn with it.
+//!   A node may turn, move and scale them by positive factors. If the factors differ, other ellipsoids
+//!   result. The coefficients are turned by the node's rotation. Shear and mirrors are refused.
 //! - Attributes may be floats, or the integers that the extension allows, with strides and sparse
 //!   accessors. An integer is decoded in f64 and rounded once. Buffers may be in the GLB, in the text as base64, or in
 //!   files beside it.

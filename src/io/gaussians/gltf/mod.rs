@@ -5,6 +5,7 @@ mod buffers;
 mod json;
 mod nodes;
 mod primitive;
+mod stretch;
 #[cfg(test)]
 mod tests;
 mod write;
@@ -15,13 +16,13 @@ use super::{GaussianFile, activation};
 use crate::error::{Error, Result};
 use crate::io::{Reason, far, input};
 use crate::memory;
+use crate::scene::GaussianArrays;
 use crate::scene::gaussians::coefficients;
-use crate::scene::{GaussianArrays, Similarity};
-use crate::shade::harmonics::rotation::place;
 use accessors::Accessors;
 use buffers::{Buffers, container};
 use glam::{DVec3, Vec3};
 use json::{Document, EXTENSION};
+use nodes::Place;
 use primitive::Part;
 use std::path::Path;
 
@@ -70,7 +71,7 @@ fn document(text: &[u8]) -> Reason<Document> {
 /// Reads all primitives of Gaussians, and joins them in the order of the nodes.
 fn join(accessors: &Accessors<'_>) -> Reason<GaussianFile> {
     let document = accessors.document;
-    let mut parts: Vec<(Part, Similarity)> = Vec::new();
+    let mut parts: Vec<(Part, Place)> = Vec::new();
     let (mut others, mut warnings) = (0_u64, Vec::new());
     for (node, mesh, matrix) in nodes::meshes(document)? {
         let of = document.meshes.get(mesh).ok_or_else(|| buffers::missing("mesh", mesh))?;
@@ -81,7 +82,7 @@ fn join(accessors: &Accessors<'_>) -> Reason<GaussianFile> {
             };
             let part = primitive::read(accessors, primitive, splatting, &mut warnings)
                 .map_err(|what| format!("mesh {mesh}, primitive {index}: {what}"))?;
-            parts.push((part, nodes::similarity(node, &matrix)?));
+            parts.push((part, Place::new(node, &matrix)?));
         }
     }
     let Some((first, _)) = parts.first() else {
@@ -108,10 +109,10 @@ fn join(accessors: &Accessors<'_>) -> Reason<GaussianFile> {
     let mut all = Joined {
         arrays: GaussianArrays { degree, encoding, ..GaussianArrays::default() },
         wide: Vec::new(),
-        moved: parts.iter().any(|(_, by)| *by != Similarity::IDENTITY),
+        moved: parts.iter().any(|(_, place)| !place.is_nowhere()),
     };
-    for (part, by) in parts {
-        all.add(part.activated(logarithms), &by);
+    for (part, place) in parts {
+        all.add(part.activated(logarithms), &place);
     }
     let scales = match logarithms {
         true => "log scales, because some are negative, as in a draft of the extension",
@@ -131,17 +132,13 @@ struct Joined {
 }
 
 impl Joined {
-    fn add(&mut self, mut part: GaussianArrays, by: &Similarity) {
+    fn add(&mut self, mut part: GaussianArrays, place: &Place) {
         if self.moved {
-            let point = |p: &Vec3| match *by == Similarity::IDENTITY {
-                true => p.as_dvec3(),
-                false => by.rotation * (p.as_dvec3() * by.scale) + by.translation,
-            };
-            self.wide.extend(part.position.iter().map(|p| point(p).to_array()));
+            self.wide.extend(part.position.iter().map(|p| place.point(*p).to_array()));
         } else {
             self.arrays.position.append(&mut part.position);
         }
-        place(&mut part, by);
+        place.apply(&mut part);
         self.arrays.scale.append(&mut part.scale);
         self.arrays.rotation.append(&mut part.rotation);
         self.arrays.opacity.append(&mut part.opacity);

@@ -246,11 +246,16 @@ fn nodes_move_turn_and_scale() {
     assert!((arrays.scale[0] - Vec3::new(1.0, 0.5, 0.25)).length() < 1e-6);
     let turned = arrays.rotation[0];
     assert!((turned[2] - 0.5_f32.sqrt()).abs() < 1e-6 && (turned[3] - 0.5_f32.sqrt()).abs() < 1e-6);
-    for bad in [json!([1, 2, 1]), json!([-1, 1, 1]), json!([0, 0, 0])] {
+    // A node may stretch, which makes other ellipsoids; this one is stretched along an own axis.
+    document["nodes"][0]["scale"] = json!([2, 4, 2]);
+    let arrays = parse(&document).unwrap().arrays;
+    assert!((arrays.position[0] - Vec3::new(-8.0, 22.0, 6.0)).length() < 1e-5);
+    assert!((arrays.scale[0] - Vec3::new(1.0, 1.0, 0.25)).length() < 1e-6);
+    assert_eq!(arrays.scale[1], Vec3::new(0.5, 0.25, 0.125));
+    for bad in [json!([-1, 1, 1]), json!([0, 0, 0])] {
         document["nodes"][0]["scale"] = bad;
-        assert!(
-            refused(&document).contains("node 1: its transform is no rotation with one positive")
-        );
+        let error = refused(&document);
+        assert!(error.contains("node 1: its transform is no rotation and positive"), "{error}");
     }
     document["nodes"][1]["children"] = json!([0]);
     assert!(refused(&document).contains("node 0 has two parents"));
