@@ -206,8 +206,8 @@ impl Settings {
                 Err(Error::Invalid(format!("gaussians: {name} = {value}; give {range}")))
             }
         };
-        let least = f32::MIN_POSITIVE;
-        within("near_depth", self.kernel.near, [0.0, f32::MAX], "a depth, or 0")?;
+        let least = f32::from_bits(1);
+        within("near_depth", self.kernel.near, [0.0, 1e6], "0 to 1000000")?;
         within("low_pass", self.kernel.low_pass, [0.0, 16.0], "0 to 16")?;
         within("cutoff", self.cutoff, [0.25, 4.0], "0.25 to 4")?;
         within("least_alpha", self.least_alpha, [0.0, 1.0], "0 to 1")?;
@@ -253,7 +253,7 @@ impl Settings {
         each(
             Field::new("near_depth", near, Slot::Number(&mut kernel.near))
                 .unit("world units")
-                .range("0 to inf"),
+                .range("0 to 1000000"),
         );
         let clamp = "bound x/t and y/t in the Jacobian: not at all, to 1.3 times half the field of \
                      view, or to the picture's edges and 0.3 times that beyond";
