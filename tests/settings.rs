@@ -316,7 +316,10 @@ fn a_picture_carries_every_setting() {
         let _ = method.set("refraction", &Value::Numbers(vec![0.5; 3]));
         let text = provenance::text(&scene, None, &camera, &method, OutputSettings::default());
         let text: toml::Table = text.parse().unwrap();
-        for row in Setting::of([("", method)]).iter().filter(|row| !["kernel", "preset"].contains(&row.name)) {
+        for row in Setting::of([("", method)])
+            .iter()
+            .filter(|row| !["kernel", "preset"].contains(&row.name))
+        {
             assert!(text["method"].get(row.name).is_some(), "{}: {}", method.name(), row.name);
         }
     }

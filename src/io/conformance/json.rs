@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::scene::camera::clip::to_clip;
-use crate::scene::{Camera, Convention, Light, Phong, Projection, Scene};
+use crate::scene::{Camera, Convention, Gaussians, Light, Phong, Projection, Scene};
 use crate::setting::{Fields, Value};
 use crate::splat::record::shared_numbers;
 use crate::verdict::conformance::{Case, Rule};
@@ -28,6 +28,8 @@ pub(super) fn text(rule: &Rule, case: &Case) -> Result<String> {
         "rule": rule.name,
         "tests": rule.tests,
         "surfels": scene.surfels.len(),
+        "gaussians": scene.gaussians.as_ref().map_or(0, Gaussians::len),
+        "colors": scene.gaussians.as_ref().map(|gaussians| gaussians.encoding().name()),
         "camera": self::camera(scene, camera)?,
         "settings": settings,
         "settings_in_scene": resolved,

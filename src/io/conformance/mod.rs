@@ -6,10 +6,12 @@
 //! | `README.md` | what the case tests, the settings, and the planes to leave |
 //! | `scene.toml` | the scene file, for `splatref render` and `splatref verify` |
 //! | `surfels.ply` | the surfels, with their groups |
+//! | `splats.glb`, `splats.ply` | 3D Gaussians in their place; the PLY, of sRGB colours only, has logarithms and logits, which are rounded |
 //! | `scene.json` | camera, settings, lights and material as plain numbers |
 //! | `positions.npy`, `normals.npy`, `radii.npy` | the surfels as arrays: `float32`, (n, 3) or (n,) |
 //! | `colors.npy`, `opacities.npy`, `half_axes.npy` | if the scene has them: (n, 3), (n,), (n, 6) |
 //! | `prefiltered.npy` | prefiltered colours, if any: (n, 3 levels) |
+//! | `positions.npy`, `scales.npy`, `rotations.npy`, `opacities.npy`, `harmonics.npy` | Gaussians as arrays: (n, 3), (n, 3), quaternions (x, y, z, w) (n, 4), (n,), (n, 3 (degree + 1)^2) coefficient by coefficient |
 //! | `members.npy` | `uint32` (m, 2): pairs of a surfel and a group, if the method draws groups |
 //! | `polygons.ply`, `ribbons.ply`, `tubes.ply` | the primitives, if any |
 //! | `polygons-positions.npy`, and so on | their vertices: positions, directions, radii, colors; and their corners as `uint32` |
@@ -18,6 +20,7 @@
 mod json;
 mod page;
 
+use super::gaussians;
 use super::npy::{self, Values};
 use super::ply;
 use super::replace::write_atomically;
@@ -26,8 +29,9 @@ use super::scene_file::{
 };
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::scene::gaussians::Encoding;
 use crate::scene::indexed::Indexed;
-use crate::scene::{Intrinsics, Vertices};
+use crate::scene::{Gaussians, Intrinsics, Vertices};
 use crate::setting::Fields;
 use crate::splat::record::{SplatRecord, project_records};
 use crate::verdict::conformance::{Case, Draws, Rule};
@@ -36,6 +40,9 @@ use std::fs;
 use std::io::Write;
 use std::path::Path;
 
+/// The file of the Gaussians, which holds every number as it is.
+const SPLATS: &str = "splats.glb";
+
 /// Writes the files of a case into a folder, which is made if it does not exist.
 ///
 /// # Errors
@@ -43,7 +50,16 @@ use std::path::Path;
 /// is not Unicode.
 pub fn write(folder: &Path, rule: &Rule, case: &Case, exec: &Exec) -> Result<()> {
     fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
-    ply::write(&folder.join("surfels.ply"), &case.scene.surfels.clone().into_cloud())?;
+    match &case.scene.gaussians {
+        Some(splats) => {
+            // A PLY has no linear colours.
+            let ply = (splats.encoding() == Encoding::Srgb).then_some("splats.ply");
+            for name in ply.into_iter().chain([SPLATS]) {
+                gaussians::write(&folder.join(name), splats, case.scene.offset)?;
+            }
+        }
+        None => ply::write(&folder.join("surfels.ply"), &case.scene.surfels.clone().into_cloud())?,
+    }
     for (cloud, draws) in &case.meshes {
         ply::write(&folder.join(format!("{}.ply", draws.word())), cloud)?;
     }
@@ -76,8 +92,11 @@ pub fn scene_file(folder: &Path, case: &Case) -> SceneFile {
         color_range: None,
         color_by: None,
     };
-    let mut scene = SceneFile::of_model(file("surfels.ply"));
-    scene.models[0].draw = Draw::Points;
+    let splats = case.scene.gaussians.is_some();
+    let mut scene = SceneFile::of_model(file(if splats { SPLATS } else { "surfels.ply" }));
+    if !splats {
+        scene.models[0].draw = Draw::Points;
+    }
     for (_, draws) in &case.meshes {
         let draw = match draws {
             Draws::Polygons => Draw::Polygons,
@@ -123,6 +142,9 @@ fn flat(all: &[Vec3]) -> Vec<f32> {
 /// Writes the surfels and the primitives as arrays.
 fn arrays(folder: &Path, case: &Case) -> Result<()> {
     let surfels = &case.scene.surfels;
+    if let Some(splats) = &case.scene.gaussians {
+        return splat_arrays(folder, splats);
+    }
     let floats = |name: &str, values: &[f32], columns: usize| {
         npy::write(&folder.join(format!("{name}.npy")), Values::Floats(values), columns)
     };
@@ -146,6 +168,18 @@ fn arrays(folder: &Path, case: &Case) -> Result<()> {
     primitives(folder, Draws::Polygons, &all.triangles)?;
     primitives(folder, Draws::Ribbons, &all.ribbons)?;
     primitives(folder, Draws::Tubes, &all.tubes)
+}
+
+/// Writes Gaussians as arrays.
+fn splat_arrays(folder: &Path, splats: &Gaussians) -> Result<()> {
+    let floats = |name: &str, values: &[f32], columns: usize| {
+        npy::write(&folder.join(format!("{name}.npy")), Values::Floats(values), columns)
+    };
+    floats("positions", &flat(splats.position()), 3)?;
+    floats("scales", &flat(splats.scale()), 3)?;
+    floats("rotations", &splats.rotation().concat(), 4)?;
+    floats("opacities", splats.opacity(), 1)?;
+    floats("harmonics", &flat(splats.all_harmonics()), 3 * splats.harmonics(0).len())
 }
 
 /// Writes primitives as arrays, if there are any.

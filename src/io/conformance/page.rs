@@ -6,6 +6,22 @@ use crate::splat::record::{SplatRecord, shared_numbers};
 use crate::verdict::conformance::{Case, Rule};
 use std::fmt::Write;
 
+const SPLATS: &[[&str; 2]] = &[
+    ["scene.toml", "the scene file, for `splatref render` and `splatref verify`"],
+    ["scene.json", "camera and settings as plain numbers"],
+    ["splats.glb", "the Gaussians (`KHR_gaussian_splatting`), every number as it is"],
+    [
+        "splats.ply",
+        "the same as the original program stores them: its logarithms and logits are rounded; not of \
+         linear colours",
+    ],
+    [
+        "positions.npy, scales.npy, rotations.npy, opacities.npy",
+        "the Gaussians as arrays; a rotation is a quaternion (x, y, z, w)",
+    ],
+    ["harmonics.npy", "the coefficients of each Gaussian, one colour after the other"],
+];
+
 const FILES: &[[&str; 2]] = &[
     ["scene.toml", "the scene file, for `splatref render` and `splatref verify`"],
     ["scene.json", "camera, settings, lights and material as plain numbers"],
@@ -45,7 +61,9 @@ fn specification(page: &mut String, case: &Case) -> std::fmt::Result {
     if method.splats().is_some() {
         pages.push("`splatref::splat::project` and `splatref::splat::Footprint`".into());
     }
-    if !scene.lights.is_empty() {
+    if method.draws_gaussians() {
+        pages.push("`splatref::splat::gaussian` and `splatref::shade::harmonics`".into());
+    } else if !scene.lights.is_empty() {
         pages.push("`splatref::shade`".into());
     }
     if scene.environment.is_some() {
@@ -58,7 +76,8 @@ fn specification(page: &mut String, case: &Case) -> std::fmt::Result {
 fn draw(page: &mut String, case: &Case) -> std::fmt::Result {
     let Case { scene, camera, method, .. } = case;
     writeln!(page, "## Draw\n\n| file | what it holds |\n|---|---|")?;
-    for [name, what] in FILES {
+    let files = if scene.gaussians.is_some() { SPLATS } else { FILES };
+    for [name, what] in files {
         writeln!(page, "| {name} | {what} |")?;
     }
     for (_, draws) in &case.meshes {
