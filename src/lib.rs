@@ -133,6 +133,8 @@
 //!   method::template       projection ─▶ propagation ─▶ reconstruction ──────────┤
 //!   without splats, from surfels and triangles:                                  │
 //!   method::blue           discs ────────────────────────────────────────────────┤
+//!   from 3D Gaussians, or surfels as 2D ones:                                    │
+//!   method::gaussians      projection ─▶ blending in order ──────────────────────┤
 //!                                                                                ▼
 //!          compare ◀─ io::exr ◀─ Frame ◀─ scene::environment ◀─ shade::{phong, optics}
 //! ```
@@ -169,6 +171,9 @@
 //! - [`method::blue`]: opaque discs in squares on the screen, the nearest in each pixel \[BJFM19\].
 //!   *To know:* the surfels of an order that are drawn, and their size, are chosen before. Nothing
 //!   is filtered.
+//!
+//! - [`method::gaussians`]: 3D Gaussian splats, or surfels as 2D ones, blended from front to back. *To
+//!   know:* programs differ in details. Each is a setting, and presets draw as they do.
 //!
 //! [`method::pyramid`] and [`method::template`] begin with [`mod@method::projection`].
 //! [`method::Method`] holds any method as a value. [`method::Session`] draws one scene with one

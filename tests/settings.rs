@@ -5,9 +5,9 @@
 
 use splatref::io::provenance;
 use splatref::io::scene_file::{GroupChoice, MethodChoice, OutputSettings, SceneFile};
-use splatref::method::Method;
+use splatref::method::{Method, gaussians};
 use splatref::scene::{Camera, Scene};
-use splatref::setting::{Fields, Refused, Setting, Value};
+use splatref::setting::{Fields, Refused, Setting, Value, Words};
 use splatref::source::Shape;
 use std::collections::BTreeMap;
 use std::fmt::Write;
@@ -323,4 +323,40 @@ fn a_picture_carries_every_setting() {
             assert!(text["method"].get(row.name).is_some(), "{}: {}", method.name(), row.name);
         }
     }
+}
+
+/// The table of presets in the page of Gaussian splats, one column a preset.
+fn presets() -> String {
+    let all: Vec<(&str, Method)> = gaussians::Settings::WORDS
+        .iter()
+        .map(|(word, settings)| (*word, Method::Gaussians(*settings)))
+        .collect();
+    let words: Vec<&str> = all.iter().map(|(word, _)| *word).collect();
+    let mut table =
+        format!("| setting | {} |\n|---|{}\n", words.join(" | "), "---|".repeat(words.len()));
+    for row in Setting::of([("", Method::from(gaussians::Settings::default()))]) {
+        let value = |method: &Method| {
+            let found = method.values().into_iter().find(|(name, _)| *name == row.name);
+            found.map_or_else(String::new, |(_, value)| value.text())
+        };
+        let values: Vec<String> = all.iter().map(|(_, method)| value(method)).collect();
+        if row.name != "preset" {
+            table += &format!("| `{}`: {} | {} |\n", row.name, row.help, values.join(" | "));
+        }
+    }
+    table
+}
+
+/// `SPLATREF_BLESS=1` writes the table anew; the run that does so fails.
+#[test]
+fn the_page_of_gaussians_lists_the_presets() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/gaussians.md");
+    let page = fs::read_to_string(&path).unwrap();
+    let (before, rest) = page.split_once("<!-- presets -->\n").unwrap();
+    let (found, after) = rest.split_once("<!-- end -->").unwrap();
+    let table = presets();
+    if found != table && std::env::var_os("SPLATREF_BLESS").is_some() {
+        fs::write(&path, format!("{before}<!-- presets -->\n{table}<!-- end -->{after}")).unwrap();
+    }
+    assert_eq!(found, table, "SPLATREF_BLESS=1 cargo test --release settings:: writes it anew");
 }

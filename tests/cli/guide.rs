@@ -32,6 +32,7 @@ pages! {
     bjfm19: "docs/bjfm19.md";
     cameras: "docs/cameras.md";
     ewa: "docs/ewa.md";
+    gaussians: "docs/gaussians.md";
     gbp04: "docs/gbp04.md";
     goldens: "docs/goldens.md";
     image_space: "docs/image-space.md";

@@ -13,6 +13,8 @@ use report::{Run, Tried};
 use splatref::frame::Exec;
 use splatref::io::conformance::write;
 use splatref::io::replace::Pending;
+use splatref::method::Method;
+use splatref::setting::{Fields, Refused, Value};
 use splatref::verdict::client::Rounding;
 use splatref::verdict::conformance::{Renderer, Report, Row, Rule};
 use splatref::verdict::{Outcome, Verdict};
@@ -36,6 +38,7 @@ Examples:
   splatref conformance ewa --list
   splatref conformance ewa --command './mine {scene} {out}'
   splatref conformance ewa --command './mine {scene} {out}' --only rim,tie
+  splatref conformance gaussians --preset khr --command './mine {scene} {out}'
   splatref conformance peeling --command 'python mine.py {scene} {out}' --junit junit.xml
 
 Exit codes: 0 all right, 1 any wrong or failed, or their decisions biased to one side, 2 wrong usage or
@@ -45,6 +48,9 @@ pub(super) struct Args {
     /// The method
     #[arg(value_parser = method)]
     method: &'static str,
+    /// Choose a preset of the method's settings: for gaussians khr, inria, gsplat, mip or exact
+    #[arg(long, value_name = "NAME")]
+    preset: Option<String>,
     /// Run this command for each scene; without it, only write the scenes
     #[arg(long, value_name = "COMMAND", allow_hyphen_values = true)]
     command: Option<String>,
@@ -113,7 +119,11 @@ fn suite(args: &Args) -> Ended {
 
 /// The rules to run.
 fn rules(args: &Args) -> Result<Vec<Rule>> {
-    let all = Rule::all(args.method)?;
+    let mut method = Method::by_name(args.method)?;
+    if let Some(preset) = &args.preset {
+        set_preset(&mut method, preset)?;
+    }
+    let all = Rule::of(&method);
     let known = |name: &&String| all.iter().any(|rule| rule.name == **name);
     if let Some(unknown) = args.only.iter().find(|name| !known(name)) {
         let method = args.method;
@@ -124,6 +134,19 @@ fn rules(args: &Args) -> Result<Vec<Rule>> {
     }
     let taken = |rule: &Rule| args.only.is_empty() || args.only.contains(&rule.name);
     Ok(all.into_iter().filter(taken).collect())
+}
+
+/// Sets the preset with this name.
+fn set_preset(method: &mut Method, preset: &str) -> Result<()> {
+    let found = method.set("preset", &Value::Text(preset.into()));
+    found.map_err(|refused| {
+        Error::Usage(match refused {
+            Refused::Wrong(what) => format!("--{what}"),
+            Refused::Unknown | Refused::Idle(_) => {
+                format!("--preset {preset}: the method {} has no presets; remove it", method.name())
+            }
+        })
+    })
 }
 
 /// Writes the scenes, and runs nothing.

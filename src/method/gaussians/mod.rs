@@ -36,8 +36,9 @@
 //!      follow, see [`planes`](mod@crate::method::planes).
 //! 4. **Display.** An environment is seen behind the layers: its light, in the space of blending,
 //!    times T is added to C, and the opacity becomes 1. Without one the opacity is 1 - T. If colours
-//!    were blended in sRGB, C is decoded: the plane of the picture holds linear light, and a PNG of it
-//!    shows the values that were blended.
+//!    were blended in sRGB, C is decoded: the plane of the picture holds linear light over black.
+//!    A PNG is divided by the opacity, so that only where that is 1 it shows the values that were
+//!    blended.
 //!
 //! A scene stores its colours as [`Encoding`](crate::scene::gaussians::Encoding) says; surfels store
 //! linear light.

@@ -133,6 +133,13 @@ impl Rule {
         Ok(rules::of_method(&Method::by_name(method)?))
     }
 
+    /// The rules of a method with these settings, in place of its default ones. A rule may set some of
+    /// them.
+    #[must_use]
+    pub fn of(method: &Method) -> Vec<Self> {
+        rules::of_method(method)
+    }
+
     /// Makes the case.
     ///
     /// # Errors
