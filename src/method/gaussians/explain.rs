@@ -46,12 +46,7 @@ pub fn explain<R: Exact>(
     let splats = Splats::new(job, &job.grid(), &source);
     let rules = Rules::new(settings);
     let blending = Blending { source, splats: &splats, rules, buffers: job.buffers };
-    let mut places = Vec::new();
-    splats.for_each(tile, |place| {
-        if !splats.all[place].bounds.intersection(&rect).is_empty() {
-            places.push(place);
-        }
-    });
+    let places = blending.places(tile, rect);
     let at = |place: usize, fragment: &GaussianFragment<R>, weight| {
         let index = splats.all[place].index;
         let projected = source.project(index as usize);

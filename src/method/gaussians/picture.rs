@@ -14,6 +14,7 @@ use crate::method::surface::{ALPHA, SHADED};
 use crate::method::tiled::Tiled;
 use crate::number::{Exact, MapInline, Real, srgb};
 use crate::scene::gaussians::Encoding;
+use crate::splat::Tally;
 
 /// The definition, in any number type.
 pub(super) fn define<R: Exact>(job: &Job<'_>, settings: &Settings, stages: bool) -> Picture<R> {
@@ -24,13 +25,23 @@ pub(super) fn define<R: Exact>(job: &Job<'_>, settings: &Settings, stages: bool)
     let blended = blend(job, source, &splats);
     clock.lap(STAGES[1].name);
     let keep = if stages { Keep::Stages } else { Keep::Picture };
+    finished(job, (&source, &blended), (splats.tally, clock), keep)
+}
+
+/// The picture of blended pixels.
+pub(super) fn finished<R: Exact>(
+    job: &Job<'_>,
+    (source, blended): (&Source<'_, R>, &Tiled<GaussianPixel<R>>),
+    (tally, mut clock): (Tally, Clock),
+    keep: Keep,
+) -> Picture<R> {
     let mut planes = blended.planes(&GaussianPixel::PLANES, 0, &job.there(keep));
     let color = blended.plane(|pixel| pixel.blend.color);
     let through = blended.plane(|pixel| pixel.blend.through);
-    planes.extend(display(job, &source, &color, &through));
+    planes.extend(display(job, source, &color, &through));
     clock.lap(STAGES[2].name);
     let (frame, timings) = (job.frame(planes), clock.into_laps());
-    Picture { frame, tally: splats.tally, timings, seen: None }
+    Picture { frame, tally, timings, seen: None }
 }
 
 fn blend<R: Exact>(

@@ -160,9 +160,14 @@ impl<'a, R: Real> Source<'a, R> {
             let side = |v: f64| (q * v).sqrt() * (1.0 + 1.0 / 1024.0) + 1.0;
             rect(center, [side(xx), side(yy)], self.size, 1)
         };
-        match self.settings.support {
-            Support::None if alpha < least => Rect::default(),
-            Support::None => wide(2.0 * elementary::ln(alpha / least)),
+        // A fragment beyond this has less than the least alpha.
+        let dense = match (alpha < least, least > 0.0) {
+            (true, _) => return Rect::default(),
+            (_, true) => wide(2.0 * elementary::ln(alpha / least)),
+            _ => Rect { x0: 0, y0: 0, x1: self.size[0], y1: self.size[1] },
+        };
+        let support = match self.settings.support {
+            Support::None => dense,
             Support::Ellipse => wide(k * k),
             Support::Tiles => {
                 let middle = 0.5 * (xx + yy);
@@ -177,7 +182,8 @@ impl<'a, R: Real> Source<'a, R> {
                 let k = if own < k { own } else { k };
                 rect(center, [(k * xx.sqrt()).ceil(), (k * yy.sqrt()).ceil()], self.size, 16)
             }
-        }
+        };
+        support.intersection(&dense)
     }
 }
 

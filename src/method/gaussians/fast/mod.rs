@@ -1,29 +1,35 @@
 //! Draw in `f32`, fast: the bits of the definition, from another layout, see [`crate::method`].
 //!
 //! A tile gathers its splats in their order. Each splat is blended into the blocks that it may touch;
-//! a block whose pixels are all done is left out, and the tile ends when all of its blocks are. An
-//! order of each pixel's own is drawn by the definition.
+//! a block whose pixels are all done is left out, and the tile ends when all of its blocks are. In an
+//! order of each pixel's own, the definition draws each block from the splats that may touch it.
 
 mod blending;
 
-use super::blending::GaussianPixel;
+use super::blending::{Blending, GaussianPixel, Rules};
 use super::picture::{self, display};
 use super::splats::{GaussianSplat, Source, Splats};
 use super::{Order, Settings, planes};
-use crate::frame::{Grid, NO_ID, NamedPlane, Plane, Pool, TileMut};
+use crate::frame::{Grid, NO_ID, NamedPlane, Plane, Pool, Rect, TileMut};
 use crate::method::Job;
 use crate::method::buffer_formats::Buffers;
 use crate::method::fast::store::{clear_plane, store_plane};
+use crate::method::fast::tile::{BlockGrid, SIDE};
 use crate::method::picture::{Clock, Picture};
+use crate::method::stage::Keep;
+use crate::method::tiled::{self, Tiled};
 use blending::{Block, Blocks};
 
 /// Draws the picture.
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Picture<f32> {
-    if settings.order == Order::Pixel || job.buffers != Buffers::F32 {
+    if job.buffers != Buffers::F32 {
         return picture::define(job, settings, false);
     }
     let mut clock = Clock::default();
     let source = Source::<f32>::new(job.scene, job.camera, settings);
+    if settings.order == Order::Pixel {
+        return by_pixels(job, source, clock);
+    }
     let grid = job.strips();
     let splats = Splats::new(job, &grid, &source);
     clock.lap(planes::STAGES[0].name);
@@ -54,6 +60,34 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Pictu
     clock.lap(planes::STAGES[2].name);
     let (frame, timings) = (job.frame(left), clock.into_laps());
     Picture { frame, tally: splats.tally, timings, seen: None }
+}
+
+/// Draws a picture in an order of each pixel's own: as the definition does, but each pixel looks only
+/// at the splats of its block.
+fn by_pixels(job: &Job<'_>, source: Source<'_, f32>, mut clock: Clock) -> Picture<f32> {
+    let splats = Splats::new(job, &job.grid(), &source);
+    clock.lap(planes::STAGES[0].name);
+    let rules = Rules::new(source.settings);
+    let blending = Blending { source, splats: &splats, rules, buffers: Buffers::F32 };
+    let blended = Tiled::new(job, |tile, rect| {
+        let places = blending.places(tile, rect);
+        let mut pixels = vec![GaussianPixel::EMPTY; rect.pixels()];
+        let grid = BlockGrid::new(rect);
+        for block in 0..grid.len() {
+            let (x0, y0) = grid.corner(block);
+            let own = Rect { x0, y0, x1: x0 + SIDE, y1: y0 + SIDE }.intersection(&rect);
+            let touches =
+                |place: &&usize| !splats.all[**place].bounds.intersection(&own).is_empty();
+            let near: Vec<usize> = places.iter().filter(touches).copied().collect();
+            for (x, y) in tiled::pixels(own) {
+                let at = (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize;
+                pixels[at] = blending.pixel(&near, (x, y), |_, _, _| ());
+            }
+        }
+        pixels
+    });
+    clock.lap(planes::STAGES[1].name);
+    picture::finished(job, (&blending.source, &blended), (splats.tally, clock), Keep::Picture)
 }
 
 /// The planes of blending.
