@@ -36,7 +36,7 @@ pub(super) fn run(args: &Args) -> Ended {
     }
     match kind {
         FileKind::Ply | FileKind::Obj | FileKind::Las | FileKind::E57 | FileKind::Gaussians => {
-            points(&args.file)?
+            points(&args.file)?;
         }
         FileKind::Toml => scene(&args.file)?,
         FileKind::Exr => picture(&args.file)?,

@@ -19,7 +19,8 @@ fn conformance(at: &TempDir, arguments: &[&str]) -> (i32, String) {
 #[test]
 fn splatref_is_right_by_every_method() {
     let at = TempDir::new().unwrap();
-    for method in splatref::method::Method::all() {
+    let of_surfels = |method: &splatref::method::Method| !method.draws_gaussians();
+    for method in splatref::method::Method::all().into_iter().filter(of_surfels) {
         let command = itself("--stages");
         let only = "middle,ball,nothing,unlit";
         let arguments = [method.name(), "--command", &command, "--only", only];
@@ -55,6 +56,38 @@ fn splatref_is_right_by_every_method() {
         serde_json::from_str(&fs::read_to_string(scene.join("scene.json")).unwrap()).unwrap();
     assert_eq!(json["camera"]["view_from_world"]["opencv"][2][3], 8.0);
     assert_eq!(json["settings"]["epsilon"], "2r");
+}
+
+/// Both files of a scene of Gaussians hold the scene; the GLB bit for bit.
+#[test]
+fn scenes_of_gaussians_are_files_of_other_programs() {
+    let at = TempDir::new().unwrap();
+    let command = itself("--stages");
+    let only = "middle,rotation-x";
+    let (code, said) = conformance(&at, &["gaussians", "--command", &command, "--only", only]);
+    assert_eq!(code, 0, "{said}");
+    assert!(said.ends_with("gaussians: 2 right\n"), "{said}");
+    let scene = at.path().join("out/conformance/gaussians/rotation-x");
+    let wanted = [
+        "README.md",
+        "client.exr",
+        "client.log",
+        "client.png",
+        "harmonics.npy",
+        "opacities.npy",
+        "positions.npy",
+        "rotations.npy",
+        "scales.npy",
+        "scene.json",
+        "scene.toml",
+        "splats.glb",
+        "splats.ply",
+    ];
+    assert_eq!(names(&scene), wanted);
+    let said = succeeds(&scene, &["convert", "splats.ply", "again.glb"]);
+    assert!(said.contains("gaussians  1, spherical harmonics"), "{said}");
+    let page = fs::read_to_string(scene.join("README.md")).unwrap();
+    assert!(page.contains("| splats.glb |") && !page.contains("surfels.ply"), "{page}");
 }
 
 /// A page that cannot be written ends the command; the renderer is not to blame.

@@ -18,10 +18,13 @@ pub(in crate::io) fn opacity(logit: f64) -> f32 {
 }
 
 /// Finite numbers that are activated to 0 and to 1 in `f32`.
+#[cfg(feature = "cli")]
 const TO_ZERO: f32 = -120.0;
+#[cfg(feature = "cli")]
 const TO_ONE: f32 = 20.0;
 
 /// The logarithm of a scale: one that gives the scale again if there is one, else the nearest.
+#[cfg(feature = "cli")]
 pub(super) fn logarithm(value: f32) -> f32 {
     match value {
         0.0 => TO_ZERO,
@@ -30,6 +33,7 @@ pub(super) fn logarithm(value: f32) -> f32 {
 }
 
 /// The logit of an opacity, chosen as [`logarithm`].
+#[cfg(feature = "cli")]
 pub(super) fn logit(value: f32) -> f32 {
     let wide = f64::from(value);
     match value {
@@ -40,12 +44,13 @@ pub(super) fn logit(value: f32) -> f32 {
 }
 
 /// The number next to `near` that is activated to `value`; `near` if there is none.
+#[cfg(feature = "cli")]
 fn inverse(value: f32, near: f32, activate: fn(f64) -> f32) -> f32 {
     let all = [near, near.next_up(), near.next_down()];
     all.into_iter().find(|&other| activate(other.into()) == value).unwrap_or(near)
 }
 
-#[cfg(test)]
+#[cfg(all(test, feature = "cli"))]
 mod tests {
     use super::*;
 

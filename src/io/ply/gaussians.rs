@@ -178,10 +178,14 @@ pub(in crate::io) fn parse_gaussians(bytes: &[u8]) -> Reason<GaussianFile> {
         }
     }
     let places = Places::new(vertices)?;
-    let each = 2 * (44 + 24 * u64::from(places.wide) + 12 * coefficients(places.degree) as u64);
+    let each = 44 + 24 * u64::from(places.wide) + 12 * coefficients(places.degree) as u64;
     let most = vertices.count.min(bytes.len() as u64);
     memory::try_ask(most * each, || format!("{} Gaussians", vertices.count))?;
     let mut rows = Rows::new(&places);
+    // Each number takes at least a byte, or else the reader refuses the count later.
+    if vertices.count.saturating_mul(vertices.properties.len() as u64) <= bytes.len() as u64 {
+        rows.reserve(vertices.count as usize, &places);
+    }
     let mut values = BodyValues::new(bytes, &header);
     for element in &header.elements {
         let is_vertices = std::ptr::eq(element, vertices);
@@ -217,6 +221,19 @@ impl Rows {
         let (degree, encoding) = (places.degree, Encoding::Srgb);
         let arrays = GaussianArrays { degree, encoding, ..GaussianArrays::default() };
         Self { arrays, wide: Vec::new(), activated: true }
+    }
+
+    /// Makes room, so that no array is copied while it grows.
+    fn reserve(&mut self, count: usize, places: &Places) {
+        if places.wide {
+            self.wide.reserve_exact(count);
+        } else {
+            self.arrays.position.reserve_exact(count);
+        }
+        self.arrays.scale.reserve_exact(count);
+        self.arrays.rotation.reserve_exact(count);
+        self.arrays.opacity.reserve_exact(count);
+        self.arrays.harmonics.reserve_exact(count * coefficients(places.degree));
     }
 
     fn push(&mut self, row: &[f64; REST + 45], places: &Places) {

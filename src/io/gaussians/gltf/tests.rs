@@ -330,20 +330,17 @@ fn what_the_reader_cannot_keep_is_said() {
     assert_eq!(warnings[1], "attribute \"KHR_gaussian_splatting:GLOSS\" is not read");
 }
 
+/// Why the simple document is refused after a change.
+fn refused_with(change: impl Fn(&mut Value)) -> String {
+    let mut document = simple();
+    change(&mut document);
+    refused(&document)
+}
+
 #[test]
-fn files_of_other_kinds_are_refused_by_name() {
-    let with = |change: &dyn Fn(&mut Value)| {
-        let mut document = simple();
-        change(&mut document);
-        refused(&document)
-    };
-    let primitive = |document: &'_ mut Value| document["meshes"][0]["primitives"][0].take();
+fn primitives_of_other_kinds_are_refused_by_name() {
     let changed = |key: &str, value: Value| {
-        with(&|document: &mut Value| {
-            let mut one = primitive(document);
-            one[key] = value.clone();
-            document["meshes"][0]["primitives"][0] = one;
-        })
+        refused_with(|document| document["meshes"][0]["primitives"][0][key] = value.clone())
     };
     assert!(changed("mode", json!(4)).contains("Gaussians have mode 0 (POINTS)"));
     assert!(
@@ -359,7 +356,7 @@ fn files_of_other_kinds_are_refused_by_name() {
     let early = json!({"POSITION": 0, "_ROTATION": 2, "_SCALE": 1, "COLOR_0": 1});
     assert!(changed("attributes", early).contains("early draft of the extension; export it again"));
     let partial = |extra: &str| {
-        with(&|document: &mut Value| {
+        refused_with(|document| {
             document["meshes"][0]["primitives"][0]["attributes"][extra] = json!(4);
         })
     };
@@ -368,9 +365,11 @@ fn files_of_other_kinds_are_refused_by_name() {
         error.contains("but no attribute KHR_gaussian_splatting:SH_DEGREE_1_COEF_0"),
         "{error}"
     );
-    let set = |key: &'static str, value: Value| {
-        with(&|document: &mut Value| document[key] = value.clone())
-    };
+}
+
+#[test]
+fn documents_of_other_kinds_are_refused_by_name() {
+    let set = |key: &str, value: Value| refused_with(|document| document[key] = value.clone());
     let required = set("extensionsRequired", json!(["EXT_meshopt_compression"]));
     assert!(required.contains("requires the extension \"EXT_meshopt_compression\""), "{required}");
     assert!(set("asset", json!({"version": "1.0"})).contains("glTF of version \"1.0\""));
@@ -386,8 +385,8 @@ fn files_of_other_kinds_are_refused_by_name() {
         set("buffers", json!([{"byteLength": 57, "uri": uri(&[0; 56])}]))
             .contains("only 56 are there")
     );
-    let accessor = |key: &'static str, value: Value| {
-        with(&|document: &mut Value| document["accessors"][0][key] = value.clone())
+    let accessor = |key: &str, value: Value| {
+        refused_with(|document| document["accessors"][0][key] = value.clone())
     };
     assert!(accessor("count", json!(1_u64 << 60)).contains("more than the file has bytes"));
     assert!(accessor("count", json!(20)).contains("accessor 0 reaches beyond buffer view 0"));
