@@ -231,7 +231,7 @@ def verify(
     origin: "top-left" (the default), or "bottom-left" where rows run up.
     depth: what all depths mean: {"meaning": "reversed-z", "near": 0.1, "far": inf}.
     budget: "undecidable" if more than this fraction of the pixels has undecided sums, 0 to 1.
-    cause: whether to look for the mistake behind wrong planes, which takes longer than the verdict.
+    cause: whether to look for the mistake behind wrong planes, which takes about as long as the verdict.
     settings: as for `render`; number="f64" if the renderer computed in f64 and stored float32.
 
     Raises `ValueError` for planes that cannot be judged: the text names the plane and the cure.

@@ -2,6 +2,7 @@
 
 use super::buffer_formats::{Buffers, DepthKey};
 use super::input_planes::InputPlanes;
+use super::part::Part;
 use super::stage::{Conditions, Keep};
 use super::{Picture, Stage};
 use crate::error::Result;
@@ -32,8 +33,8 @@ pub struct Job<'a> {
     /// The one level that a stage makes, from the list of [`Algorithm::levels`]; none: the stage
     /// makes all levels.
     pub(crate) level: Option<usize>,
-    /// The only tiles that a verdict judges; none: all.
-    pub(crate) tiles: Option<&'a [usize]>,
+    /// The only part of the picture that a verdict judges; none: all of it.
+    pub(crate) part: Option<Part<'a>>,
 }
 
 impl<'a> Job<'a> {
@@ -41,7 +42,7 @@ impl<'a> Job<'a> {
     #[must_use]
     pub fn new(scene: &'a Scene, index: &'a Index, camera: &'a Camera, exec: &'a Exec) -> Self {
         let (buffers, key) = (Buffers::F32, DepthKey::WHOLE);
-        Self { scene, index, camera, exec, buffers, key, level: None, tiles: None }
+        Self { scene, index, camera, exec, buffers, key, level: None, part: None }
     }
 
     /// The levels that this job makes, from all `levels` of a stage.

@@ -72,6 +72,7 @@ mod fast;
 pub(crate) mod fragment;
 pub mod gaussians;
 mod input_planes;
+pub(crate) mod part;
 pub mod peeling;
 pub(crate) mod picture;
 pub mod planes;

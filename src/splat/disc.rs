@@ -19,7 +19,7 @@ impl<R: Real> Disc<R> {
     /// The radius of a sphere that contains the surfel: r, or sqrt(U . U + V . V) for an ellipse,
     /// whose half axes need not be perpendicular.
     #[inline(always)]
-    pub(super) fn reach(&self) -> R {
+    pub(crate) fn reach(&self) -> R {
         match self.tangents {
             None => self.radius,
             Some([u, v]) => (u.dot(u) + v.dot(v)).sqrt(),

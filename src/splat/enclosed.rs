@@ -30,12 +30,12 @@ const DRAWN: u32 = 1;
 const OPEN: u32 = 2;
 
 /// Calls `draw` for the affine surfels of a range, whose length is a multiple of [`LANES`], in
-/// ascending order. Skips surfels that are certainly not drawn. Passes the splat if it is certain,
-/// and none if nothing is known.
+/// ascending order: for all, or for those of a list. Skips surfels that are certainly not drawn.
+/// Passes the splat if it is certain, and none if nothing is known.
 pub(crate) fn affine_surfels<P: Profile>(
     projector: &Projector<Ball<Common<P>>>,
     surfels: &Surfels,
-    range: Range<usize>,
+    range: (Range<usize>, Option<&[usize]>),
     draw: &mut dyn FnMut(usize, Option<Splat<Ball<P>>>),
 ) {
     match surfels.tangents() {
@@ -48,15 +48,22 @@ vectorized_avx2!(
     fn in_lanes<const TANGENTS: bool, P: Profile>(
         projector: &Projector<Ball<Common<P>>>,
         surfels: &Surfels,
-        range: Range<usize>,
+        (range, list): (Range<usize>, Option<&[usize]>),
         draw: &mut dyn FnMut(usize, Option<Splat<Ball<P>>>),
     ) {
         if !target_cfg_f!(target_feature = "avx2") {
-            return range.for_each(|surfel| draw(surfel, None));
+            return match list {
+                Some(list) => list.iter().for_each(|&surfel| draw(surfel, None)),
+                None => range.for_each(|surfel| draw(surfel, None)),
+            };
         }
         let projector = *projector;
         let picture = [projector.view.width, projector.view.height].map_inline(|n| n.middle as u32);
-        for some in seen::<TANGENTS, P>(&projector, surfels, range).chunks(LANES) {
+        let seen = match list {
+            Some(list) => list.to_vec(),
+            None => seen::<TANGENTS, P>(&projector, surfels, range),
+        };
+        for some in seen.chunks(LANES) {
             // The last lanes may repeat one surfel.
             let one = |i: usize| (some[i.min(some.len() - 1)], 1.0);
             let discs = DiscLanes::<TANGENTS>::new(surfels, one);

@@ -6,7 +6,7 @@ mod storage;
 pub use storage::Storage;
 
 use crate::error::{Error, Result};
-use crate::frame::{Frame, NamedPlane, Plane, Samples};
+use crate::frame::{Frame, NamedPlane, Plane, Rect, Samples};
 use crate::method::stage::numbered;
 use crate::method::{Holds, Job, PlaneRow};
 use crate::number::MapInline;
@@ -121,7 +121,8 @@ pub(crate) enum Band {
 /// ```
 #[derive(Clone, Debug)]
 pub struct Client {
-    pub(super) frame: Frame<f64>,
+    /// Shared, because naming a mistake judges many clients that differ in their rules alone.
+    pub(super) frame: Arc<Frame<f64>>,
     pub(super) storage: BTreeMap<String, Storage>,
     pub(super) radii: BTreeMap<String, Plane<[f64; 3]>>,
     /// The format of a plane of `f32`: [`Storage::Single`] or [`Storage::Rounded`].
@@ -140,8 +141,9 @@ pub struct Client {
     pub(crate) supposed: Supposed,
     /// The scene and the camera that are assumed for the client's projection, if they are others.
     pub(crate) drawn: Option<Arc<(Scene, Camera)>>,
-    /// The only tiles that are judged, by their numbers in the grid; none: all.
-    pub(crate) tiles: Option<Arc<[usize]>>,
+    /// The only rectangles that are judged, each with the number of its tile in the grid; none: the
+    /// whole picture.
+    pub(crate) part: Option<Arc<[(usize, Rect)]>>,
     /// The format of the attribute pass's sums between two additions.
     pub accumulator: Storage,
     /// The splats that the client has projected, in ascending surfel index. The later stages are
@@ -247,7 +249,7 @@ impl Client {
     #[must_use]
     pub fn new(frame: Frame<f64>) -> Self {
         Self {
-            frame,
+            frame: Arc::new(frame),
             storage: BTreeMap::new(),
             radii: BTreeMap::new(),
             single: Storage::Single,
@@ -257,7 +259,7 @@ impl Client {
             depth_test: Storage::Single,
             supposed: Supposed::default(),
             drawn: None,
-            tiles: None,
+            part: None,
             accumulator: Storage::Single,
             records: None,
             unknown: Vec::new(),
@@ -333,24 +335,26 @@ impl Client {
     /// The job of the projection: with the scene and the camera that are assumed for it.
     pub(crate) fn projection<'j>(&'j self, job: &Job<'j>) -> Job<'j> {
         match self.drawn.as_deref() {
-            Some((scene, camera)) => Job::new(scene, job.index, camera, job.exec),
-            None => Job::new(job.scene, job.index, job.camera, job.exec),
+            Some((scene, camera)) => {
+                Job { part: job.part, ..Job::new(scene, job.index, camera, job.exec) }
+            }
+            None => Job { part: job.part, ..Job::new(job.scene, job.index, job.camera, job.exec) },
         }
     }
 
     /// The planes, for changing them.
     pub(crate) fn frame_mut(&mut self) -> &mut Frame<f64> {
-        &mut self.frame
+        Arc::make_mut(&mut self.frame)
     }
 
     /// The same client with other planes. `of` makes each plane from the one with its name.
     pub(crate) fn mapped(&self, of: impl Fn(&str, &Samples<f64>) -> Samples<f64>) -> Self {
-        let Frame { width, height, ref planes } = self.frame;
+        let Frame { width, height, ref planes } = *self.frame;
         let planes = planes.iter().map(|NamedPlane { name, samples }| NamedPlane {
             name: name.clone(),
             samples: of(name, samples),
         });
-        let frame = Frame { width, height, planes: planes.collect() };
+        let frame = Arc::new(Frame { width, height, planes: planes.collect() });
         Self { frame, ..self.clone() }
     }
 

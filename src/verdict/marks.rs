@@ -69,7 +69,7 @@ impl Marks {
 
     /// Turns the marks of a whole picture into the findings about a stage.
     pub(crate) fn whole(self, stage: &'static str, planes: Vec<&'static str>) -> StageVerdict {
-        whole(self.rect, (stage, planes), [self])
+        whole(Some(self.rect), (stage, planes), vec![self])
     }
 
     /// Adds the findings of a part of the picture: at each pixel the larger error, and all doubts.
@@ -178,17 +178,21 @@ pub(crate) fn stage_verdicts<const N: usize>(
         of_stages.iter_mut().zip(tile).for_each(|(parts, marks)| parts.push(marks));
     }
     let all = stages.into_iter().zip(of_stages).collect();
-    job.exec.ordered(all, |(stage, parts)| whole(job.picture(), stage, parts))
+    let picture = job.part.is_none().then(|| job.picture());
+    job.exec.ordered(all, |(stage, parts)| whole(picture, stage, parts))
 }
 
 /// Turns the marks of the parts of a picture, which share no pixel, into the findings about a
-/// stage.
+/// stage. Without a picture, the planes have one row: the pixels of all parts, one part after the
+/// other.
 fn whole(
-    picture: Rect,
+    picture: Option<Rect>,
     (stage, planes): (&'static str, Vec<&'static str>),
-    parts: impl IntoIterator<Item = Marks>,
+    parts: Vec<Marks>,
 ) -> StageVerdict {
-    let Rect { x1: width, y1: height, .. } = picture;
+    let pixels = parts.iter().map(|part| part.found.len()).sum::<usize>() as u32;
+    let [width, height] = picture.map_or([pixels, 1], |all| [all.x1, all.y1]);
+    let mut next = 0;
     let mut judged = StageVerdict {
         stage,
         planes,
@@ -202,7 +206,8 @@ fn whole(
     for part in parts {
         let columns = part.rect.columns();
         for (y, row) in (part.rect.y0..).zip(part.found.chunks_exact(columns)) {
-            let first = place(picture, (part.rect.x0, y));
+            let first = picture.map_or(next, |all| place(all, (part.rect.x0, y)));
+            next += columns;
             let errors = &mut judged.errors.values_mut()[first..first + columns];
             let doubts = &mut judged.doubts.values_mut()[first..first + columns];
             for ((found, error), doubts) in row.iter().zip(errors).zip(doubts) {
@@ -334,10 +339,9 @@ pub(crate) fn verdict<const N: usize>(
     budget: f64,
     judge: impl Fn((usize, Rect), &mut [Marks; N]) -> Counts + Sync + Send,
 ) -> Verdict {
-    let rects = job.grid().rects();
-    let tiles = match job.tiles {
-        Some(only) => only.iter().map(|&tile| (tile, rects[tile])).collect(),
-        None => rects.into_iter().enumerate().collect(),
+    let tiles = match job.part {
+        Some(part) => part.pieces.to_vec(),
+        None => job.grid().rects().into_iter().enumerate().collect(),
     };
     let found = job.exec.ordered(tiles, |(tile, rect)| {
         let mut marks = [(); N].map_inline(|()| Marks::new(rect));

@@ -3,6 +3,7 @@
 use super::client::{Client, Rounding};
 use super::{Check, Verdict, ewa, table, unlike};
 use crate::error::{Error, Result};
+use crate::method::part::Part;
 use crate::method::session::{Making, Names, named};
 use crate::method::{Job, Method, Session};
 use crate::number::ball::{Gpu, Ieee, Precise};
@@ -33,7 +34,9 @@ impl Session<'_> {
         client: &Client,
         budget: f64,
     ) -> Result<Verdict> {
-        let job = Job { tiles: client.tiles.as_deref(), ..self.job(camera)? };
+        let spread = client.supposed.spread();
+        let part = client.part.as_deref().map(|pieces| Part { pieces, spread });
+        let job = Job { part, ..self.job(camera)? };
         self.check_client(camera, client)?;
         self.ask(camera, Making::Verdict)?;
         let names = self.numbers();

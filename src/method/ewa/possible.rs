@@ -3,6 +3,7 @@
 use super::Settings;
 use crate::frame::Rect;
 use crate::method::Job;
+use crate::method::part::Nearby;
 use crate::method::prepare::Prepared;
 use crate::number::ball::{Common, Profile};
 use crate::number::{Ball, Truth};
@@ -22,6 +23,9 @@ pub(crate) struct PossibleSplat<P: Profile> {
 /// The splats of a picture, each with the pixels that may be inside.
 pub(crate) type PossibleSplats<P> = Prepared<Ball<P>, PossibleSplat<P>>;
 
+/// The most pieces of a part for which the surfels near them are looked for.
+const MOST_PIECES: usize = 32;
+
 /// Projects the surfels that may be drawn.
 pub(crate) fn project<P: Profile>(job: &Job<'_>, settings: &Settings) -> PossibleSplats<P> {
     project_into(job, settings, |possible| possible, |possible| possible.splat.bounds)
@@ -37,38 +41,52 @@ pub(crate) fn project_into<P: Profile, S: Copy + Send>(
     let surfels = &job.scene.surfels;
     let picture = job.picture();
     let common = Projector::new(View::new(job.camera), &settings.kernel, settings.cull);
+    // Many pieces are near most surfels.
+    let part = job.part.filter(|part| part.pieces.len() <= MOST_PIECES);
+    let nearby = part.map(|part| Nearby::new(part, (surfels, job.camera), settings));
     Prepared::new(
         (job, &job.grid()),
         settings,
         surfels.len(),
         |projector, range, splats| {
-            each_of_range((projector, &common), surfels, range, &mut |mut splat, certain| {
+            let each = &mut |mut splat: Splat<Ball<P>>, certain| {
                 splat.bounds = splat.bounds.intersection(&picture);
-                if !splat.bounds.is_empty() {
-                    splats.push(record(PossibleSplat { splat, certain }));
+                if splat.bounds.is_empty() {
+                    return;
                 }
-            });
+                let possible = record(PossibleSplat { splat, certain });
+                if part.is_none_or(|part| part.touches(&bounds(&possible))) {
+                    splats.push(possible);
+                }
+            };
+            let list = nearby.as_ref().map(|nearby| nearby.of_range(range.clone()));
+            let some = (range, list.as_deref());
+            each_of_range((projector, &common), surfels, some, each);
             Tally::default()
         },
-        bounds,
+        &bounds,
     )
 }
 
-/// [`each_possible`] for a range of surfels, in ascending order. Affine outlines are computed in
-/// lanes, except for the surfels that the lanes cannot decide.
+/// [`each_possible`] for a range of surfels, or for those of a list in it, in ascending order. Affine
+/// outlines are computed in lanes, except for the surfels that the lanes cannot decide.
 pub(crate) fn each_of_range<P: Profile>(
     (projector, common): (&Projector<Ball<P>>, &Projector<Ball<Common<P>>>),
     surfels: &Surfels,
-    range: Range<usize>,
+    (range, list): (Range<usize>, Option<&[usize]>),
     each: &mut dyn FnMut(Splat<Ball<P>>, bool),
 ) {
     let rest = range.start + batch::in_full_lanes(projector.outline, range.len());
-    enclosed::affine_surfels(common, surfels, range.start..rest, &mut |i, splat| match splat {
+    let parts = list.map(|list| list.split_at(list.partition_point(|i| *i < rest)));
+    let in_lanes = (range.start..rest, parts.map(|parts| parts.0));
+    enclosed::affine_surfels(common, surfels, in_lanes, &mut |i, splat| match splat {
         Some(splat) => each(splat, true),
         None => each_possible(projector, &batch::disc(surfels, i), i as u32, each),
     });
-    for i in rest..range.end {
-        each_possible(projector, &batch::disc(surfels, i), i as u32, each);
+    let mut one = |i| each_possible(projector, &batch::disc(surfels, i), i as u32, each);
+    match parts {
+        Some((_, last)) => last.iter().for_each(|&i| one(i)),
+        None => (rest..range.end).for_each(one),
     }
 }
 

@@ -2,6 +2,7 @@
 //! offset, and a depth buffer that is not declared. The numbers are estimated: a line is fitted to
 //! the client's values and the depths of the crate, or to their reciprocals.
 
+use super::Case;
 use super::change::Change;
 use super::epsilon::DEPTHS;
 use crate::frame::Samples;
@@ -86,12 +87,8 @@ pub(super) fn digits(value: f64) -> f64 {
 }
 
 /// The readings that may explain a client's depths, in words and as changes.
-pub(super) fn mistakes(
-    session: &Session<'_>,
-    camera: &Camera,
-    client: &Client,
-) -> Vec<(String, Change)> {
-    let Some(all) = pairs(session, camera, client) else { return Vec::new() };
+pub(super) fn mistakes(case: &Case<'_, '_>) -> Vec<(String, Change)> {
+    let Some(all) = case.depths() else { return Vec::new() };
     let pairs = || all.iter().copied();
     let background = background(pairs().filter(|(_, t)| *t == f64::INFINITY).map(|(v, _)| v));
     let seen: Vec<_> = pairs()
@@ -107,7 +104,11 @@ pub(super) fn mistakes(
 
 /// The depth that the client stores at each pixel, and the right one. None where there is no memory
 /// for another picture.
-fn pairs(session: &Session<'_>, camera: &Camera, client: &Client) -> Option<Vec<(f64, f64)>> {
+pub(super) fn pairs(
+    session: &Session<'_>,
+    camera: &Camera,
+    client: &Client,
+) -> Option<Vec<(f64, f64)>> {
     let (name, _) = client.depth_of_visibility()?;
     let picture = session.define::<f32>(camera, false).ok()?;
     let (own, truth) = (client.frame().scalar(name).ok()?, picture.frame.scalar("Z").ok()?);
@@ -116,9 +117,8 @@ fn pairs(session: &Session<'_>, camera: &Camera, client: &Client) -> Option<Vec<
 }
 
 /// The length by which most depths are too large, if it is the same for most of them.
-pub(super) fn offset(session: &Session<'_>, camera: &Camera, client: &Client) -> Option<f64> {
-    let pairs = pairs(session, camera, client)?;
-    let both = pairs.iter().filter(|(v, t)| v.is_finite() && t.is_finite());
+pub(super) fn offset(case: &Case<'_, '_>) -> Option<f64> {
+    let both = case.depths()?.iter().filter(|(v, t)| v.is_finite() && t.is_finite());
     let offsets: Vec<f64> = both.map(|(v, t)| v - t).collect();
     let offset = median(offsets.clone());
     let off = median(offsets.iter().map(|own| (own - offset).abs()).collect());

@@ -19,7 +19,7 @@
 //! - The strict t < `t_1` + e, because it differs only at ties.
 
 use super::change::Change;
-use super::depths;
+use super::{Case, depths};
 use crate::frame::{Plane, Samples};
 use crate::method::ewa::visibility::Foremost;
 use crate::method::surface;
@@ -95,16 +95,12 @@ pub(super) fn bands(
 }
 
 /// Visibility depths that are moved by epsilon, or by another length, and the mistakes in words.
-pub(super) fn moved(
-    session: &Session<'_>,
-    camera: &Camera,
-    client: &Client,
-) -> Vec<(String, Change)> {
-    if client.depth_of_visibility().is_none() {
+pub(super) fn moved(case: &Case<'_, '_>) -> Vec<(String, Change)> {
+    if case.client.depth_of_visibility().is_none() {
         return Vec::new();
     }
     let mut all = Vec::new();
-    if let Some(epsilon) = resolved(session) {
+    if let Some(epsilon) = resolved(case.session) {
         let epsilon = f64::from(epsilon);
         all.push((
             "the depth comes from discs moved back by epsilon".into(),
@@ -113,7 +109,7 @@ pub(super) fn moved(
         let what = "epsilon is on the wrong side: the depth comes from discs moved towards the eye";
         all.push((what.into(), Change::Moved(-epsilon)));
     }
-    if let Some(offset) = depths::offset(session, camera, client) {
+    if let Some(offset) = depths::offset(case) {
         let what = format!("a depth bias: depths are {} too large", depths::digits(offset));
         all.push((what, Change::Moved(offset)));
     }

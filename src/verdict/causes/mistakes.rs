@@ -27,7 +27,7 @@ pub(super) fn common(case: &Case<'_, '_>, stage: &str) -> Mistakes {
     if SHAPES.contains(&stage) {
         all.extend(moved_by_half(session, camera));
         all.push(("rows are flipped".into(), Change::Flipped));
-        all.extend(depths::mistakes(session, camera, case.client));
+        all.extend(depths::mistakes(case));
         all.extend(settings(session, &VISIBILITY));
         let ties = if case.client.ties == Ties::Last { Ties::Lowest } else { Ties::Last };
         all.push(("ties are reversed".into(), Change::Ties(ties)));
@@ -61,7 +61,7 @@ pub(super) fn rare(case: &Case<'_, '_>, stage: &str) -> Mistakes {
         "visibility" => {
             all.extend(limits(case));
             all.extend(surfels::normals(session, camera));
-            all.extend(epsilon::moved(session, camera, client));
+            all.extend(epsilon::moved(case));
         }
         "projection" | "geometry" => {
             all.extend(limits(case));

@@ -37,6 +37,7 @@ use crate::error::{Error, Result};
 use crate::method::Session;
 use crate::scene::Camera;
 use change::Change;
+use std::cell::OnceCell;
 
 /// The client, what the verdict says about it, and the stages in which its mistake may lie.
 struct Case<'a, 's> {
@@ -50,6 +51,10 @@ struct Case<'a, 's> {
     stages: Vec<&'static str>,
     /// The wrong pixels.
     all: Wrong,
+    /// A few pixels that trials judge first, and the wrong ones among them.
+    pilot: Option<(&'a Client, Wrong)>,
+    /// The client's depths beside the right ones, once they are asked for.
+    depths: OnceCell<Option<Vec<(f64, f64)>>>,
 }
 
 /// The wrong pixels of a verdict.
@@ -88,13 +93,34 @@ const MOST_LEFT_WIDENED: u64 = 20;
 impl Case<'_, '_> {
     /// The wrong pixels if a change were the rule; none if the client has no plane that shows it.
     fn judge(&self, change: &Change) -> Result<Option<Wrong>> {
+        self.judge_client(change, self.client)
+    }
+
+    /// As [`Case::judge`]; none, too, if a few pixels show that the change explains nothing.
+    fn judge_twice(&self, change: &Change) -> Result<Option<Wrong>> {
+        if let Some((pilot, all)) = self.pilot {
+            let left = self.judge_client(change, pilot)?;
+            if left.is_none_or(|left| left.is_hopeless(all)) {
+                return Ok(None);
+            }
+        }
+        self.judge(change)
+    }
+
+    fn judge_client(&self, change: &Change, client: &Client) -> Result<Option<Wrong>> {
         let budget = self.verdict.budget;
-        match change.judge(self.session, self.camera, self.client, budget) {
+        match change.judge(self.session, self.camera, client, budget) {
             Ok(verdict) => Ok(verdict.map(|verdict| Wrong::of(&verdict, self.wrong.stage))),
             // The method cannot draw the scene with this mistake.
             Err(Error::Invalid(_)) => Ok(None),
             Err(error) => Err(error),
         }
+    }
+
+    /// The depth that the client stores at each pixel, and the right one.
+    fn depths(&self) -> Option<&Vec<(f64, f64)>> {
+        let pairs = || depths::pairs(self.session, self.camera, self.client);
+        self.depths.get_or_init(pairs).as_ref()
     }
 
     /// Whether at least one in so many covered pixels is wrong.
@@ -104,7 +130,7 @@ impl Case<'_, '_> {
 
     /// Whether so few pixels stay wrong that the mistake is explained.
     fn explains(&self, left: Wrong, most_left: u64) -> bool {
-        most_left * left.near <= self.all.near && most_left * left.all <= self.all.all
+        left.is_at_most(most_left, self.all)
     }
 
     /// The share of the wrong pixels that are explained.
@@ -118,7 +144,7 @@ impl Case<'_, '_> {
             return Ok(());
         }
         for (what, change) in some {
-            let Some(left) = self.judge(&change)? else { continue };
+            let Some(left) = self.judge_twice(&change)? else { continue };
             let most = if change.widens() { MOST_LEFT_WIDENED } else { MOST_LEFT };
             if self.explains(left, most) {
                 found.push(Explanation { what, change, most, left });
@@ -155,6 +181,16 @@ impl Case<'_, '_> {
 }
 
 impl Wrong {
+    /// Whether at most one in so many of all wrong pixels is left.
+    fn is_at_most(&self, one_in: u64, all: Self) -> bool {
+        one_in * self.near <= all.near && one_in * self.all <= all.all
+    }
+
+    /// Whether so many of a few wrong pixels stay wrong that no larger part can be explained.
+    fn is_hopeless(&self, all: Self) -> bool {
+        2 * self.near > all.near || 2 * self.all > all.all
+    }
+
     fn of(verdict: &Verdict, stage: &str) -> Self {
         let near = verdict.stages.iter().skip_while(|own| own.stage != stage).take(2);
         let log = |error: &f32| libm::log(1.0 + f64::from(if *error < 1e9 { *error } else { 1e9 }));
@@ -185,12 +221,13 @@ pub fn likely_cause(
     let unseen = before.filter(|stage| stage.planes.is_empty()).chain([wrong]);
     let stages = unseen.map(|stage| stage.stage).collect();
     let all = Wrong::of(verdict, wrong.stage);
-    let case = Case { session, camera, client, verdict, wrong, stages, all };
+    let (pilot, depths) = (None, OnceCell::new());
+    let case = Case { session, camera, client, verdict, wrong, stages, all, pilot, depths };
     if let Some(plain) = plain::plain(&case) {
         return Ok(Some(plain));
     }
-    let found = match sample::client(&case) {
-        Some(part) => sample::confirmed(&case, sample::in_part(&case, &part, explanations)?)?,
+    let found = match sample::parts(&case) {
+        Some(parts) => sample::confirmed(&case, sample::in_part(&case, &parts, explanations)?)?,
         None => explanations(&case)?,
     };
     fields::with(&case, case.in_words(found).or_else(|| plain::common(&case)))
@@ -212,7 +249,7 @@ fn explanations(case: &Case<'_, '_>) -> Result<Vec<Explanation>> {
         found.retain(|one| one.left.all == 0);
     }
     // Where trials judge the whole of a large picture, a search takes too long.
-    if found.is_empty() && (case.client.tiles.is_some() || !sample::is_large(case)) {
+    if found.is_empty() && (case.client.part.is_some() || !sample::is_large(case)) {
         found.extend(search::best(case)?);
     }
     if found.is_empty() {

@@ -3,6 +3,7 @@
 use crate::frame::{Frame, Samples};
 use crate::number::{MapInline, elementary};
 use crate::verdict::client::{Client, Storage};
+use std::sync::Arc;
 
 /// The planes of colours: the picture, its averages and its sums.
 pub(super) const COLORS: [&str; 3] = ["", "resolved", "attributes"];
@@ -53,7 +54,7 @@ impl Client {
     pub(super) fn with_planes(&self, some: impl Fn(&str) -> bool) -> Self {
         let Frame { width, height, ref planes } = *self.frame();
         let planes = planes.iter().filter(|plane| some(&plane.name)).cloned().collect();
-        Self { frame: Frame { width, height, planes }, ..self.clone() }
+        Self { frame: Arc::new(Frame { width, height, planes }), ..self.clone() }
     }
 
     /// Whether nearly all numbers of the client's sums are like this, and some of them are not 0.

@@ -1,13 +1,21 @@
-//! Try mistakes on a part of a large picture: the tiles with the most wrong pixels. Naming a mistake
-//! tries many, and each trial judges the client again. The whole picture then decides.
+//! Try mistakes on parts of a large picture, because each trial judges the client again:
+//!
+//! 1. A pilot of 256 pixels rejects most mistakes, and says about where a number lies.
+//! 2. The tiles with the most wrong pixels, 8192 pixels at most, say which mistakes explain them.
+//! 3. Every fourth tile confirms the mistake. The whole picture decides only where few pixels are
+//!    wrong, or where two mistakes explain about the same.
 
 use super::change::Change;
-use super::{Case, Explanation, Wrong};
+use super::{Case, Explanation, FEWEST, Wrong};
 use crate::error::Result;
+use crate::frame::Rect;
 use crate::method::Method;
+use crate::method::tiled::pixels;
 use crate::number::MapInline;
+use crate::verdict::StageVerdict;
 use crate::verdict::client::Client;
 use crate::verdict::supposed::Supposed;
+use std::cell::OnceCell;
 use std::cmp::Reverse;
 use std::sync::Arc;
 
@@ -27,16 +35,26 @@ fn has_tiles(method: &Method) -> bool {
     !matches!(method, Method::Pyramid(_) | Method::Template(_) | Method::Deferred(_))
 }
 
-/// The client as the tiles with the most wrong pixels show it; none if the whole picture is judged.
-pub(super) fn client(case: &Case<'_, '_>) -> Option<Client> {
+/// The fewest pixels that are judged first in each trial, and the side of the squares that they are in.
+const PILOT: usize = 256;
+const SIDE: u32 = 8;
+
+/// The client as a part of its picture shows it, and as a few pixels of that part show it.
+pub(super) struct Parts {
+    part: Client,
+    pilot: Client,
+}
+
+/// The parts with the most wrong pixels; none if the whole picture is judged.
+pub(super) fn parts(case: &Case<'_, '_>) -> Option<Parts> {
     if !is_large(case) || !has_tiles(case.session.method()) {
         return None;
     }
     let grid = case.session.job(case.camera).ok()?.grid();
     let rects = grid.rects();
-    let stages = case.verdict.stages.iter().skip_while(|stage| stage.stage != case.wrong.stage);
+    let stages = near(case);
     let mut wrong = vec![0_u64; rects.len()];
-    for stage in stages.take(2) {
+    for stage in stages {
         let width = stage.errors.width() as usize;
         for (i, _) in stage.errors.values().iter().enumerate().filter(|(_, error)| **error > 1.0) {
             let [x, y] = [i % width, i / width].map_inline(|at| at as u32);
@@ -45,15 +63,67 @@ pub(super) fn client(case: &Case<'_, '_>) -> Option<Client> {
     }
     let mut tiles: Vec<usize> = (0..rects.len()).filter(|&tile| wrong[tile] > 0).collect();
     tiles.sort_by_key(|&tile| (Reverse(wrong[tile]), tile));
-    let mut pixels = 0;
+    let mut judged = 0;
     tiles.retain(|&tile| {
-        pixels += rects[tile].pixels();
-        pixels <= MOST
+        judged += rects[tile].pixels();
+        judged <= MOST
     });
-    Some(Client { tiles: Some(Arc::from(tiles)), ..case.client.clone() })
+    let of_tile = |tile: usize| {
+        let rect = rects[tile];
+        let corners = pixels(rect).filter(|(x, y)| x % SIDE == 0 && y % SIDE == 0);
+        let squares = corners.map(|(x0, y0)| Rect { x0, y0, x1: x0 + SIDE, y1: y0 + SIDE });
+        let mut squares: Vec<_> = squares.map(|square| square.intersection(&rect)).collect();
+        squares.sort_by_cached_key(|square| {
+            Reverse(near(case).map(|own| count(own, *square)).sum::<u64>())
+        });
+        squares.into_iter().map(move |square| (tile, square))
+    };
+    // The worst square of each tile, then the second of each.
+    let mut squares: Vec<_> = tiles.iter().flat_map(|&tile| of_tile(tile).enumerate()).collect();
+    squares.sort_by_key(|(turn, _)| *turn);
+    let squares = squares.into_iter().map(|(_, square)| square).take(PILOT / SIDE.pow(2) as usize);
+    let of = |pieces| Client { part: Some(pieces), ..case.client.clone() };
+    let part = of(tiles.iter().map(|&tile| (tile, rects[tile])).collect());
+    Some(Parts { part, pilot: of(squares.collect()) })
 }
 
-/// Those explanations of a part that explain the whole picture, with what they leave there.
+/// The first wrong stage and the next one.
+fn near<'a>(case: &'a Case<'_, '_>) -> impl Iterator<Item = &'a StageVerdict> {
+    case.verdict.stages.iter().skip_while(|stage| stage.stage != case.wrong.stage).take(2)
+}
+
+/// Number of wrong pixels in a rectangle.
+fn count(stage: &StageVerdict, rect: Rect) -> u64 {
+    pixels(rect).filter(|(x, y)| *stage.errors.at(*x, *y) > 1.0).count() as u64
+}
+
+/// One in this many tiles is judged where that is enough, and the fewest pixels that must be wrong
+/// there.
+const ONE_IN: usize = 4;
+const ENOUGH: u64 = 1024;
+/// Two explanations whose shares differ by more than this in those tiles differ in the picture.
+const NEAR_PERCENT: u64 = 5;
+
+/// The client in tiles that are spread evenly over the picture, and what is wrong there. None if too
+/// few pixels are wrong there.
+fn spread(case: &Case<'_, '_>) -> Result<Option<(Client, Wrong)>> {
+    let grid = case.session.job(case.camera)?.grid();
+    let columns = grid.columns as usize;
+    let tiles = grid.rects().into_iter().enumerate();
+    let some = tiles.filter(|(tile, _)| (tile % columns + 2 * (tile / columns)) % ONE_IN == 0);
+    let part: Arc<[_]> = some.collect();
+    let wrong = |stage| part.iter().map(|(_, rect)| count(stage, *rect)).sum::<u64>();
+    // Records are judged wherever they are.
+    if case.client.records.is_some() || near(case).map(wrong).sum::<u64>() < ENOUGH {
+        return Ok(None);
+    }
+    let all = case.verdict.stages.iter().map(wrong).sum();
+    let wrong = Wrong { near: near(case).map(wrong).sum(), all, size: 0.0 };
+    Ok(Some((Client { part: Some(part), ..case.client.clone() }, wrong)))
+}
+
+/// Those explanations of a part that explain the whole picture, with what they leave there, or in
+/// every fourth tile if there is only one.
 ///
 /// # Errors
 /// As [`crate::method::Session::verify`].
@@ -63,48 +133,67 @@ pub(super) fn confirmed(
 ) -> Result<Vec<Explanation>> {
     found.sort_by_key(|one| one.left.all);
     found.truncate(TRIED);
-    let mut confirmed = Vec::new();
-    for one in found {
-        // In the part nearly all pixels may be wrong.
-        let coarse = matches!(one.change, Change::Supposed(Supposed::CoarseExp(_)));
-        if coarse && !whole.is_one_in(2) {
-            continue;
-        }
-        let Some(left) = whole.judge(&one.change)? else { continue };
-        if whole.explains(left, one.most) {
-            confirmed.push(Explanation { left, ..one });
+    // In the part nearly all pixels may be wrong.
+    let is_coarse = |change: &_| matches!(change, Change::Supposed(Supposed::CoarseExp(_)));
+    found.retain(|one| !is_coarse(&one.change) || whole.is_one_in(2));
+    if let Some((client, all)) = spread(whole)? {
+        found = explained(whole, (&client, all), found)?;
+        let best = found.iter().map(|one| one.left.all).min().unwrap_or(0);
+        found.retain(|one| 100 * (one.left.all - best) <= NEAR_PERCENT * all.all);
+        // One mistake is named without its share, and so needs no exact counts.
+        if found.len() < 2 {
+            return Ok(found);
         }
     }
-    Ok(confirmed)
+    explained(whole, (whole.client, whole.all), found)
 }
 
-/// What is found by `search` in the part that a client shows, if the stage is wrong there.
+/// Those explanations that explain what is wrong in a client, with what they leave there.
+fn explained(
+    case: &Case<'_, '_>,
+    (client, all): (&Client, Wrong),
+    some: Vec<Explanation>,
+) -> Result<Vec<Explanation>> {
+    let mut found = Vec::new();
+    for one in some {
+        let left = case.judge_client(&one.change, client)?;
+        let left = left.filter(|left| left.is_at_most(one.most, all));
+        found.extend(left.map(|left| Explanation { left, ..one }));
+    }
+    Ok(found)
+}
+
+/// What is found by `search` in a part, if the stage is wrong there.
 ///
 /// # Errors
 /// As [`crate::method::Session::verify`].
 pub(super) fn in_part(
     whole: &Case<'_, '_>,
-    client: &Client,
+    Parts { part, pilot }: &Parts,
     search: impl FnOnce(&Case<'_, '_>) -> Result<Vec<Explanation>>,
 ) -> Result<Vec<Explanation>> {
     let (session, camera, budget) = (whole.session, whole.camera, whole.verdict.budget);
-    let verdict = session.verify_as(session.method(), camera, client, budget)?;
+    let judge = |client| session.verify_as(session.method(), camera, client, budget);
+    let (verdict, at_first) = (judge(part)?, judge(pilot)?);
     let stage = verdict.stages.iter().find(|stage| stage.stage == whole.wrong.stage);
     let Some(wrong) = stage.filter(|stage| stage.wrong > 0) else { return Ok(Vec::new()) };
     let all = Wrong::of(&verdict, wrong.stage);
     let stages = whole.stages.clone();
-    search(&Case { session, camera, client, verdict: &verdict, wrong, stages, all })
+    let at_first = Wrong::of(&at_first, wrong.stage);
+    let pilot = (at_first.near >= FEWEST).then_some((pilot, at_first));
+    let (client, verdict, depths) = (part, &verdict, OnceCell::new());
+    search(&Case { session, camera, client, verdict, wrong, stages, all, pilot, depths })
 }
 
 #[cfg(test)]
 mod tests {
+    use super::*;
     use crate::frame::Exec;
-    use crate::method::{Method, Session, ewa};
-    use crate::scene::Scene;
+    use crate::method::{Method, Session, ewa, single_pass};
+    use crate::scene::{Camera, Lens, Scene};
     use crate::source::Shape;
-    use crate::splat::Kernel;
+    use crate::splat::{Epsilon, Kernel, Outline};
     use crate::verdict::causes::likely_cause;
-    use crate::verdict::client::Client;
     use crate::verdict::tests::camera;
 
     #[test]
@@ -113,13 +202,78 @@ mod tests {
         let scene = Scene::unlit("", Shape::Sphere.surfels(1500, 3).unwrap());
         let camera = camera(Shape::Sphere, [176, 128], None);
         let right = ewa::Settings::default();
-        let kernel = Kernel { cutoff: 1.9, ..right.kernel };
         let session = Session::new(&scene, Method::Ewa(right), &exec).unwrap();
-        let mistaken = Method::Ewa(ewa::Settings { kernel, ..right });
-        let mistaken = Session::new(&scene, mistaken, &exec).unwrap();
-        let client = Client::from(&mistaken.define::<f32>(&camera, true).unwrap().frame);
-        let verdict = session.verify(&camera, &client, 1.0).unwrap();
-        let named = likely_cause(&session, &camera, &client, &verdict).unwrap();
-        assert_eq!(named.as_deref(), Some("the cut-off is 1.9, not 2"));
+        let named = |mistaken, by: &Camera| {
+            let mistaken = Session::new(&scene, Method::Ewa(mistaken), &exec).unwrap();
+            let client = Client::from(&mistaken.define::<f32>(by, true).unwrap().frame);
+            let verdict = session.verify(&camera, &client, 1.0).unwrap();
+            likely_cause(&session, &camera, &client, &verdict).unwrap().unwrap_or_default()
+        };
+        let kernel = Kernel { cutoff: 1.9, ..right.kernel };
+        let cutoff = named(ewa::Settings { kernel, ..right }, &camera);
+        assert_eq!(cutoff, "the cut-off is 1.9, not 2");
+        // Few pixels tell one epsilon from another, and only close to the right lens errors fall.
+        let epsilon = named(ewa::Settings { epsilon: Epsilon::MedianRadii(2.7), ..right }, &camera);
+        assert_eq!(epsilon, "epsilon is 1.35 times as wide");
+        let wide = Camera { fx: 0.9 * camera.fx, fy: 0.9 * camera.fy, ..camera };
+        let lens = named(right, &wide);
+        assert!(lens.starts_with("another field of view"), "{lens}");
+    }
+
+    #[test]
+    fn a_part_is_judged_as_in_the_whole_picture() {
+        let exec = Exec::new(2, 32).unwrap();
+        let scene = Scene::unlit("", Shape::Sphere.surfels(1500, 3).unwrap());
+        let corner =
+            |(tile, rect): (usize, Rect)| (tile, Rect { x0: rect.x1 - 9, y0: rect.y1 - 9, ..rect });
+        let all = exec.grid(176, 128).rects().into_iter().enumerate();
+        let part: Arc<[_]> = all.step_by(5).map(corner).collect();
+        let rules = [
+            Supposed::Nothing,
+            Supposed::Moved([0.5, -0.5]),
+            Supposed::CentersWhole,
+            Supposed::Mirrored,
+            Supposed::Transposed,
+            Supposed::Spread(2.0),
+            Supposed::FilterOnRadius,
+            Supposed::Limit(1e9),
+        ];
+        let mut wrong = 0;
+        for lens in [None, Some(Lens::Orthographic(2.5)), Some(Lens::FieldOfView(15.0))] {
+            let camera = camera(Shape::Sphere, [176, 128], lens);
+            for outline in [Outline::Affine, Outline::Perspective, Outline::RayCast] {
+                let settings = |cutoff| {
+                    let right = ewa::Settings::default();
+                    ewa::Settings { kernel: Kernel { outline, cutoff, ..right.kernel }, ..right }
+                };
+                let grouped = |cutoff| {
+                    let right = single_pass::Settings::default();
+                    Method::SinglePass(single_pass::Settings { splats: settings(cutoff), ..right })
+                };
+                for methods in [
+                    [2.0, 1.8].map(|cutoff| Method::Ewa(settings(cutoff))),
+                    [2.0, 1.8].map(grouped),
+                ] {
+                    let [right, mistaken] =
+                        methods.map(|method| Session::new(&scene, method, &exec).unwrap());
+                    let client =
+                        Client::from(&mistaken.define::<f32>(&camera, true).unwrap().frame);
+                    for supposed in rules {
+                        let judged = |part| {
+                            let client = Client { supposed, part, ..client.clone() };
+                            right.verify_as(right.method(), &camera, &client, 1.0).unwrap()
+                        };
+                        let (whole, own) = (judged(None), judged(Some(part.clone())));
+                        for (whole, own) in whole.stages.iter().zip(&own.stages) {
+                            let at = part.iter().flat_map(|(_, rect)| pixels(*rect));
+                            let errors: Vec<_> = at.map(|(x, y)| *whole.errors.at(x, y)).collect();
+                            assert_eq!(own.errors.values(), errors, "{supposed:?} {outline:?}");
+                            wrong += own.wrong;
+                        }
+                    }
+                }
+            }
+        }
+        assert!(wrong > 1000, "{wrong}");
     }
 }

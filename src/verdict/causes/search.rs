@@ -19,6 +19,9 @@ const TURNS: usize = 20;
 const GOLDEN: f64 = 0.618_033_988_749_895;
 /// The most steps away from the right value, each twice as large as the one before.
 const MOST_STEPS: usize = 9;
+/// After so many turns the right number leaves less than this part of the errors.
+const LEAST_TURNS: usize = 10;
+const LEAST_LEFT: f64 = 0.9;
 /// The part of the errors that the first step must take away.
 const LEAST_GAIN: f64 = 1e-6;
 
@@ -238,42 +241,72 @@ pub(super) fn best(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
         return Ok(best);
     }
     for number in numbers(case) {
-        let wrong = |value: f64| -> Result<Option<Wrong>> {
-            let Some(change) = (number.change)(value) else { return Ok(None) };
-            case.judge(&change)
-        };
-        let Some((value, left)) = search(number.right, number.step, case.all, wrong)? else {
-            continue;
-        };
+        let Some((value, left)) = found(case, &number)? else { continue };
         let least = best.as_ref().is_none_or(|best| left.all < best.left.all);
         if case.explains(left, MOST_LEFT) && least {
             let Some(change) = (number.change)(value) else { continue };
             let (what, most) = ((number.in_words)(digits(value)), MOST_LEFT);
             best = Some(Explanation { what, change, most, left });
+            if left.all == 0 {
+                break;
+            }
         }
     }
     Ok(best)
 }
 
+/// The value of a number that explains most, and the pixels that stay wrong.
+fn found(case: &Case<'_, '_>, number: &Number<'_>) -> Result<Option<(f64, Wrong)>> {
+    let Number { right, step, .. } = *number;
+    let judge = |value: f64, client| match (number.change)(value) {
+        Some(change) => case.judge_client(&change, client),
+        None => Ok(None),
+    };
+    let in_part = || search(right, step, (case.all, false), |value| judge(value, case.client));
+    let Some((pilot, all)) = case.pilot else { return in_part() };
+    let found = search(right, step, (all, true), |value| judge(value, pilot))?;
+    let found = found.filter(|(_, left)| !left.is_hopeless(all));
+    let Some((value, _)) = found else { return Ok(None) };
+    let Some(left) = judge(value, case.client)? else { return Ok(None) };
+    if left.all == 0 {
+        return Ok(Some((value, left)));
+    }
+    // The few pixels tell about where the best value is.
+    let range = (0.2 * (value - right).abs()).at_least(step.abs());
+    let ends = [value - range, value + range];
+    let wrong = |value| judge(value, case.client);
+    let found = narrowed((right, ends), (value, left), (left, false), wrong)?;
+    // Where errors grow only close to the best value, it lies between others.
+    if case.explains(found.1, MOST_LEFT) { Ok(Some(found)) } else { in_part() }
+}
+
+/// The size of the errors with a value. Keeps the value if it is the best one.
+fn size(
+    value: f64,
+    best: &mut (f64, Wrong),
+    wrong: &mut impl FnMut(f64) -> Result<Option<Wrong>>,
+) -> Result<f64> {
+    let Some(left) = wrong(value)? else { return Ok(f64::INFINITY) };
+    if (left.size, left.all) < (best.1.size, best.1.all) {
+        *best = (value, left);
+    }
+    Ok(left.size)
+}
+
 /// The value that leaves the smallest errors, and the wrong pixels. None if no value near the right
-/// one leaves smaller errors.
+/// one leaves smaller errors. `all` has the wrong pixels, and whether to leave early where the errors
+/// hardly become smaller.
 fn search(
     right: f64,
     step: f64,
-    all: Wrong,
+    all: (Wrong, bool),
     mut wrong: impl FnMut(f64) -> Result<Option<Wrong>>,
 ) -> Result<Option<(f64, Wrong)>> {
-    let mut best = (right, all);
-    let mut size = |value: f64, best: &mut (f64, Wrong)| -> Result<f64> {
-        let Some(left) = wrong(value)? else { return Ok(f64::INFINITY) };
-        if (left.size, left.all) < (best.1.size, best.1.all) {
-            *best = (value, left);
-        }
-        Ok(left.size)
-    };
+    let mut best = (right, all.0);
+    let mut size = |value, best: &mut _| size(value, best, &mut wrong);
     let [up, down] = [size(right + step, &mut best)?, size(right - step, &mut best)?];
     let (sign, mut least) = if up <= down { (step, up) } else { (-step, down) };
-    if !(least < all.size * (1.0 - LEAST_GAIN)) {
+    if !(least < all.0.size * (1.0 - LEAST_GAIN)) {
         return Ok(None);
     }
     let (mut before, mut at, mut next) = (right, right + sign, right + 3.0 * sign);
@@ -285,13 +318,26 @@ fn search(
         (before, at, least) = (at, next, own);
         next = at + sign * f64::from(1_u32 << (turn + 1));
     }
-    let (mut low, mut high) = (before, next);
+    narrowed((right, [before, next]), best, all, wrong).map(Some)
+}
+
+/// The best value between two ends, with the fewest digits.
+fn narrowed(
+    (right, [mut low, mut high]): (f64, [f64; 2]),
+    mut best: (f64, Wrong),
+    (all, leaves): (Wrong, bool),
+    mut wrong: impl FnMut(f64) -> Result<Option<Wrong>>,
+) -> Result<(f64, Wrong)> {
+    let mut size = |value, best: &mut _| size(value, best, &mut wrong);
     let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
     let [mut a, mut b] = inner(low, high);
     let [mut at_a, mut at_b] = [size(a, &mut best)?, size(b, &mut best)?];
-    for _ in 0..TURNS {
+    for turn in 0..TURNS {
         if best.1.all == 0 {
             break;
+        }
+        if leaves && turn == LEAST_TURNS && best.1.size > LEAST_LEFT * all.size {
+            return Ok(best);
         }
         if at_a <= at_b {
             (high, b, at_b) = (b, a, at_a);
@@ -303,7 +349,7 @@ fn search(
             at_b = size(b, &mut best)?;
         }
     }
-    Ok(Some(rounded(right, best, (high - low).abs(), size)?))
+    rounded(right, best, (high - low).abs(), size)
 }
 
 /// The best value, or a shorter one beside it that leaves nothing wrong: people choose short numbers.
@@ -348,7 +394,7 @@ mod tests {
             (0.0, -26.57, 0.1),
         ] {
             let mut asked = 0;
-            let found = search(right, step, off(right, best), |value| {
+            let found = search(right, step, (off(right, best), false), |value| {
                 asked += 1;
                 Ok(Some(off(value, best)))
             });
@@ -357,6 +403,9 @@ mod tests {
             assert!(asked < 50, "{asked}");
         }
         let same = off(1.0, 2.0);
-        assert!(search(2.0, 0.1, same, |_| Ok(Some(same))).unwrap().is_none(), "another mistake");
+        assert!(
+            search(2.0, 0.1, (same, true), |_| Ok(Some(same))).unwrap().is_none(),
+            "another mistake"
+        );
     }
 }

@@ -69,7 +69,7 @@ fn compare_projections<P: Profile>(session: &Session<'_>, camera: &Camera, all: 
         possible::each_of_range(
             (&projector, &common),
             surfels,
-            0..surfels.len(),
+            (0..surfels.len(), None),
             &mut |splat, certain| {
                 in_lanes.push((splat.surfel, format!("{splat:?} {certain}")));
             },

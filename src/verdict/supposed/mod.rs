@@ -125,6 +125,14 @@ impl Supposed {
         if let Self::Limit(by) = self { limit * Ball::exact(by) } else { limit }
     }
 
+    /// How many times as far as its surfel a splat may reach.
+    pub(crate) fn spread(self) -> f64 {
+        match self {
+            Self::Transposed | Self::Spread(_) | Self::FilterOnRadius => f64::INFINITY,
+            _ => 1.0,
+        }
+    }
+
     /// Whether a normal is turned.
     #[inline(always)]
     pub(crate) fn turned(self, back: Three) -> Three {
