@@ -113,8 +113,8 @@ impl Gaussians {
     ///
     /// Dropped is a Gaussian with a number that is not finite, with a scale < 0, with a rotation
     /// of length 0, or with an opacity outside [0, 1]. A rotation whose square length is within
-    /// 2^-20 of 1 is kept as it is. Any other is divided by its length, `sqrt(((x x + y y) + z z)
-    /// + w w)`, in f64, component by component, and rounded once.
+    /// 2^-20 of 1 is kept as it is. Any other is divided by its length, the root of
+    /// `((x x + y y) + z z) + w w`, in f64, component by component, and rounded once.
     ///
     /// # Errors
     /// [`Error::Invalid`] if an array has the wrong length, if nothing is left, if there are more

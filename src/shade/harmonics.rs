@@ -54,7 +54,7 @@ pub fn basis<R: Real>(degree: u32, direction: Vector3<R>) -> [R; MAX_COEFFICIENT
     }
     if degree >= 3 {
         let (three, four) = (c(3.0), c(4.0));
-        let (c33, c31) = (c(0.590_043_59), c(0.457_045_8));
+        let (c33, c31) = (c(0.590_043_6), c(0.457_045_8));
         let ring = (four * zz - xx) - yy;
         b[9] = -(c33 * (y * (three * xx - yy)));
         b[10] = c(2.890_611_4) * ((x * y) * z);
@@ -86,6 +86,7 @@ pub fn color<R: Real>(degree: u32, coefficients: &[glam::Vec3], direction: Vecto
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::number::elementary;
     use crate::number::random::unit;
 
     fn direction(seed: u64) -> Vector3<f64> {
@@ -95,7 +96,7 @@ mod tests {
             std::f64::consts::TAU * f64::from(unit(seed, 1)),
         );
         let r = (1.0 - z * z).sqrt();
-        Vector3::new(r * angle.cos(), r * angle.sin(), z)
+        Vector3::new(r * elementary::cos(angle), r * elementary::sin(angle), z)
     }
 
     /// The functions are orthonormal: the law that no table of constants shares. Gauss-Legendre in
@@ -112,7 +113,10 @@ mod tests {
             for i in 0..8 {
                 let angle = std::f64::consts::TAU * f64::from(i) / 8.0;
                 let r = (1.0_f64 - height * height).sqrt();
-                let b = basis(3, Vector3::new(r * angle.cos(), r * angle.sin(), height));
+                let b = basis(
+                    3,
+                    Vector3::new(r * elementary::cos(angle), r * elementary::sin(angle), height),
+                );
                 for (row, a) in products.iter_mut().zip(b) {
                     for (product, b) in row.iter_mut().zip(b) {
                         *product += weight * std::f64::consts::TAU / 8.0 * a * b;

@@ -206,10 +206,9 @@ impl<R: Exact> Blending<'_, R> {
         } else {
             for &place in places {
                 let splat = &self.splats.all[place];
-                if let Some(fragment) = self.drawn(splat, at) {
-                    if !draw(&(place, fragment, splat.depth)) {
-                        break;
-                    }
+                let fragment = self.drawn(splat, at);
+                if fragment.is_some_and(|fragment| !draw(&(place, fragment, splat.depth))) {
+                    break;
                 }
             }
         }

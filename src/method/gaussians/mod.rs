@@ -20,8 +20,7 @@
 //!    - o = opacity times compensation.
 //!    - Bounds, in f64 from the numbers of this arithmetic: the pixels whose centres are within e of
 //!      the centre, with e as [`Support`] says; under `ellipse` e = k sqrt(Vxx) (1 + 2^-10) + 1 px, and
-//!      so for y. If [`Settings::least_alpha`] is above 0, also within e = sqrt(2 ln(o / least_alpha)
-//!      Vxx) (1 + 2^-10) + 1, beyond which alpha is less; there are none if o is less than it. The 1 and
+//!      so for y. If [`Settings::least_alpha`] is above 0, also within e = sqrt(2 ln(o / least) Vxx) (1 + 2^-10) + 1, beyond which alpha is less; there are none if o is less than it. The 1 and
 //!      the factor exceed what rounding moves the rim of a splat that is not extremely thin.
 //!      `Decided:` a pixel out of bounds has no fragment, even where its rounded q says otherwise.
 //! 2. **Order** ([`Order`]): ascending, ties to the lower index.

@@ -121,7 +121,7 @@ fn decisions(own: &Settings, add: &mut dyn FnMut(String, Settings)) {
     }
     for (support, cutoff, what) in [
         (Support::Ellipse, 3.0, "splats end at 3 standard deviations"),
-        (Support::Ellipse, 2.828_427_1, "splats end at sqrt(8) standard deviations"),
+        (Support::Ellipse, 2.828_427, "splats end at sqrt(8) standard deviations"),
         (Support::Ellipse, 3.33, "splats end at 3.33 standard deviations"),
         (Support::Tiles, 3.0, "splats end with the tiles of a square of 3 standard deviations"),
         (Support::Boxes, 3.33, "splats end with the tiles of a box of 3.33 standard deviations"),

@@ -161,7 +161,7 @@ pub(super) const ROWS: &[Row] = &[
         },
         otherwise: |s| {
             let q = s.blobs[0].rotation;
-            s.blobs[0].rotation = Quat::from_xyzw(q.w, q.x, q.y, q.z)
+            s.blobs[0].rotation = Quat::from_xyzw(q.w, q.x, q.y, q.z);
         },
     },
     Row {
@@ -174,7 +174,7 @@ pub(super) const ROWS: &[Row] = &[
         },
         otherwise: |s| {
             let q = s.blobs[0].rotation;
-            s.blobs[0].rotation = Quat::from_xyzw(q.x, q.y, q.z, -q.w)
+            s.blobs[0].rotation = Quat::from_xyzw(q.x, q.y, q.z, -q.w);
         },
     },
     Row {
@@ -186,7 +186,7 @@ pub(super) const ROWS: &[Row] = &[
         },
         otherwise: |s| {
             let a = s.blobs[0].scale;
-            s.blobs[0].scale = Vec3::new(a.y, a.x, a.z)
+            s.blobs[0].scale = Vec3::new(a.y, a.x, a.z);
         },
     },
     Row {
@@ -509,7 +509,7 @@ pub(super) const ROWS: &[Row] = &[
         },
         otherwise: |s| {
             let first = s.blobs[0].clone();
-            s.blobs.extend([first.clone(), first])
+            s.blobs.extend([first.clone(), first]);
         },
     },
     Row {
@@ -521,7 +521,7 @@ pub(super) const ROWS: &[Row] = &[
         },
         otherwise: |s| {
             let first = s.blobs[0].clone();
-            s.blobs.push(first)
+            s.blobs.push(first);
         },
     },
     Row {
