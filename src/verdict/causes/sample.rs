@@ -193,7 +193,7 @@ mod tests {
     use crate::method::{Method, Session, ewa, single_pass};
     use crate::scene::{Camera, Lens, Scene};
     use crate::source::Shape;
-    use crate::splat::{Epsilon, Kernel, Outline};
+    use crate::splat::{Kernel, Outline};
     use crate::verdict::causes::likely_cause;
     use crate::verdict::tests::camera;
 
@@ -213,9 +213,7 @@ mod tests {
         let kernel = Kernel { cutoff: 1.9, ..right.kernel };
         let cutoff = named(ewa::Settings { kernel, ..right }, &camera);
         assert_eq!(cutoff, "the cut-off is 1.9, not 2");
-        // Few pixels tell one epsilon from another, and only close to the right lens errors fall.
-        let epsilon = named(ewa::Settings { epsilon: Epsilon::MedianRadii(2.7), ..right }, &camera);
-        assert_eq!(epsilon, "epsilon is 1.35 times as wide");
+        // Errors fall only close to the right lens.
         let wide = Camera { fx: 0.9 * camera.fx, fy: 0.9 * camera.fy, ..camera };
         let lens = named(right, &wide);
         assert!(lens.starts_with("another field of view"), "{lens}");
