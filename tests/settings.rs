@@ -360,3 +360,14 @@ fn the_page_of_gaussians_lists_the_presets() {
     }
     assert_eq!(found, table, "SPLATREF_BLESS=1 cargo test --release settings:: writes it anew");
 }
+
+/// Settings are set in the order of their rows, whoever lists them first.
+#[test]
+fn a_preset_is_set_before_its_parts() {
+    let file =
+        parse("[method]\nlow_pass = 0.1\ncutoff = 2\npreset = \"khr\"\nname = \"gaussians\"\n");
+    let method = file.unwrap().method.method().unwrap();
+    for (name, value) in [("low_pass", 0.1), ("cutoff", 2.0), ("stop", 0.0)] {
+        assert!(method.values().contains(&(name, Value::Number(value))), "{name}");
+    }
+}

@@ -48,7 +48,14 @@ impl Setting {
                 });
             });
         }
+        // A preset of one owner sets rows that another owner lists before it.
+        all.sort_by_key(|setting| !setting.is_preset());
         all
+    }
+
+    /// Whether the setting sets others.
+    fn is_preset(&self) -> bool {
+        self.owners.iter().all(|(_, default)| default.is_none())
     }
 
     /// Whether the setting is a switch, on or off.
