@@ -5,11 +5,11 @@
 //! negative. For a unit direction (x, y, z), with all constants rounded to `f32`:
 //!
 //! ```text
-//!   degree 0    b0  = 0.28209479
+//!   degree 0    b0  = 0.282094792
 //!   degree 1    b1  = -c1 y        b2 = c1 z       b3 = -c1 x                      c1 = 0.48860251
 //!   degree 2    b4  = c2 (x y)     b5 = -c2 (y z)  b6 = c20 ((2 (z z) - x x) - y y)
 //!               b7  = -c2 (x z)    b8 = c22 (x x - y y)
-//!               c2 = 1.0925484     c20 = 0.31539157    c22 = 0.54627422
+//!               c2 = 1.09254843    c20 = 0.31539157    c22 = 0.54627422
 //!   degree 3    b9  = -c33 (y (3 (x x) - y y))      b10 = c32 ((x y) z)
 //!               b11 = -c31 (y ((4 (z z) - x x) - y y))
 //!               b12 = c30 (z ((2 (z z) - 3 (x x)) - 3 (y y)))

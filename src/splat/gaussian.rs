@@ -37,6 +37,7 @@
 //!   X = cx + fx (x/t)               Y = cy + fy (y/t)             not clamped
 //! ```
 //!
+//! The constants 1.3 and 0.3 of [`Clamp`] and 0.000025 of [`Compensation`] are rounded to `f32`.
 //! Orthographic: jx = fx, jy = fy, jxz = jyz = 0, X = cx + fx x, Y = cy + fy y.
 //!
 //! **Ellipse**, in px^2:

@@ -12,6 +12,7 @@
 //! - [`single_pass`]: Algorithm 1 by brute force, and where it equals the 2+1-pass method.
 //! - [`transparent`]: Algorithms 2 and 3 by every surfel in every group, environments and
 //!   refraction by angles.
+//! - [`gaussians`]: 3D Gaussian splats by the images of their axes, harmonics by Legendre functions.
 //! - [`peeling`]: depth peeling, all fragments of a pixel in one band of depth after the other.
 //! - [`pyramid`]: the pull-push pyramid, a cell at a time, over numbers that bound their rounding.
 //! - [`template`]: reconstruction with templates, where a pixel asks every centre of every level.
@@ -52,6 +53,7 @@ mod counter;
 mod deferred;
 mod detail;
 mod ewa;
+mod gaussians;
 mod kit;
 mod layered;
 mod peeling;

@@ -18,7 +18,7 @@ pub(crate) struct GaussianPixel<R> {
     pub(crate) blend: Under<R>,
     /// The sum of weight times depth.
     pub(crate) moment: R,
-    /// The mean depth by weight; +inf where nothing is drawn.
+    /// The mean depth by weight; +inf where no weight is above 0.
     pub(crate) expected: R,
     /// The depth of the last fragment before which T > 1/2; +inf where nothing is drawn.
     pub(crate) median: R,

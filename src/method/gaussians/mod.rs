@@ -15,15 +15,18 @@
 //!    - Colour: [`crate::shade::harmonics`] up to [`Settings::degree`] in the unit direction from
 //!      the camera's centre to the splat's, in the world. The camera's centre is
 //!      [`Camera::eye`](crate::scene::Camera::eye), rounded to `f32` once. Under an orthographic
-//!      camera the direction is that of the rays, (-r2) of the view matrix. The colour is bounded
-//!      ([`ColorBounds`]), then put into the space of blending ([`BlendSpace`]).
+//!      camera the direction is that of the rays, -r2 of the view matrix, which is not divided by
+//!      its length again. The colour is bounded ([`ColorBounds`]), then put into the space of
+//!      blending ([`BlendSpace`]). A surfel without a colour has
+//!      [`Phong::color`](crate::scene::Phong::color).
 //!    - o = opacity times compensation.
 //!    - Bounds, in f64 from the numbers of this arithmetic: the pixels whose centres are within e of
 //!      the centre, with e as [`Support`] says; under `ellipse` e = k sqrt(Vxx) (1 + 2^-10) + 1 px, and
 //!      so for y. If [`Settings::least_alpha`] is above 0, also within e = sqrt(2 ln(o / least) Vxx) (1 + 2^-10) + 1, beyond which alpha is less; there are none if o is less than it. The 1 and
 //!      the factor exceed what rounding moves the rim of a splat that is not extremely thin.
 //!      `Decided:` a pixel out of bounds has no fragment, even where its rounded q says otherwise.
-//! 2. **Order** ([`Order`]): ascending, ties to the lower index.
+//! 2. **Order** ([`Order`]): ascending, ties to the lower index. The depth of a fragment is t of the
+//!    centre of its splat, whatever the order; only under `pixel` it is the depth along the ray.
 //! 3. **Blending**, at each pixel from front to back with T = 1 at first. Of each splat whose bounds
 //!    hold the pixel:
 //!    - q/2, see [`power`](crate::splat::gaussian::ProjectedGaussian::power). A fragment with q/2 < 0
@@ -31,9 +34,10 @@
 //!    - alpha = the lesser of o e^(-q/2) and [`Settings::most_alpha`]. A fragment is skipped unless
 //!      alpha >= [`Settings::least_alpha`].
 //!    - T' = T (1 - alpha). If T' < [`Settings::stop`] (or T' = it, with [`Settings::stop_at`]), the
-//!      pixel is done, without this fragment.
+//!      pixel is done, without this fragment. A stop of 0 never ends a pixel, not even where T' is 0.
 //!    - Else [`crate::composite::under`]: C += (T alpha) c, A += T alpha, T = T'. The other planes
-//!      follow, see [`planes`](mod@crate::method::planes).
+//!      follow, see [`planes`](mod@crate::method::planes). A fragment with alpha = 0 that is not
+//!      skipped counts as drawn. Where all weights are 0, the expected depth is +inf.
 //! 4. **Display.** An environment is seen behind the layers: its light, in the space of blending,
 //!    times T is added to C, and the opacity becomes 1. Without one the opacity is 1 - T. If colours
 //!    were blended in sRGB, C is decoded: the plane of the picture holds linear light over black.

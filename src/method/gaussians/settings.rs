@@ -25,7 +25,8 @@ pub struct Settings {
     pub most_alpha: f32,
     /// Blending ends before the fragment that takes the transmittance below this: 0 to 1.
     pub stop: f32,
-    /// Whether it also ends where the transmittance becomes [`Settings::stop`] itself.
+    /// Whether it also ends where the transmittance becomes [`Settings::stop`] itself, if that is not
+    /// 0.
     pub stop_at: bool,
     /// The space in which colours are blended.
     pub blend: BlendSpace,
@@ -50,7 +51,8 @@ pub enum Order {
     /// By the distance of the centre from the camera's centre, one order for the picture. Under an
     /// orthographic camera by t.
     Distance,
-    /// By the distance in 65,536 equal steps from the least to the greatest of the splats drawn.
+    /// By the distance in 65,536 equal steps from the least to the greatest of the splats drawn:
+    /// those that are neither behind nor degenerate, and whose bounds hold a pixel of the picture.
     Steps,
     /// At each pixel by the depth at which the density along its ray is greatest.
     Pixel,
@@ -64,10 +66,13 @@ pub enum Support {
     /// Pixels with q <= k k.
     Ellipse,
     /// All tiles of 16 x 16 pixels that a square touches, as in the original program: e = ceil(k
-    /// sqrt(the greater eigenvalue of V)).
+    /// sqrt(the greater eigenvalue of V)). Tile i has the columns 16 i <= x < 16 i + 16, and the
+    /// square goes from X - e to X + e, and so for rows. `Departs:` the original program computes the
+    /// eigenvalue as m + sqrt(max(0.1, m m - det V)) with m = (Vxx + Vyy) / 2, and draws tiles
+    /// floor((X - 1/2 - e) / 16) to floor((X + e - 3/2) / 16).
     Tiles,
     /// All tiles of 16 x 16 pixels that a box touches, as in gsplat: ex = ceil(k' sqrt(Vxx)), ey =
-    /// ceil(k' sqrt(Vyy)) with k' = sqrt(2 ln(255 opacity)), at most k.
+    /// ceil(k' sqrt(Vyy)) with k' = sqrt(2 ln(255 o)), at most k, and o after compensation.
     Boxes,
 }
 

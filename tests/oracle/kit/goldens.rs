@@ -6,7 +6,7 @@ use crate::oracle::kit::case::Case;
 use splatref::frame::Exec;
 use splatref::io::scene_file::SceneFile;
 use splatref::method::{
-    Method, Session, blue, deferred, ewa, peeling, pyramid, single_pass, template,
+    Method, Session, blue, deferred, ewa, gaussians, peeling, pyramid, single_pass, template,
 };
 use splatref::scene::Scene;
 use std::collections::BTreeSet;
@@ -57,6 +57,15 @@ taken! {
         "ewa_raycast_sheets",
     ];
     deferred::Settings, Deferred: ["gbp04_detail", "gbp04_ladder", "gbp04_motion", "gbp04_without_second"];
+    gaussians::Settings, Gaussians: [
+        "gaussians_discs",
+        "gaussians_exact",
+        "gaussians_gsplat",
+        "gaussians_inria",
+        "gaussians_khr",
+        "gaussians_mip_f64",
+        "gaussians_steps",
+    ];
     single_pass::Settings, SinglePass: [
         "zp06_identity_sphere",
         "zp06_ladder",
