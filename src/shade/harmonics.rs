@@ -35,7 +35,7 @@ pub fn basis<R: Real>(degree: u32, direction: Vector3<R>) -> [R; MAX_COEFFICIENT
     let mut b = [R::ZERO; MAX_COEFFICIENTS];
     let c = R::from_f32;
     let Vector3 { x, y, z } = direction;
-    b[0] = c(0.282_094_79);
+    b[0] = c(0.282_094_8);
     if degree >= 1 {
         let c1 = c(0.488_602_51);
         b[1] = -(c1 * y);
@@ -45,7 +45,7 @@ pub fn basis<R: Real>(degree: u32, direction: Vector3<R>) -> [R; MAX_COEFFICIENT
     let (xx, yy, zz) = (x * x, y * y, z * z);
     let two = c(2.0);
     if degree >= 2 {
-        let c2 = c(1.092_548_4);
+        let c2 = c(1.092_548_5);
         b[4] = c2 * (x * y);
         b[5] = -(c2 * (y * z));
         b[6] = c(0.315_391_57) * ((two * zz - xx) - yy);
@@ -174,6 +174,6 @@ mod tests {
     fn coefficients_beyond_the_degree_are_not_read() {
         let given = [glam::Vec3::ONE; 16];
         let grey = color(0, &given, direction(1));
-        assert_eq!(grey, [f64::from(0.282_094_79_f32) + 0.5; 3]);
+        assert_eq!(grey, [f64::from(0.282_094_8_f32) + 0.5; 3]);
     }
 }

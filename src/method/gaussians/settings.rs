@@ -66,10 +66,9 @@ pub enum Support {
     /// Pixels with q <= k k.
     Ellipse,
     /// All tiles of 16 x 16 pixels that a square touches, as in the original program: e = ceil(k
-    /// sqrt(the greater eigenvalue of V)). Tile i has the columns 16 i <= x < 16 i + 16, and the
-    /// square goes from X - e to X + e, and so for rows. `Departs:` the original program computes the
-    /// eigenvalue as m + sqrt(max(0.1, m m - det V)) with m = (Vxx + Vyy) / 2, and draws tiles
-    /// floor((X - 1/2 - e) / 16) to floor((X + e - 3/2) / 16).
+    /// sqrt(m + sqrt(max(0.1, m m - det V)))) with m = (Vxx + Vyy) / 2, and tiles floor((X - 1/2 - e)
+    /// / 16) to floor((X + e - 3/2) / 16). Tile i has the columns 16 i <= x < 16 i + 16, and so for
+    /// rows.
     Tiles,
     /// All tiles of 16 x 16 pixels that a box touches, as in gsplat: ex = ceil(k' sqrt(Vxx)), ey =
     /// ceil(k' sqrt(Vyy)) with k' = sqrt(2 ln(255 o)), at most k, and o after compensation.

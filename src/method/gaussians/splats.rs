@@ -158,7 +158,7 @@ impl<'a, R: Real> Source<'a, R> {
         let least = f64::from(self.settings.least_alpha);
         let wide = |q: f64| {
             let side = |v: f64| (q * v).sqrt() * (1.0 + 1.0 / 1024.0) + 1.0;
-            rect(center, [side(xx), side(yy)], self.size, 1)
+            rect(center, [side(xx), side(yy)], self.size, Cover::Centers)
         };
         // A fragment beyond this has less than the least alpha.
         let dense = match (alpha < least, least > 0.0) {
@@ -174,13 +174,18 @@ impl<'a, R: Real> Source<'a, R> {
                 let square = middle * middle - (xx * yy - xy * xy);
                 let square = if square < 0.1 { 0.1 } else { square };
                 let side = (k * (middle + square.sqrt()).sqrt()).ceil();
-                rect(center, [side, side], self.size, 16)
+                rect(center, [side, side], self.size, Cover::Square)
             }
             Support::Boxes if alpha * 255.0 < 1.0 => Rect::default(),
             Support::Boxes => {
                 let own = (2.0 * elementary::ln(alpha * 255.0)).sqrt();
                 let k = if own < k { own } else { k };
-                rect(center, [(k * xx.sqrt()).ceil(), (k * yy.sqrt()).ceil()], self.size, 16)
+                rect(
+                    center,
+                    [(k * xx.sqrt()).ceil(), (k * yy.sqrt()).ceil()],
+                    self.size,
+                    Cover::Box,
+                )
             }
         };
         support.intersection(&dense)
@@ -197,18 +202,33 @@ pub(crate) fn count(scene: &Scene) -> usize {
     scene.gaussians.as_ref().map_or(scene.surfels.len(), Gaussians::len)
 }
 
-/// The pixels of a picture within an extent of a range of centres, (least, greatest) for x and y. In
-/// tiles of 1 pixel, those whose centres are within it. In larger tiles, all pixels of the tiles
-/// that it touches.
-fn rect(center: [[f64; 2]; 2], extent: [f64; 2], size: [u32; 2], tile: u32) -> Rect {
+/// The side of a tile of the original program and of gsplat, in px.
+const TILE: f64 = 16.0;
+
+/// The pixels that an extent covers.
+#[derive(Clone, Copy)]
+enum Cover {
+    /// Those whose centres are within it.
+    Centers,
+    /// The tiles that it touches, as gsplat counts them.
+    Box,
+    /// The tiles that it touches, as the original program counts them.
+    Square,
+}
+
+/// The pixels of a picture that an extent covers, around a range of centres: (least, greatest) for x
+/// and y.
+fn rect(center: [[f64; 2]; 2], extent: [f64; 2], size: [u32; 2], cover: Cover) -> Rect {
     let side = |axis: usize| {
         let [low, high] = [center[axis][0] - extent[axis], center[axis][1] + extent[axis]];
         let most = f64::from(size[axis]);
-        let (first, end) = if tile == 1 {
-            ((low - 0.5).ceil(), (high - 0.5).floor() + 1.0)
-        } else {
-            let wide = f64::from(tile);
-            ((low / wide).floor() * wide, (high / wide).ceil() * wide)
+        let (first, end) = match cover {
+            Cover::Centers => ((low - 0.5).ceil(), (high - 0.5).floor() + 1.0),
+            Cover::Box => ((low / TILE).floor() * TILE, (high / TILE).ceil() * TILE),
+            Cover::Square => {
+                let [low, high] = [low - 0.5, high - 0.5 + (TILE - 1.0)];
+                ((low / TILE).floor() * TILE, (high / TILE).floor() * TILE)
+            }
         };
         // A comparison with NaN is false, and a cast saturates.
         if first < most && end > 0.0 { [first as u32, end.at_most(most) as u32] } else { [0, 0] }

@@ -45,7 +45,8 @@ impl Model<'_> {
             Support::Boxes => along((2.0 * (255.0 * o.value).ln()).sqrt().min(k), true),
             Support::Tiles => {
                 let half = (xx.value - yy.value) / 2.0;
-                let greater = (xx.value + yy.value) / 2.0 + half.hypot(v[1].value);
+                let apart = half.hypot(v[1].value).max(0.1_f64.sqrt());
+                let greater = (xx.value + yy.value) / 2.0 + apart;
                 let error = xx.condition + yy.condition + det.condition / greater;
                 let side = both(k * greater.sqrt(), k * error / greater.sqrt(), true);
                 [side, side]
@@ -86,7 +87,6 @@ impl Model<'_> {
         ellipse: (&[Conditioned; 3], Conditioned, Conditioned),
     ) -> [Bounds; 2] {
         let extents = self.extents(support, ellipse);
-        let tiled = matches!(support, Support::Tiles | Support::Boxes);
         let size = [self.camera.width, self.camera.height].map(f64::from);
         [1, 0].map(|wide| {
             Bounds([0, 1].map(|a| {
@@ -96,7 +96,10 @@ impl Model<'_> {
                 let (low, high) = (at - e - slack, at + e + slack);
                 let [first, last] = if e < 0.0 {
                     [0.0, -1.0]
-                } else if tiled {
+                } else if support == Support::Tiles {
+                    let [low, high] = [low - 0.5, high - 1.5];
+                    [(low / 16.0).floor() * 16.0, (high / 16.0).floor() * 16.0 + 15.0]
+                } else if support == Support::Boxes {
                     [(low / 16.0).floor() * 16.0, (high / 16.0).floor() * 16.0 + 15.0]
                 } else {
                     [(low - 0.5).ceil(), (high - 0.5).floor()]
