@@ -190,6 +190,19 @@ class _Points:
     tangents: Optional[Array]
 
 
+@dataclass
+class _Splats:
+    """What the Rust side reads of arrays of Gaussians."""
+
+    positions: Array
+    scales: Array
+    rotations: Array
+    opacities: Array
+    harmonics: Array
+    degree: int
+    linear: bool
+
+
 class Scene:
     """Surfels, lights and an environment.
 
@@ -263,6 +276,50 @@ class Scene:
             self._rust = _splatref.Scene.arrays(how, text, shown == [], name, points)
 
     @classmethod
+    def gaussians(
+        cls,
+        positions: object,
+        *,
+        scales: object,
+        rotations: object,
+        opacities: object,
+        harmonics: object,
+        linear: bool = False,
+        environment: Optional[Path] = None,
+        name: str = "arrays",
+        progress: Optional[bool] = None,
+    ) -> Scene:
+        """3D Gaussians from arrays, for the method "gaussians"; all of n Gaussians.
+
+        positions: (n, 3) in world units.
+        scales: (n, 3), standard deviations, not logarithms.
+        rotations: (n, 4), quaternions x, y, z, w of any length. From w, x, y, z: `quats[:, [1, 2, 3, 0]]`.
+        opacities: (n,) from 0 to 1, not logits.
+        harmonics: (n, k, 3), the k = 1, 4, 9 or 16 coefficients of degree 0 to 3.
+        linear: whether colours are linear light; else they are sRGB, as programs train them.
+        environment, name: as for surfels.
+
+        Raises `ValueError`, which names the array, and `MemoryError`.
+        """
+        p = float32("positions", positions, (None, 3))
+        n = len(p)
+        h = float32("harmonics", harmonics, (n, None, 3))
+        if n == 0 or h.shape[1] not in (1, 4, 9, 16):
+            raise ValueError(f"harmonics: an array with the shape {h.shape}; give 1, 4, 9 or 16 coefficients each")
+        splats = _Splats(
+            p,
+            float32("scales", scales, (n, 3)),
+            float32("rotations", rotations, (n, 4)),
+            float32("opacities", opacities, (n,)),
+            h.reshape(-1, 3),
+            (1, 4, 9, 16).index(h.shape[1]),
+            linear,
+        )
+        text = _surroundings([], None, environment)
+        with calling(progress) as how:
+            return cls._of(_splatref.Scene.of_gaussians(how, text, name, splats))
+
+    @classmethod
     def open(
         cls,
         name: Path,
@@ -304,7 +361,7 @@ class Scene:
 
     @property
     def count(self) -> int:
-        """The number of surfels; of a scene of objects, those of all objects."""
+        """The number of surfels or Gaussians; of a scene of objects, those of all objects."""
         return int(self._rust.surfels)
 
     @property

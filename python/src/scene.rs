@@ -6,10 +6,12 @@ use crate::choose::{parsed, read_views};
 use crate::error::raised;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
+use splatref::frame::Exec;
 use splatref::io::environment;
 use splatref::io::scene_file::{EnvironmentChoice, Loaded, SceneFile};
 use splatref::memory;
-use splatref::scene::{self, Cloud, Environment, Groups};
+use splatref::scene::gaussians::{Encoding, coefficients};
+use splatref::scene::{self, Cloud, Environment, GaussianArrays, Gaussians, Groups};
 use splatref::source::derive::{self, Derive};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex};
@@ -81,12 +83,54 @@ impl Points<'_> {
     }
 }
 
+/// The arrays of Gaussians.
+#[derive(FromPyObject)]
+pub(crate) struct Splats<'py> {
+    positions: PyReadonlyArray2<'py, f32>,
+    scales: PyReadonlyArray2<'py, f32>,
+    rotations: PyReadonlyArray2<'py, f32>,
+    opacities: PyReadonlyArray1<'py, f32>,
+    harmonics: PyReadonlyArray2<'py, f32>,
+    degree: u32,
+    linear: bool,
+}
+
+impl Splats<'_> {
+    /// Copies the arrays, the one copy that is made. Coefficients stand one below the other.
+    fn arrays(&self) -> PyResult<GaussianArrays> {
+        let count = self.positions.shape()[0] as u64;
+        let each = 2 * (12 + 12 + 16 + 4 + 12 * coefficients(self.degree) as u64);
+        let what = || format!("a scene of {count} Gaussians");
+        memory::ask(count.saturating_mul(each), what).map_err(raised)?;
+        check(&self.rotations)?;
+        let rotations = self.rotations.as_array();
+        Ok(GaussianArrays {
+            position: vectors(&self.positions)?,
+            scale: vectors(&self.scales)?,
+            rotation: rotations.rows().into_iter().map(|q| [q[0], q[1], q[2], q[3]]).collect(),
+            opacity: numbers(&self.opacities)?,
+            degree: self.degree,
+            harmonics: vectors(&self.harmonics)?,
+            encoding: if self.linear { Encoding::Linear } else { Encoding::Srgb },
+        })
+    }
+}
+
 fn of_file(py: Python<'_>, how: &How, file: SceneFile) -> PyResult<Scene> {
     let loaded = call(py, how, |exec, show| file.load_outlined(exec, show))?;
     let dropped = loaded.dropped.reasons();
     let warnings = loaded.warnings.clone();
     let content = Arc::new(Content::File(Box::new(loaded)));
     Ok(Scene { file, content, groups: Mutex::new(None), warnings, dropped })
+}
+
+/// The environment that a scene file chooses.
+fn environment(file: &SceneFile, exec: &Exec) -> splatref::Result<Option<Environment>> {
+    match &file.environment {
+        None => Ok(None),
+        Some(EnvironmentChoice::Sky) => Ok(Some(Environment::Sky)),
+        Some(EnvironmentChoice::File(path)) => environment::read(path, exec).map(Some),
+    }
 }
 
 #[pymethods]
@@ -132,11 +176,7 @@ impl Scene {
         drop(points);
         let (scene, dropped) = call(py, &how, |exec, show| {
             let (surfels, derived) = derive::surfels(cloud, &Derive::default(), exec, show)?;
-            let environment = match &file.environment {
-                None => None,
-                Some(EnvironmentChoice::Sky) => Some(Environment::Sky),
-                Some(EnvironmentChoice::File(path)) => Some(environment::read(path, exec)?),
-            };
+            let environment = environment(&file, exec)?;
             let scene = scene::Scene {
                 lights: file.lights.clone(),
                 material: file.material,
@@ -149,17 +189,45 @@ impl Scene {
         Ok(Self { file, content, groups: Mutex::new(None), warnings: Vec::new(), dropped })
     }
 
+    /// Takes arrays of Gaussians. `text` has the environment as a scene file.
+    #[staticmethod]
+    fn of_gaussians(
+        py: Python<'_>,
+        how: How,
+        text: &str,
+        name: String,
+        splats: Splats<'_>,
+    ) -> PyResult<Self> {
+        let mut file = parsed(text, &PathBuf::new())?;
+        file.models.clear();
+        file.lights.clear();
+        file.name = name;
+        let arrays = splats.arrays()?;
+        drop(splats);
+        let (scene, dropped) = call(py, &how, |exec, _| {
+            let (gaussians, dropped) = Gaussians::new(arrays)?;
+            let environment = environment(&file, exec)?;
+            let scene =
+                scene::Scene { environment, ..scene::Scene::of_gaussians(&file.name, gaussians) };
+            let what = "Gaussians that cannot be drawn";
+            Ok((scene, if dropped == 0 { String::new() } else { format!("{dropped} {what}") }))
+        })?;
+        let content = Arc::new(Content::Arrays(Box::new(scene)));
+        Ok(Self { file, content, groups: Mutex::new(None), warnings: Vec::new(), dropped })
+    }
+
     #[getter]
     fn name(&self) -> &str {
         &self.file.name
     }
 
-    /// The number of surfels; of a scene of objects, those of all objects.
+    /// The number of surfels or Gaussians; of a scene of objects, those of all objects.
     #[getter]
     fn surfels(&self) -> u64 {
         let scene = self.content.scene();
         let of_objects = scene.objects.as_ref().map(scene::Objects::drawn_total);
-        of_objects.unwrap_or(scene.surfels.len() as u64)
+        let gaussians = scene.gaussians.as_ref().map(|gaussians| gaussians.len() as u64);
+        of_objects.or(gaussians).unwrap_or(scene.surfels.len() as u64)
     }
 
     /// The number of triangles and lines.

@@ -189,3 +189,41 @@ def test_a_scene_without_lights_shows_its_colours() -> None:
     assert np.allclose(found["RGB"][16, 24], 0.25)
     sky = sr.render(sr.Scene(**a, environment="sky", material={"specular": 0}), CAMERA)
     assert (sky["A"] == 1).all()
+
+
+def gaussians(**other: object) -> sr.Scene:
+    i = np.arange(40, dtype=np.float32)
+    arrays: dict[str, object] = {
+        "scales": np.full((40, 3), 0.125, np.float32),
+        "rotations": np.tile(np.array([0, 0, 0.5, 1], np.float32), (40, 1)),
+        "opacities": np.full(40, 0.5, np.float32),
+        "harmonics": np.full((40, 4, 3), 0.25, np.float32),
+        **other,
+    }
+    positions = np.stack([i % 8 - 3.5, i // 8 - 2, -i / 64], axis=1)
+    return sr.Scene.gaussians(positions, **arrays)
+
+
+def test_gaussians_are_drawn_and_judged() -> None:
+    camera = sr.Camera(eye=(0, 0, 9), target=(0, 0, 0), size=(48, 32))
+    scene = gaussians()
+    assert scene.count == 40
+    picture = sr.render(scene, camera, method="gaussians", preset="khr")
+    assert set(np.unique(picture["id"])) >= {0, 39}
+    assert sr.verify(scene, camera, dict(picture), method="gaussians", preset="khr").outcome == "right"
+    wrong = sr.verify(scene, camera, dict(picture), method="gaussians", preset="khr", low_pass=0.1)
+    assert wrong.outcome == "wrong"
+    with pytest.raises(ValueError, match="use method gaussians"):
+        sr.render(scene, camera, method="ewa")
+
+
+def test_arrays_of_gaussians_that_do_not_fit_are_named() -> None:
+    with pytest.raises(ValueError, match="scales: .*give"):
+        gaussians(scales=np.ones((39, 3), np.float32))
+    with pytest.raises(ValueError, match="harmonics: .*1, 4, 9 or 16"):
+        gaussians(harmonics=np.ones((40, 5, 3), np.float32))
+    with pytest.raises(ValueError, match="none of its 40 Gaussians"):
+        gaussians(opacities=np.full(40, 2, np.float32))
+    some = np.full(40, 0.5, np.float32)
+    some[3] = np.nan
+    assert "1 Gaussians" in gaussians(opacities=some).dropped
