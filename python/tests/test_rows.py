@@ -75,7 +75,7 @@ def test_what_is_out_of_range_says_the_same_everywhere(row: dict, program: Path,
 
 
 def test_methods_and_planes_are_listed() -> None:
-    assert list(sr.methods.names())[0] == "ewa" and len(sr.methods.names()) == 9
+    assert list(sr.methods.names())[0] == "ewa" and len(sr.methods.names()) == 10
     planes = sr.methods.planes("ewa")
     assert ("visibility", "visibility.Z") in [(row.stage, row.name) for row in planes]
     assert "RGB" in [row.name for row in planes]
