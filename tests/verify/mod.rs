@@ -13,6 +13,7 @@
 //! - [`own_pictures`]: no verdict accuses the crate, whatever the settings are.
 //! - [`shares`]: no share of pixels is above 100 %.
 //! - [`suite`]: a slightly wrong limit that leans decisions to one side, over several scenes.
+//! - [`gaussians`]: the same tests for the method `gaussians`.
 //! - [`groups`]: the same tests for the method `single-pass`.
 //! - [`image_space`]: the same tests for the methods `template` and `pyramid`.
 
@@ -24,6 +25,7 @@ mod client_is_right;
 #[cfg(feature = "cli")]
 mod conformance;
 mod empty_pixels;
+mod gaussians;
 mod groups;
 mod image_space;
 mod ladder;

@@ -6,7 +6,7 @@ use crate::error::Result;
 use crate::method::{Method, Session};
 use crate::number::MapInline;
 use crate::number::srgb;
-use crate::scene::{Camera, Scene};
+use crate::scene::{Camera, GaussianArrays, Gaussians, Scene};
 use crate::verdict::Verdict;
 use crate::verdict::client::{Band, Client, Rounding, Storage, Ties};
 use crate::verdict::supposed::Supposed;
@@ -18,6 +18,8 @@ pub(super) enum Change {
     Camera(Camera),
     /// Another scene of as many surfels, and the method for it.
     Scene(Box<Scene>, Method),
+    /// Other Gaussians. The scene is made when it is tried, because Gaussians are large.
+    Gaussians(Box<dyn Fn(&mut GaussianArrays)>),
     /// Another scene and camera for the projection alone.
     Drawn(Arc<(Scene, Camera)>),
     Supposed(Supposed),
@@ -75,6 +77,15 @@ impl Change {
             Self::Camera(camera) => judge(session.method(), camera),
             Self::Scene(scene, method) => {
                 judged_as(&session.beside(scene)?, method, camera, client, budget)
+            }
+            Self::Gaussians(change) => {
+                let scene = session.scene();
+                let Some(gaussians) = &scene.gaussians else { return Ok(None) };
+                let mut arrays = gaussians.clone().into_arrays();
+                change(&mut arrays);
+                let gaussians = Some(Gaussians::new(arrays)?.0);
+                let scene = Scene { gaussians, ..scene.clone() };
+                judged_as(&session.beside(&scene)?, session.method(), camera, client, budget)
             }
             Self::Drawn(drawn) => as_if(Client { drawn: Some(drawn.clone()), ..client.clone() }),
             Self::Supposed(supposed) => as_if(Client { supposed: *supposed, ..client.clone() }),

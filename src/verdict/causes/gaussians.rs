@@ -1,14 +1,15 @@
 //! The mistakes of renderers of Gaussian splats.
 
+mod scenes;
+
 use super::change::Change;
 use super::{Case, Mistakes};
+use crate::method::Method;
 use crate::method::gaussians::{BlendSpace, ColorBounds, Order, Settings, Support};
-use crate::method::{Method, Session};
-use crate::scene::gaussians::{GaussianArrays, Gaussians, coefficients};
-use crate::scene::{Camera, Scene};
+use crate::number::MapInline;
+use crate::scene::Camera;
 use crate::splat::gaussian::{Clamp, Compensation, GaussianKernel};
 use crate::verdict::supposed::Supposed;
-use glam::Vec3;
 
 /// All mistakes that are tried, whatever stage is wrong first: nearly all show in both.
 pub(super) fn mistakes(case: &Case<'_, '_>, settings: &Settings) -> Mistakes {
@@ -19,12 +20,25 @@ pub(super) fn mistakes(case: &Case<'_, '_>, settings: &Settings) -> Mistakes {
         ("sRGB twice: an encoded picture is encoded again".into(), Change::Decoded(2)),
     ];
     all.extend(moved_by_half(camera));
+    all.extend(of_lens(camera));
     all.extend(of_settings(settings));
     all.extend(
         OTHER_RULES.iter().map(|(rule, what)| ((*what).to_owned(), Change::Supposed(*rule))),
     );
-    all.extend(scenes(session));
+    all.extend(scenes::mistakes(session, camera));
     all
+}
+
+/// Numbers of the lens that renderers ignore.
+fn of_lens(camera: &Camera) -> Mistakes {
+    let [cx, cy] = [camera.width, camera.height].map_inline(|side| 0.5 * side as f32);
+    let all = [
+        ("the principal point is the middle of the picture", Camera { cx, cy, ..*camera }),
+        ("fx is taken for fy", Camera { fy: camera.fx, ..*camera }),
+        ("fy is taken for fx", Camera { fx: camera.fy, ..*camera }),
+    ];
+    let other = all.into_iter().filter(|(_, other)| other != camera);
+    other.map(|(what, other)| (what.to_owned(), Change::Camera(other))).collect()
 }
 
 /// The picture moved by half a pixel.
@@ -40,7 +54,7 @@ fn moved_by_half(camera: &Camera) -> Mistakes {
 }
 
 /// Rules in place of the method's own.
-const OTHER_RULES: [(Supposed, &str); 8] = [
+const OTHER_RULES: [(Supposed, &str); 11] = [
     (
         Supposed::Mirrored,
         "ellipses lean to the wrong side: a quad is mirrored, as where y points up",
@@ -52,6 +66,15 @@ const OTHER_RULES: [(Supposed, &str); 8] = [
     (Supposed::ColorsTwice, "premultiplied twice: colours are multiplied by alpha once too often"),
     (Supposed::BackgroundTwice, "the background is added once too often"),
     (Supposed::HalfCovariance, "covariances in half floats"),
+    (Supposed::HigherIndexFirst, "ties: of splats with the same key, the higher index is in front"),
+    (
+        Supposed::NearIgnored,
+        "splats nearer than the near plane are drawn, and those behind the camera",
+    ),
+    (
+        Supposed::StopAfter,
+        "blending ends after the fragment that takes the transmittance below the stop, not before it",
+    ),
 ];
 
 /// The settings, each at other values that programs have.
@@ -112,11 +135,9 @@ fn decisions(own: &Settings, add: &mut dyn FnMut(String, Settings)) {
         let what = format!("alpha goes up to {most_alpha}, not to {}", own.most_alpha);
         add(what, Settings { most_alpha, ..*own });
     }
-    for least_alpha in [0.0, 1.0 / 1024.0, 1.0 / 255.0] {
-        let what = format!(
-            "fragments of less alpha than {least_alpha} are skipped, not {}",
-            own.least_alpha
-        );
+    for least_alpha in [0.0, 1.0 / 1024.0, 1.0 / 256.0, 1.0 / 255.0] {
+        let right = own.least_alpha;
+        let what = format!("fragments are skipped below an alpha of {least_alpha}, not {right}");
         add(what, Settings { least_alpha, ..*own });
     }
     for (support, cutoff, what) in [
@@ -163,86 +184,4 @@ fn colors(own: &Settings, add: &mut dyn FnMut(String, Settings)) {
     ] {
         add(what.into(), Settings { blend, ..*own });
     }
-}
-
-/// A change of the arrays of Gaussians.
-type OtherArrays = fn(&mut GaussianArrays);
-
-/// Mistakes of readers and shaders, each as another scene.
-const OTHER_SCENES: [(OtherArrays, &str); 8] = [
-    (
-        |g| g.rotation.iter_mut().for_each(|q| *q = [q[3], q[0], q[1], q[2]]),
-        "the parts of quaternions are in another order: w is read where x is",
-    ),
-    (
-        |g| g.rotation.iter_mut().for_each(|q| *q = [q[1], q[2], q[3], q[0]]),
-        "the parts of quaternions are in another order: x is read where w is",
-    ),
-    (
-        |g| g.rotation.iter_mut().for_each(|q| q[3] = -q[3]),
-        "rotations are reversed: the covariance is transposed, or of another handedness",
-    ),
-    (
-        |g| g.scale.iter_mut().for_each(|s| *s = Vec3::new(s.y, s.x, s.z)),
-        "the scales of x and y are exchanged",
-    ),
-    (|g| of_degrees(g, |degree| degree % 2 == 1), "the direction of the harmonics is reversed"),
-    (
-        |g| each_splat(g, |all| all.swap(1, 3)),
-        "the coefficients of degree 1 are in the order x, z, y",
-    ),
-    (|g| each_splat(g, mixed), "the coefficients of colours are mixed: f_rest is by channel"),
-    (drawn_again, "splat 0 is drawn once more, as where a last group of threads is not full"),
-];
-
-/// Every scene with one of these mistakes.
-fn scenes(session: &Session<'_>) -> Mistakes {
-    let scene = session.scene();
-    let Some(gaussians) = &scene.gaussians else { return Mistakes::new() };
-    let changed = |(change, what): &(OtherArrays, &str)| {
-        let mut arrays = gaussians.clone().into_arrays();
-        change(&mut arrays);
-        let gaussians = Gaussians::new(arrays).ok()?.0;
-        let scene = Scene { gaussians: Some(gaussians), ..scene.clone() };
-        Some(((*what).to_owned(), Change::Scene(Box::new(scene), *session.method())))
-    };
-    OTHER_SCENES.iter().filter_map(changed).collect()
-}
-
-fn each_splat(g: &mut GaussianArrays, change: fn(&mut [Vec3])) {
-    let each = coefficients(g.degree);
-    if each > 1 {
-        g.harmonics.chunks_exact_mut(each).for_each(change);
-    }
-}
-
-/// Reverses the coefficients of some degrees.
-fn of_degrees(g: &mut GaussianArrays, which: fn(usize) -> bool) {
-    let each = coefficients(g.degree);
-    for all in g.harmonics.chunks_exact_mut(each) {
-        for (i, coefficient) in all.iter_mut().enumerate() {
-            if which(i.isqrt()) {
-                *coefficient = -*coefficient;
-            }
-        }
-    }
-}
-
-/// Reads coefficients that are stored by channel as if they were stored by coefficient.
-fn mixed(all: &mut [Vec3]) {
-    let rest = all.len() - 1;
-    let stored: Vec<f32> = (0..3).flat_map(|c| all[1..].iter().map(move |v| v[c])).collect();
-    for i in 0..rest {
-        all[1 + i] = Vec3::new(stored[3 * i], stored[3 * i + 1], stored[3 * i + 2]);
-    }
-}
-
-/// Adds the first splat once more.
-fn drawn_again(g: &mut GaussianArrays) {
-    let each = coefficients(g.degree);
-    g.position.push(g.position[0]);
-    g.scale.push(g.scale[0]);
-    g.rotation.push(g.rotation[0]);
-    g.opacity.push(g.opacity[0]);
-    g.harmonics.extend_from_within(..each);
 }

@@ -10,6 +10,7 @@ use crate::splat::gaussian::{GaussianShape, ProjectedGaussian};
 use crate::verdict::checks::widened;
 use crate::verdict::client::Storage;
 use crate::verdict::supposed::Supposed;
+use std::cmp::Ordering;
 
 /// A splat that may be drawn.
 pub(super) struct PossibleSplat<P: Profile> {
@@ -49,10 +50,9 @@ impl<P: Profile> PossibleSplats<P> {
         if supposed == Supposed::BackToFront {
             all.iter_mut().for_each(|splat| splat.splat.key = -splat.splat.key);
         }
-        let key = |splat: &PossibleSplat<P>| (splat.splat.key.middle, splat.splat.index);
         all.sort_by(|a, b| {
-            let ((a, i), (b, j)) = (key(a), key(b));
-            a.total_cmp(&b).then(i.cmp(&j))
+            let by_key = a.splat.key.middle.total_cmp(&b.splat.key.middle);
+            by_key.then(tie(supposed, a.splat.index, b.splat.index))
         });
         let bins = Bins::new(&job.grid(), all.len(), |i| all[i].splat.bounds);
         Self { all, bins }
@@ -81,7 +81,11 @@ fn possible<P: Profile>(
     let Projected { shape, on_screen, color, alpha, distance, .. } = projected;
     let on_screen = supposed_ellipse(on_screen, supposed);
     let place = on_screen.place;
-    let (behind, degenerate) = (source.projector.behind(place), on_screen.degenerate());
+    let behind = match supposed {
+        Supposed::NearIgnored => false.into(),
+        _ => source.projector.behind(place),
+    };
+    let degenerate = on_screen.degenerate();
     if behind.certainly() || (degenerate.certainly() && !behind.possibly()) {
         return None;
     }
@@ -128,6 +132,11 @@ fn possible<P: Profile>(
         key,
     };
     Some(PossibleSplat { splat, certain, sound, products: [a * p.x, b * p.y, c * p.z], solid })
+}
+
+/// The order of two items with the same key.
+pub(super) fn tie(supposed: Supposed, a: u32, b: u32) -> Ordering {
+    if supposed == Supposed::HigherIndexFirst { b.cmp(&a) } else { a.cmp(&b) }
 }
 
 /// A shape by the rule that is supposed.

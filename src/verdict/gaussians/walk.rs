@@ -1,6 +1,6 @@
 //! Blend a pixel in balls, with every decision that is open.
 
-use super::splats::{PossibleSplat, PossibleSplats};
+use super::splats::{PossibleSplat, PossibleSplats, tie};
 use crate::composite::under::Under;
 use crate::frame::{NO_ID, Rect};
 use crate::method::gaussians::Order;
@@ -75,7 +75,7 @@ impl<'a, P: Profile> Walker<'a, P> {
         if own {
             all.sort_by(|a, b| {
                 let by_key = a.key.middle.total_cmp(&b.key.middle);
-                by_key.then(a.splat.splat.index.cmp(&b.splat.splat.index))
+                by_key.then(tie(self.supposed, a.splat.splat.index, b.splat.splat.index))
             });
         }
         let mut walk = Walk {
@@ -187,10 +187,8 @@ impl<P: Profile> Walk<'_, P> {
     fn before(&self, a: &Possible<'_, P>, b: &Possible<'_, P>) -> bool {
         let same = !self.own && a.splat.products == b.splat.products;
         let exact = a.key.radius == 0.0 && b.key.radius == 0.0;
-        a.key.lt(b.key).certainly()
-            || ((same || exact)
-                && a.key.middle == b.key.middle
-                && a.splat.splat.index < b.splat.splat.index)
+        let first = tie(self.supposed, a.splat.splat.index, b.splat.splat.index).is_lt();
+        a.key.lt(b.key).certainly() || ((same || exact) && a.key.middle == b.key.middle && first)
     }
 
     /// Blends fragments whose order is open.
@@ -227,14 +225,19 @@ impl<P: Profile> Walk<'_, P> {
         (numbers, alive): (GaussianPixel<Ball<P>>, Three),
         one: &Possible<'_, P>,
     ) -> (GaussianPixel<Ball<P>>, Three) {
-        let left = numbers.blend.through * (Ball::ONE - one.alpha);
-        let goes_on = alive & !(one.drawn & self.rules.ends(left));
-        let drawn = goes_on & one.drawn;
+        let ends = self.rules.ends(numbers.blend.through * (Ball::ONE - one.alpha));
+        let goes_on = alive & !(one.drawn & ends);
+        let drawn = alive & one.drawn & !self.leaves_out(ends);
         if drawn.possibly() && !drawn.certainly() {
             self.doubts |= Doubt::CutOff as u8;
         }
         let after = numbers.after(one.alpha, self.color(one), one.depth);
         (select(drawn, &after, &numbers), goes_on)
+    }
+
+    /// Whether a fragment is left out that ends blending.
+    fn leaves_out(&self, ends: Three) -> Three {
+        if self.supposed == Supposed::StopAfter { false.into() } else { ends }
     }
 
     /// Follows every order of a few fragments, and bounds the weights of many.
@@ -271,7 +274,7 @@ impl<P: Profile> Walk<'_, P> {
                 ..self.numbers
             };
             let ends = one.drawn & self.rules.ends(before * (Ball::ONE - one.alpha));
-            let drawn = alive & one.drawn & !ends;
+            let drawn = alive & one.drawn & !self.leaves_out(ends);
             let after = here.after(one.alpha, self.color(one), one.depth);
             let blended = select(drawn, &after, &here);
             let through = self.numbers.blend.through;
@@ -289,7 +292,7 @@ impl<P: Profile> Walk<'_, P> {
     /// Remembers a fragment in front of which this much is seen.
     fn candidate(&mut self, one: &Possible<'_, P>, through: Ball<P>, alive: Three) {
         let ends = self.rules.ends(through * (Ball::ONE - one.alpha));
-        let drawn = alive & one.drawn & !ends;
+        let drawn = alive & one.drawn & !self.leaves_out(ends);
         if drawn.possibly() {
             let index = one.splat.splat.index;
             let weight = through * one.alpha;

@@ -94,6 +94,12 @@ pub(crate) enum Supposed {
     NothingOccluded,
     /// Gaussians come in the reverse order.
     BackToFront,
+    /// Of Gaussians with the same key, the one of the higher index is in front.
+    HigherIndexFirst,
+    /// No Gaussian is too near, not even one behind the camera.
+    NearIgnored,
+    /// Blending of Gaussians ends after the fragment that takes the transmittance below the stop.
+    StopAfter,
     /// Colours of Gaussians are multiplied by alpha twice.
     ColorsTwice,
     /// The light behind Gaussians is added twice.
