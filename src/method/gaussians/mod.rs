@@ -2,7 +2,7 @@
 //!
 //! The scene has [`Gaussians`](crate::scene::Gaussians). Or it has surfels, which are Gaussians
 //! without extent along their normals (2D Gaussian splats), each with its opacity and its own
-//! colour, without light; the settings of the method do not cull them.
+//! colour, without light, and from both sides.
 //!
 //! Programs share the formulas and differ in details. Each detail is a setting, and
 //! [`Settings::KHR`], [`Settings::INRIA`], [`Settings::GSPLAT`], [`Settings::MIP`] and
@@ -22,7 +22,8 @@
 //!    - o = opacity times compensation.
 //!    - Bounds, in f64 from the numbers of this arithmetic: the pixels whose centres are within e of
 //!      the centre, with e as [`Support`] says; under `ellipse` e = k sqrt(Vxx) (1 + 2^-10) + 1 px, and
-//!      so for y. If [`Settings::least_alpha`] is above 0, also within e = sqrt(2 ln(o / least) Vxx) (1 + 2^-10) + 1, beyond which alpha is less; there are none if o is less than it. The 1 and
+//!      so for y. If [`Settings::least_alpha`] is above 0, also within e = sqrt(2 ln(o / least) Vxx)
+//!      (1 + 2^-10) + 1, beyond which alpha is less; there are none if o is less than it. The 1 and
 //!      the factor exceed what rounding moves the rim of a splat that is not extremely thin.
 //!      `Decided:` a pixel out of bounds has no fragment, even where its rounded q says otherwise.
 //! 2. **Order** ([`Order`]): ascending, ties to the lower index. The depth of a fragment is t of the
@@ -83,7 +84,7 @@ impl Algorithm for Settings {
     const STAGES: &'static [Stage] = planes::STAGES;
     const DRAWS_GAUSSIANS: bool = true;
     const BLENDS: bool = true;
-    const FAST_BYTES_A_PIXEL: Option<u64> = Some(80);
+    const FAST_BYTES_A_PIXEL: Option<u64> = Some(160);
     type Memory = ();
 
     fn check(&self) -> Result<()> {

@@ -33,7 +33,12 @@ impl Session<'_> {
         if making == Making::Verdict {
             let cells = if self.has_levels() { OF_JUDGED_CELLS } else { 0 };
             let a_pixel = OF_A_JUDGED_PIXEL + cells + self.planes(camera, 8);
-            let judged = pixels * a_pixel + self.items(pixels, making) * OF_A_JUDGED_SPLAT;
+            let of_item = if self.method.draws_gaussians() {
+                OF_A_JUDGED_GAUSSIAN
+            } else {
+                OF_A_JUDGED_SPLAT
+            };
+            let judged = pixels * a_pixel + self.items(pixels, making) * of_item;
             if !self.method.draws_objects() {
                 return judged;
             }
@@ -136,6 +141,8 @@ const OF_A_PIXEL: u64 = 80;
 const OF_A_SPLAT: u64 = 64;
 /// Bytes of a splat in a verdict, and of a pixel beside the planes of a client.
 const OF_A_JUDGED_SPLAT: u64 = 704;
+/// A Gaussian in balls, twice where batches are joined.
+const OF_A_JUDGED_GAUSSIAN: u64 = 1800;
 const OF_A_JUDGED_PIXEL: u64 = 128;
 /// Bytes of a pixel that the passes before the sums leave in balls, and, in place of a splat, of a
 /// surfel whose centre is placed in balls.

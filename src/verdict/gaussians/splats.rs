@@ -50,7 +50,7 @@ impl<P: Profile> PossibleSplats<P> {
         if supposed == Supposed::BackToFront {
             all.iter_mut().for_each(|splat| splat.splat.key = -splat.splat.key);
         }
-        all.sort_by(|a, b| {
+        all.sort_unstable_by(|a, b| {
             let by_key = a.splat.key.middle.total_cmp(&b.splat.key.middle);
             by_key.then(tie(supposed, a.splat.index, b.splat.index))
         });
