@@ -451,7 +451,7 @@ fn a_preset_can_be_changed_in_part() {
 #[test]
 fn settings_are_of_their_method_and_of_their_type() {
     for (table, line, what) in [
-        ("[method]\ncutof = 2\n", 5, "unknown key `cutof`; the keys are name, kernel, outline"),
+        ("[method]\ncutof = 2\n", 5, "unknown key `cutof`; the keys are name, kernel, preset"),
         ("[method]\npeel = 3\n", 4, "`peel` does not apply to the method ewa"),
         ("[method]\nname = \"template\"\ncutoff = 2\n", 4, "`cutoff` does not apply to the method"),
         ("[method]\ncutoff = \"2\"\n", 5, "cutoff `2`; give a number"),

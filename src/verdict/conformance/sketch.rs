@@ -227,7 +227,8 @@ impl Sketch {
         let gaussians = self.gaussians()?;
         let (camera, meshes) = (self.camera()?, self.meshes.clone());
         let scene = Scene {
-            lights: self.lights,
+            // Gaussians are not lit.
+            lights: if gaussians.is_some() { Vec::new() } else { self.lights },
             material: self.material,
             environment: self.sky.then_some(Environment::Sky),
             primitives: primitives(self.meshes, exec)?,
