@@ -225,13 +225,14 @@ impl<P: Profile> Walk<'_, P> {
         (numbers, alive): (GaussianPixel<Ball<P>>, Three),
         one: &Possible<'_, P>,
     ) -> (GaussianPixel<Ball<P>>, Three) {
-        let ends = self.rules.ends(numbers.blend.through * (Ball::ONE - one.alpha));
+        let ends = self.rules.ends(left(numbers.blend.through, one.alpha));
         let goes_on = alive & !(one.drawn & ends);
         let drawn = alive & one.drawn & !self.leaves_out(ends);
         if drawn.possibly() && !drawn.certainly() {
             self.doubts |= Doubt::CutOff as u8;
         }
-        let after = numbers.after(one.alpha, self.color(one), one.depth);
+        let mut after = numbers.after(one.alpha, self.color(one), one.depth);
+        after.blend.through = left(numbers.blend.through, one.alpha);
         (select(drawn, &after, &numbers), goes_on)
     }
 
@@ -273,15 +274,14 @@ impl<P: Profile> Walk<'_, P> {
                 blend: Under { through: before, ..self.numbers.blend },
                 ..self.numbers
             };
-            let ends = one.drawn & self.rules.ends(before * (Ball::ONE - one.alpha));
+            let ends = one.drawn & self.rules.ends(left(before, one.alpha));
             let drawn = alive & one.drawn & !self.leaves_out(ends);
             let after = here.after(one.alpha, self.color(one), one.depth);
             let blended = select(drawn, &after, &here);
             let through = self.numbers.blend.through;
             let median = self.numbers.median.either(after.median);
             self.numbers = GaussianPixel { median, ..blended };
-            self.numbers.blend.through =
-                Ball::select(drawn, through * (Ball::ONE - one.alpha), through);
+            self.numbers.blend.through = Ball::select(drawn, left(through, one.alpha), through);
             if drawn.possibly() && !drawn.certainly() {
                 self.doubts |= Doubt::CutOff as u8;
             }
@@ -291,7 +291,7 @@ impl<P: Profile> Walk<'_, P> {
 
     /// Remembers a fragment in front of which this much is seen.
     fn candidate(&mut self, one: &Possible<'_, P>, through: Ball<P>, alive: Three) {
-        let ends = self.rules.ends(through * (Ball::ONE - one.alpha));
+        let ends = self.rules.ends(left(through, one.alpha));
         let drawn = alive & one.drawn & !self.leaves_out(ends);
         if drawn.possibly() {
             let index = one.splat.splat.index;
@@ -321,9 +321,15 @@ impl<P: Profile> Walk<'_, P> {
     }
 }
 
+/// T (1 - alpha), which renderers that add terms in any order may compute as T - T alpha.
+fn left<P: Profile>(through: Ball<P>, alpha: Ball<P>) -> Ball<P> {
+    let left = through * (Ball::ONE - alpha);
+    if P::ADDS_IN_ANY_ORDER { left.either(through - through * alpha) } else { left }
+}
+
 /// How much is seen behind a fragment that may be drawn.
 fn seen<P: Profile>(one: &Possible<'_, P>, through: Ball<P>) -> Ball<P> {
-    Ball::select(one.drawn, through * (Ball::ONE - one.alpha), through)
+    Ball::select(one.drawn, left(through, one.alpha), through)
 }
 
 /// A truth that holds if either of two may hold.
