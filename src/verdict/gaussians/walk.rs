@@ -9,6 +9,7 @@ use crate::method::gaussians::splats::Source;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, MapInline, Real, Truth};
 use crate::verdict::Doubt;
+use crate::verdict::checks::widened;
 use crate::verdict::supposed::Supposed;
 
 /// A fragment that may be drawn.
@@ -321,10 +322,12 @@ impl<P: Profile> Walk<'_, P> {
     }
 }
 
-/// T (1 - alpha), which renderers that add terms in any order may compute as T - T alpha.
+/// T (1 - alpha). Where terms may be added in any order it may be T - T alpha, whose roundings are
+/// relative to T: of a product and of a sum, 2 u each.
 fn left<P: Profile>(through: Ball<P>, alpha: Ball<P>) -> Ball<P> {
     let left = through * (Ball::ONE - alpha);
-    if P::ADDS_IN_ANY_ORDER { left.either(through - through * alpha) } else { left }
+    let lost = if P::ADDS_IN_ANY_ORDER { through.middle.abs() / 4_194_304.0 } else { 0.0 };
+    widened(left, lost)
 }
 
 /// How much is seen behind a fragment that may be drawn.
