@@ -10,7 +10,7 @@ use splatref::frame::Exec;
 use splatref::io::environment;
 use splatref::io::scene_file::{EnvironmentChoice, Loaded, SceneFile};
 use splatref::memory;
-use splatref::scene::gaussians::{Encoding, coefficients};
+use splatref::scene::gaussians::{Encoding, UNDRAWABLE, coefficients};
 use splatref::scene::{self, Cloud, Environment, GaussianArrays, Gaussians, Groups};
 use splatref::source::derive::{self, Derive};
 use std::path::PathBuf;
@@ -209,8 +209,8 @@ impl Scene {
             let environment = environment(&file, exec)?;
             let scene =
                 scene::Scene { environment, ..scene::Scene::of_gaussians(&file.name, gaussians) };
-            let what = "Gaussians that cannot be drawn";
-            Ok((scene, if dropped == 0 { String::new() } else { format!("{dropped} {what}") }))
+            let reasons = || format!("{dropped} Gaussians with {UNDRAWABLE}");
+            Ok((scene, if dropped == 0 { String::new() } else { reasons() }))
         })?;
         let content = Arc::new(Content::Arrays(Box::new(scene)));
         Ok(Self { file, content, groups: Mutex::new(None), warnings: Vec::new(), dropped })

@@ -10,6 +10,7 @@ use splatref::io::scene_file::{OutputSettings, SceneFile};
 use splatref::method::Method;
 use splatref::method::session::Made;
 pub(super) use splatref::report::short;
+use splatref::scene::gaussians::UNDRAWABLE;
 use splatref::scene::objects::detail::prefix::Estimate;
 use splatref::scene::objects::{Detail, Split};
 use splatref::scene::{Camera, Counts, Dropped, Gaussians, Groups, Objects, Projection};
@@ -67,10 +68,7 @@ fn gaussians_of(scene: &Scene, gaussians: &Gaussians, report: &GaussianReport) {
 pub(super) fn dropped_gaussians(count: u64) -> String {
     match count {
         0 => "none".into(),
-        n => format!(
-            "{n} Gaussians with a number that is not finite, a scale < 0, a rotation of length 0 or \
-             an opacity outside [0, 1]"
-        ),
+        n => format!("{n} Gaussians with {UNDRAWABLE}"),
     }
 }
 

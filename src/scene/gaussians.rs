@@ -2,6 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::number::MapInline;
+use crate::scene::light::MAX_RADIANCE;
 use glam::{DVec3, Vec3};
 
 /// The greatest degree of the spherical harmonics.
@@ -13,7 +14,8 @@ pub const MAX_DEGREE: u32 = 3;
 /// The constructor guarantees:
 ///
 /// - at least one Gaussian, and less than 2^32 - 1;
-/// - finite positions and coefficients;
+/// - finite positions;
+/// - coefficients of at most [`MAX_RADIANCE`] in magnitude;
 /// - finite scales >= 0;
 /// - rotations of length 1 within 2^-20;
 /// - opacities in [0, 1], none of them -0.
@@ -49,6 +51,10 @@ impl Encoding {
         }
     }
 }
+
+/// What keeps a Gaussian from being drawn. Greater coefficients would make sums that leave `f32`.
+pub const UNDRAWABLE: &str = "a number that is not finite, a scale < 0, a rotation of length 0, an \
+                              opacity outside [0, 1] or a coefficient beyond +-65536";
 
 /// Gaussians as a file holds them after activation, unchecked.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -111,8 +117,7 @@ pub fn coefficients(degree: u32) -> usize {
 impl Gaussians {
     /// Checks Gaussians, drops those that cannot be drawn, and counts the dropped ones.
     ///
-    /// Dropped is a Gaussian with a number that is not finite, with a scale < 0, with a rotation
-    /// of length 0, or with an opacity outside [0, 1]. A rotation whose square length is within
+    /// Dropped is a Gaussian with one of [`UNDRAWABLE`]. A rotation whose square length is within
     /// 2^-20 of 1 is kept as it is. Any other is divided by its length, the root of
     /// `((x x + y y) + z z) + w w`, in f64, component by component, and rounded once.
     ///
@@ -133,14 +138,13 @@ impl Gaussians {
                 && arrays.scale[i].cmpge(Vec3::ZERO).all()
                 && rotation[i].iter().all(|part| part.is_finite())
                 && (0.0..=1.0).contains(&opacity[i])
-                && harmonics.iter().all(|color| color.is_finite())
+                && harmonics.iter().all(|color| color.abs().cmple(Vec3::splat(MAX_RADIANCE)).all())
         };
         let n = opacity.len();
         let kept: Vec<usize> = (0..n).filter(|&i| good(i)).collect();
         if kept.is_empty() {
             return Err(Error::Invalid(format!(
-                "the scene is empty: none of its {n} Gaussians can be drawn, because each has a number \
-                 that is not finite, a scale < 0, a rotation of length 0 or an opacity outside [0, 1]"
+                "the scene is empty: none of its {n} Gaussians can be drawn, because each has {UNDRAWABLE}"
             )));
         }
         let dropped = (n - kept.len()) as u64;
@@ -285,13 +289,18 @@ mod tests {
         given.scale[1].y = -1e-9;
         given.rotation[2] = [0.0; 4];
         given.opacity[3] = 1.5;
-        given.harmonics[4 * 4 + 2].z = f32::INFINITY;
+        given.harmonics[4 * 4 + 2].z = -70_000.0;
         given.harmonics[5 * 4 + 1] = Vec3::Z;
         let (kept, dropped) = Gaussians::new(given).unwrap();
         assert_eq!((kept.len(), dropped), (1, 5));
         assert_eq!(kept.harmonics(0), [Vec3::X, Vec3::Z, Vec3::X, Vec3::X], "those of the last");
         assert_eq!(kept.rotation()[0], [0.0, 0.0, 0.0, 1.0], "made a unit");
         assert_eq!(kept.opacity()[0].to_bits(), 0, "no -0");
+    }
+
+    #[test]
+    fn the_reason_names_the_bound() {
+        assert!(UNDRAWABLE.ends_with(&format!("+-{MAX_RADIANCE}")));
     }
 
     #[test]
