@@ -217,11 +217,16 @@ impl Sketch {
         self.blobs.iter_mut().for_each(|blob| blob.scale *= factor);
     }
 
-    /// The case that this sketch makes for a method with its default settings.
-    pub(super) fn case(self, rule: &str, method: Method, exec: &Exec) -> Result<Case> {
-        let mut method = method;
+    /// The method with the settings of this sketch.
+    pub(super) fn method(&self, mut method: Method) -> Result<Method> {
         self.settings.iter().try_for_each(|(name, value)| set(&mut method, name, value))?;
         method.check()?;
+        Ok(method)
+    }
+
+    /// The case that this sketch makes for a method with its default settings.
+    pub(super) fn case(self, rule: &str, method: Method, exec: &Exec) -> Result<Case> {
+        let method = self.method(method)?;
         let surfels =
             if self.blobs.is_empty() { self.grouped(&method, exec)? } else { Surfels::none() };
         let gaussians = self.gaussians()?;

@@ -1,6 +1,7 @@
 //! Every case is right by its own reference, and wrong by a renderer that does not keep its rule.
 
 use super::*;
+use crate::method::gaussians;
 use crate::scene::Gaussians;
 use crate::setting::{Fields, Words};
 use crate::verdict::Outcome;
@@ -94,6 +95,19 @@ fn a_case_is_right_and_is_wrong_if_its_rule_is_broken() {
     let flaws = methods().flat_map(|method| flaws(method, false, &promises, &exec));
     let flaws: Vec<String> = flaws.collect();
     assert!(flaws.is_empty(), "{}", flaws.join("\n"));
+}
+
+/// With another program's rules a case is still right; what is broken may not show.
+#[test]
+fn a_case_of_gaussians_is_right_with_every_preset() {
+    let exec = Exec::new(0, 32).unwrap();
+    for (word, preset) in gaussians::Settings::WORDS {
+        for rule in Rule::of(&Method::from(*preset)).iter().filter(|rule| !rule.large) {
+            let case = rule.case(&exec).unwrap();
+            let judged = case.judge(&drawn(&case, &exec), Verdict::BUDGET, &exec).unwrap();
+            assert_eq!(judged.verdict.outcome(), Outcome::Right, "{word}: {}", rule.name);
+        }
+    }
 }
 
 #[test]

@@ -231,10 +231,10 @@ pub(super) const ROWS: &[Row] = &[
         tests: "A splat is long and thin.",
         of: OF,
         draw: |s| {
-            let blob = s.blob([0.1, 0.1, 0.0], [1.2, 0.1, 0.1]);
+            let blob = s.blob([0.1, 0.1, 0.0], [1.2, 0.15, 0.15]);
             blob.rotation = turn(Vec3::new(0.2, 0.3, 0.9), 35.0);
         },
-        otherwise: |s| s.blobs[0].scale.y = 0.15,
+        otherwise: |s| s.blobs[0].scale.y = 0.2,
     },
     Row {
         name: "flat",

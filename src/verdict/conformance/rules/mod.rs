@@ -35,6 +35,16 @@ pub(super) struct SettingRow {
     pub(super) draw: fn(&mut Sketch),
 }
 
+impl SettingRow {
+    /// Whether a method with these settings can have the value too.
+    fn is_possible(&self, method: &Method) -> bool {
+        let mut sketch = Sketch::default();
+        (self.draw)(&mut sketch);
+        sketch.set(self.name, self.value);
+        sketch.method(*method).is_ok()
+    }
+}
+
 /// The methods that have a rule.
 #[derive(Clone, Copy)]
 pub(super) enum Of {
@@ -80,8 +90,9 @@ pub(super) fn of_method(method: &Method) -> Vec<Rule> {
     };
     let own = |row: &&'static Row| row.of.has(method);
     let simple = tables.iter().copied().flatten().filter(own).map(rule);
+    // A value may be impossible beside the other settings of a preset.
     let settings = settings::ROWS.iter().filter(|row| row.of.has(method));
-    let settings = settings.map(|row| setting(method, row));
+    let settings = settings.filter(|row| row.is_possible(method)).map(|row| setting(method, row));
     let large = settings::LARGE.iter().map(|row| Rule { large: true, ..rule(row) });
     simple.chain(settings).chain(large).collect()
 }
