@@ -110,6 +110,13 @@ fn choices_and_commands_of_surfels_are_refused() {
         let line = fails(at.path(), arguments, 1);
         assert!(line.contains("3D Gaussians"), "{arguments:?}: {line}");
     }
+    for arguments in [
+        &["study", "g.ply", "--method", "gaussians", "--size", "16x12", "-o", "s"] as &[&str],
+        &["plan", "g.ply", "--method", "gaussians", "--size", "16x12", "--error", "1"],
+    ] {
+        let line = fails(at.path(), arguments, 2);
+        assert!(line.contains("true surface") && line.contains("splatref compare"), "{line}");
+    }
 }
 
 #[test]

@@ -9,7 +9,7 @@
 //! points, because a picture of two kinds of truth would be neither.
 
 use super::cameras;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::frame::{Exec, Plane};
 use crate::io::scene_file::{Draw, GroupChoice, MethodChoice, SceneFile, Source};
 use crate::method::Method;
@@ -45,13 +45,19 @@ impl Known {
     /// scene itself, or a scene that was sampled from it.
     ///
     /// # Errors
-    /// As [`SceneFile::ready`] if not even points can be drawn.
+    /// [`Error::Usage`] for a scene of Gaussians; as [`SceneFile::ready`] if not even points can be
+    /// drawn.
     pub fn about(
         file: &SceneFile,
         lit: &Scene,
         exec: &Exec,
         progress: Progress<'_>,
     ) -> Result<Self> {
+        if lit.gaussians.is_some() {
+            let what = "a study compares pictures with the true surface, and 3D Gaussians have none; compare \
+                        two pictures with `splatref compare`";
+            return Err(Error::Usage(format!("{}: {what}", lit.name)));
+        }
         let method = file.method.method()?;
         let cull = method.values().contains(&("cull", Value::Switch(true)));
         let (surfels, surfaces, unknown) = match surfaces(file, exec, progress) {
