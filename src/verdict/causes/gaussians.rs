@@ -3,6 +3,7 @@
 mod scenes;
 
 use super::change::Change;
+use super::mistakes::HALVES;
 use super::{Case, Mistakes};
 use crate::method::Method;
 use crate::method::gaussians::{BlendSpace, ColorBounds, Order, Settings, Support};
@@ -43,14 +44,8 @@ fn of_lens(camera: &Camera) -> Mistakes {
 
 /// The picture moved by half a pixel.
 fn moved_by_half(camera: &Camera) -> Mistakes {
-    let all = [
-        ("half a pixel to the right and down", 0.5, 0.5),
-        ("half a pixel to the left and up", -0.5, -0.5),
-        ("half a pixel to the right", 0.5, 0.0),
-        ("half a pixel down", 0.0, 0.5),
-    ];
     let moved = |dx, dy| Camera { cx: camera.cx + dx, cy: camera.cy + dy, ..*camera };
-    all.map(|(what, dx, dy)| (what.to_owned(), Change::Camera(moved(dx, dy)))).into()
+    HALVES.map(|(what, dx, dy)| (what.to_owned(), Change::Camera(moved(dx, dy)))).into()
 }
 
 /// Rules in place of the method's own.

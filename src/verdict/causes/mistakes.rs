@@ -108,16 +108,18 @@ fn depth_of_16_bits(case: &Case<'_, '_>) -> Mistakes {
     [steps, buffer].into_iter().flat_map(changes).collect()
 }
 
+/// The ways in which pictures are moved by half a pixel.
+pub(super) const HALVES: [(&str, f32, f32); 4] = [
+    ("half a pixel to the right and down", 0.5, 0.5),
+    ("half a pixel to the left and up", -0.5, -0.5),
+    ("half a pixel to the right", 0.5, 0.0),
+    ("half a pixel down", 0.0, 0.5),
+];
+
 /// The picture moved by half a pixel.
 fn moved_by_half(session: &Session<'_>, camera: &Camera) -> Mistakes {
-    let all = [
-        ("half a pixel to the right and down", 0.5, 0.5),
-        ("half a pixel to the left and up", -0.5, -0.5),
-        ("half a pixel to the right", 0.5, 0.0),
-        ("half a pixel down", 0.0, 0.5),
-    ];
     let splats = session.method().splats().is_some();
-    let both = all.into_iter().flat_map(|(what, dx, dy)| {
+    let both = HALVES.into_iter().flat_map(|(what, dx, dy)| {
         let moved = Camera { cx: camera.cx + dx, cy: camera.cy + dy, ..*camera };
         // Fragments alone are moved within their quads, or the pixels of points, or points, or
         // whatever the camera shows.
