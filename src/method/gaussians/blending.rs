@@ -155,19 +155,8 @@ pub(crate) type Listed<R> = (usize, GaussianFragment<R>, R);
 impl<R: Exact> Blending<'_, R> {
     /// The pixels of a rectangle in a tile, row by row.
     pub(crate) fn tile(&self, tile: usize, rect: Rect) -> Vec<GaussianPixel<R>> {
-        let places = self.places(tile, rect);
+        let places = self.splats.places(tile, rect);
         pixels(rect).map(|at| self.pixel(&places, at, |_, _, _| ())).collect()
-    }
-
-    /// The places of the splats that may touch a rectangle in a tile.
-    pub(crate) fn places(&self, tile: usize, rect: Rect) -> Vec<usize> {
-        let mut places = Vec::new();
-        self.splats.for_each(tile, |place| {
-            if !self.splats.all[place].bounds.intersection(&rect).is_empty() {
-                places.push(place);
-            }
-        });
-        places
     }
 
     /// One pixel, from the splats that may touch it. `each` gets every fragment that is inside and

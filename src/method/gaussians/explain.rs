@@ -29,6 +29,8 @@ pub struct FragmentAt<R: Real> {
     /// Its weight T alpha, if it is drawn.
     pub weight: Option<R>,
     projected: Projected<R>,
+    /// The colour before it is bounded, and as it is blended.
+    look: ([R; 3], [R; 3]),
     fragment: GaussianFragment<R>,
 }
 
@@ -46,11 +48,12 @@ pub fn explain<R: Exact>(
     let splats = Splats::new(job, &job.grid(), &source);
     let rules = Rules::new(settings);
     let blending = Blending { source, splats: &splats, rules, buffers: job.buffers };
-    let places = blending.places(tile, rect);
+    let places = splats.places(tile, rect);
     let at = |place: usize, fragment: &GaussianFragment<R>, weight| {
         let index = splats.all[place].index;
         let projected = source.project(index as usize);
-        FragmentAt { index, weight, projected, fragment: *fragment }
+        let look = source.look(index as usize, &projected.shape);
+        FragmentAt { index, weight, projected, look, fragment: *fragment }
     };
     let (mut drawn, mut seen) = (Vec::new(), vec![false; places.len()]);
     let pixel_after = blending.pixel(&places, pixel, |place, fragment, weight| {
@@ -97,7 +100,8 @@ impl<R: Exact> FragmentAt<R> {
     /// Writes how the splat was projected.
     fn fmt_projection(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let n = |value: R| value.to_f64();
-        let Projected { on_screen, opacity, raw, color, alpha, distance, .. } = &self.projected;
+        let Projected { on_screen, opacity, alpha, distance, .. } = &self.projected;
+        let (raw, color) = self.look;
         writeln!(f, "\nsplat {}", self.index)?;
         writeln!(
             f,

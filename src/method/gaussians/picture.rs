@@ -61,13 +61,16 @@ pub(super) fn display<R: Exact>(
     color: &Plane<[R; 3]>,
     through: &Plane<R>,
 ) -> [NamedPlane<R>; 2] {
-    let size = job.camera.size();
-    let shown = Plane::from_pixels(size, |x, y| {
-        let (color, through) = (*color.at(x, y), *through.at(x, y));
-        displayed(source, color, || {
-            let light = job.scene.environment.as_ref()?.radiance(source.projector.view.ray(x, y));
-            Some((through, light))
-        })
+    let mut shown = color.clone();
+    // A power a number is enough work to run in parallel.
+    job.exec.ordered((0..).zip(shown.rows_mut()).collect(), |(y, row): (u32, &mut [[R; 3]])| {
+        for (x, pixel) in (0..).zip(row) {
+            *pixel = displayed(source, *pixel, || {
+                let ray = source.projector.view.ray(x, y);
+                let light = job.scene.environment.as_ref()?.radiance(ray);
+                Some((*through.at(x, y), light))
+            });
+        }
     });
     let before = job.scene.environment.is_some();
     let alpha = through.map(|&through| if before { R::ONE } else { R::ONE - through });

@@ -48,19 +48,26 @@ pub(crate) struct Source<'a, R> {
     pub(crate) space: Encoding,
 }
 
-/// An item, projected, with its look.
+/// An item, projected.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Projected<R> {
     pub(crate) shape: GaussianShape<R>,
     pub(crate) on_screen: ProjectedGaussian<R>,
     pub(crate) opacity: R,
-    /// The colour in the scene's encoding, before it is bounded.
-    pub(crate) raw: [R; 3],
-    pub(crate) color: [R; 3],
     /// o, the opacity times the compensation.
     pub(crate) alpha: R,
     /// The distance from the camera's centre; t under an orthographic camera.
     pub(crate) distance: R,
+}
+
+impl<R: Real> Projected<R> {
+    /// What one order for the picture compares.
+    pub(crate) fn key(&self, order: Order) -> R {
+        match order {
+            Order::Depth | Order::Pixel => self.on_screen.place.z,
+            Order::Distance | Order::Steps => self.distance,
+        }
+    }
 }
 
 impl<'a, R: Real> Source<'a, R> {
@@ -104,32 +111,40 @@ impl<'a, R: Real> Source<'a, R> {
     /// Projects an item as if it had this shape.
     #[inline]
     pub(crate) fn project_as(&self, i: usize, shape: GaussianShape<R>) -> Projected<R> {
-        let surfels = &self.scene.surfels;
         let on_screen = self.projector.project(&shape);
-        let from_eye = shape.position - self.eye;
         let perspective = self.projector.view.perspective;
-        let distance = if perspective { from_eye.length() } else { on_screen.place.z };
-        let (opacity, raw) = match &self.scene.gaussians {
+        let distance =
+            if perspective { (shape.position - self.eye).length() } else { on_screen.place.z };
+        let opacity = match &self.scene.gaussians {
+            Some(gaussians) => gaussians.opacity()[i],
+            None => self.scene.surfels.opacity_of(i),
+        };
+        let opacity = R::from_f32(opacity);
+        let alpha = opacity * on_screen.compensation;
+        Projected { shape, on_screen, opacity, alpha, distance }
+    }
+
+    /// The colour of an item: in the scene's encoding before it is bounded, and as it is blended.
+    #[inline]
+    pub(crate) fn look(&self, i: usize, shape: &GaussianShape<R>) -> ([R; 3], [R; 3]) {
+        let surfels = &self.scene.surfels;
+        let raw = match &self.scene.gaussians {
             Some(gaussians) => {
                 let degree = self.settings.degree.min(gaussians.degree());
-                let direction = if perspective {
-                    from_eye.normalized()
+                let direction = if self.projector.view.perspective {
+                    (shape.position - self.eye).normalized()
                 } else {
                     let [x, y, z, _] = self.projector.view.rows[2];
                     -Vector3::new(x, y, z)
                 };
-                let color = harmonics::color(degree, gaussians.harmonics(i), direction);
-                (gaussians.opacity()[i], color)
+                harmonics::color(degree, gaussians.harmonics(i), direction)
             }
             None => {
                 let color = surfels.color().map_or(self.scene.material.color, |colors| colors[i]);
-                (surfels.opacity_of(i), color.to_array().map_inline(R::from_f32))
+                color.to_array().map_inline(R::from_f32)
             }
         };
-        let opacity = R::from_f32(opacity);
-        let alpha = opacity * on_screen.compensation;
-        let color = raw.map_inline(|part| self.shown(self.bounded(part)));
-        Projected { shape, on_screen, opacity, raw, color, alpha, distance }
+        (raw, raw.map_inline(|part| self.shown(self.bounded(part))))
     }
 
     #[inline(always)]
@@ -286,12 +301,18 @@ impl<R: Exact> Splats<R> {
         Self { tally, all, solids, bins }
     }
 
-    /// Calls `visit` with the place of each splat that may touch a tile, in their order.
-    #[inline(always)]
-    pub(crate) fn for_each(&self, tile: usize, mut visit: impl FnMut(usize)) {
+    /// The places of the splats that may touch a rectangle in a tile, in their order.
+    pub(crate) fn places(&self, tile: usize, rect: Rect) -> Vec<usize> {
+        let mut places = Vec::new();
         for (first, bins) in &self.bins {
-            bins.for_each(tile, |i| visit(first + i as usize));
+            bins.for_each(tile, |i| {
+                let place = first + i as usize;
+                if !self.all[place].bounds.intersection(&rect).is_empty() {
+                    places.push(place);
+                }
+            });
         }
+        places
     }
 }
 
@@ -300,7 +321,7 @@ impl<R: Exact> Source<'_, R> {
     #[inline]
     pub(crate) fn splat(&self, i: usize) -> (GaussianSplat<R>, Fate) {
         let projected = self.project(i);
-        let Projected { on_screen, color, alpha, distance, .. } = projected;
+        let Projected { on_screen, alpha, .. } = projected;
         let ProjectedGaussian { place, center, ellipse, conic, .. } = on_screen;
         let [x, y] = [center.x, center.y].map_inline(R::to_f64);
         let behind = self.projector.behind(place);
@@ -316,27 +337,25 @@ impl<R: Exact> Source<'_, R> {
             (_, _, true) => Fate::Outside,
             _ => Fate::Visible,
         };
-        let key = match self.settings.order {
-            Order::Depth | Order::Pixel => place.z,
-            Order::Distance | Order::Steps => distance,
-        };
+        // Most splats of a capture are out of sight, and need no colour.
+        let color = if bounds.is_empty() { [R::ZERO; 3] } else { self.look(i, &projected.shape).1 };
         let splat = GaussianSplat {
             index: i as u32,
             bounds,
             center,
             conic,
-            alpha,
+            alpha: projected.alpha,
             color,
             depth: place.z,
-            key,
+            key: projected.key(self.settings.order),
         };
         (splat, fate)
     }
 
     fn solid(&self, i: usize) -> Solid<R> {
-        let projected = self.project(i);
-        let adjugate = self.projector.turned(&projected.shape.adjugate);
-        Solid { place: projected.on_screen.place, adjugate }
+        let shape = self.shape(i);
+        let place = self.projector.place(shape.position);
+        Solid { place, adjugate: self.projector.turned(&shape.adjugate) }
     }
 }
 

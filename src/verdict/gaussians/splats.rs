@@ -78,8 +78,8 @@ fn possible<P: Profile>(
     i: usize,
 ) -> Option<PossibleSplat<P>> {
     let projected = source.project_as(i, supposed_shape(source.shape(i), supposed));
-    let Projected { shape, on_screen, color, alpha, distance, .. } = projected;
-    let on_screen = supposed_ellipse(on_screen, supposed);
+    let Projected { shape, alpha, .. } = projected;
+    let on_screen = supposed_ellipse(projected.on_screen, supposed);
     let place = on_screen.place;
     let behind = match supposed {
         Supposed::NearIgnored => false.into(),
@@ -110,10 +110,6 @@ fn possible<P: Profile>(
     if bounds.is_empty() {
         return None;
     }
-    let key = match source.settings.order {
-        Order::Depth | Order::Pixel => place.z,
-        Order::Distance | Order::Steps => distance,
-    };
     let [a, b, c, _] = source.projector.view.rows[2].map_inline(|part| part.middle);
     let p = shape.position.map(|part| part.middle);
     let own = source.settings.order == Order::Pixel;
@@ -127,9 +123,9 @@ fn possible<P: Profile>(
         center: on_screen.center,
         conic: on_screen.conic,
         alpha,
-        color,
+        color: source.look(i, &shape).1,
         depth: place.z,
-        key,
+        key: projected.key(source.settings.order),
     };
     Some(PossibleSplat { splat, certain, sound, products: [a * p.x, b * p.y, c * p.z], solid })
 }

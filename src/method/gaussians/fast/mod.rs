@@ -8,7 +8,7 @@ mod blending;
 
 use super::blending::{Blending, GaussianPixel, Rules};
 use super::picture::{self, display};
-use super::splats::{GaussianSplat, Source, Splats};
+use super::splats::{Source, Splats};
 use super::{Order, Settings, planes};
 use crate::frame::{Grid, NO_ID, NamedPlane, Plane, Pool, Rect, TileMut};
 use crate::method::Job;
@@ -37,13 +37,8 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Pictu
     let tiles = target.cut(&grid, job);
     job.exec.ordered(tiles, |mut tile| {
         let rect = tile.depth.rect;
-        let mut gathered: Vec<GaussianSplat<f32>> = Vec::new();
-        splats.for_each(tile.depth.index, |place| {
-            let splat = &splats.all[place];
-            if !splat.bounds.intersection(&rect).is_empty() {
-                gathered.push(*splat);
-            }
-        });
+        let places = splats.places(tile.depth.index, rect);
+        let gathered: Vec<_> = places.into_iter().map(|place| splats.all[place]).collect();
         if gathered.is_empty() {
             tile.clear();
         } else {
@@ -70,7 +65,7 @@ fn by_pixels(job: &Job<'_>, source: Source<'_, f32>, mut clock: Clock) -> Pictur
     let rules = Rules::new(source.settings);
     let blending = Blending { source, splats: &splats, rules, buffers: Buffers::F32 };
     let blended = Tiled::new(job, |tile, rect| {
-        let places = blending.places(tile, rect);
+        let places = splats.places(tile, rect);
         let mut pixels = vec![GaussianPixel::EMPTY; rect.pixels()];
         let grid = BlockGrid::new(rect);
         for block in 0..grid.len() {
