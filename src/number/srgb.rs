@@ -1,7 +1,8 @@
 //! Convert between stored colours and linear light by the transfer function of sRGB (IEC
 //! 61966-2-1).
 
-use super::{Real, elementary};
+use super::lanes::{LANES, vectorized};
+use super::{Exact, MapInline, Real, elementary};
 
 /// The linear value of a stored value, both in [0, 1].
 ///
@@ -27,6 +28,22 @@ pub fn decoded<R: Real>(c: R) -> R {
     let power = ((c.at_least(R::ZERO) + n(0.055)) / n(1.055)).pow(n(2.4));
     R::select(c.le(n(0.040_45)), c / n(12.92), power)
 }
+
+vectorized!(
+    /// [`decoded`] of every value.
+    pub fn decode<R: Exact>(values: &mut [R]) {
+        let n = R::from_f32;
+        for chunk in values.chunks_mut(LANES) {
+            let mut own = [R::ZERO; LANES];
+            own[..chunk.len()].copy_from_slice(chunk);
+            let bases = own.map_inline(|c| (c.at_least(R::ZERO) + n(0.055)) / n(1.055));
+            let powers = R::powers(&bases, n(2.4));
+            for (i, value) in chunk.iter_mut().enumerate() {
+                *value = R::select(own[i].le(n(0.040_45)), own[i] / n(12.92), powers[i]);
+            }
+        }
+    }
+);
 
 /// [`from_linear`] in any number and for any colour, with constants rounded to `f32`: `12.92 x` if `x
 /// <= 0.0031308`, else `1.055 x^(1/2.4) - 0.055`.
@@ -59,6 +76,15 @@ mod tests {
             assert!(near(decoded(single).into(), to_linear(code)), "{code}");
             assert!(near(encoded(decoded(single)).into(), code), "{code}");
         }
+    }
+
+    #[test]
+    fn a_row_has_the_bits_of_its_values() {
+        let mut row: Vec<f32> = (-10..=3_000).map(|i| i as f32 / 1_000.0).collect();
+        row.extend([0.0, -0.0, f32::INFINITY, 1e-40, 0.040_45]);
+        let expected: Vec<u32> = row.iter().map(|&c| decoded(c).to_bits()).collect();
+        decode(&mut row);
+        assert_eq!(row.iter().map(|c| c.to_bits()).collect::<Vec<_>>(), expected);
     }
 
     #[test]

@@ -360,8 +360,8 @@ impl<R: Real> GaussianProjector<R> {
         [(center(x) - cx) / fx, (center(y) - cy) / fy]
     }
 
-    /// The depth at which the density of a Gaussian is greatest along the ray of a pixel, from B' and
-    /// the centre in the camera frame. With the ray's direction d, which has d.z = 1, and a point o
+    /// The depth at which the density of a Gaussian is greatest along the [`Self::ray`] (u, v) of a
+    /// pixel, from B' and the centre in the camera frame. With the ray's direction d, which has d.z = 1, and a point o
     /// of it:
     ///
     /// ```text
@@ -373,8 +373,7 @@ impl<R: Real> GaussianProjector<R> {
     /// For a disc that is where the ray meets its plane.
     #[inline(always)]
     #[must_use]
-    pub fn deepest(&self, adjugate: &Symmetric<R>, place: Vector3<R>, pixel: (u32, u32)) -> R {
-        let [u, v] = self.ray(pixel);
+    pub fn deepest(&self, adjugate: &Symmetric<R>, place: Vector3<R>, [u, v]: [R; 2]) -> R {
         let (d, m) = if self.view.perspective {
             (Vector3::new(u, v, R::ONE), place)
         } else {

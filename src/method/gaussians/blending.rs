@@ -1,6 +1,7 @@
 //! Blend the fragments of a pixel from front to back.
 
-use super::splats::{GaussianSplat, Solid, Source, Splats};
+use super::order::{Splats, rank};
+use super::splats::{GaussianSplat, Solid, Source};
 use super::{Order, Settings, Support};
 use crate::composite::decide;
 use crate::composite::under::Under;
@@ -170,31 +171,32 @@ impl<R: Exact> Blending<'_, R> {
         let mut pixel = GaussianPixel::EMPTY;
         let mut done = false;
         let mut draw = |&(place, fragment, depth): &Listed<R>| {
-            let splat = &self.splats.all[place];
+            let splat = self.splats.at(place);
             done = done || self.rules.ends(pixel.blend.through * (R::ONE - fragment.alpha));
             let weight = pixel.blend.through * fragment.alpha;
             each(place, &fragment, (!done).then_some(weight));
             if !done {
-                pixel = self.add(pixel, splat, &fragment, depth);
+                pixel = self.add(pixel, splat, fragment.alpha, depth);
             }
             !done
         };
         if self.source.settings.order == Order::Pixel {
             let mut listed = Vec::new();
             for &place in places {
-                let splat = &self.splats.all[place];
+                let splat = self.splats.at(place);
                 if let Some(fragment) = self.drawn(splat, at) {
-                    let Solid { place: center, adjugate } = &self.splats.solids[place];
-                    let depth = self.source.projector.deepest(adjugate, *center, at);
+                    let Solid { place: center, adjugate } = self.splats.solid(place);
+                    let ray = self.source.projector.ray(at);
+                    let depth = self.source.projector.deepest(adjugate, *center, ray);
                     listed.push((place, fragment, depth));
                 }
             }
             // Stable, so that ties stay in the order of the indices.
-            listed.sort_by(|a, b| a.2.to_f64().total_cmp(&b.2.to_f64()));
+            listed.sort_by_key(|(.., depth)| rank(depth.to_f64()));
             listed.iter().all(&mut draw);
         } else {
             for &place in places {
-                let splat = &self.splats.all[place];
+                let splat = self.splats.at(place);
                 let fragment = self.drawn(splat, at);
                 if fragment.is_some_and(|fragment| !draw(&(place, fragment, splat.depth))) {
                     break;
@@ -217,15 +219,15 @@ impl<R: Exact> Blending<'_, R> {
 
     /// The pixel with one more fragment.
     #[inline(always)]
-    fn add(
+    pub(super) fn add(
         &self,
         pixel: GaussianPixel<R>,
         splat: &GaussianSplat<R>,
-        fragment: &GaussianFragment<R>,
+        alpha: R,
         depth: R,
     ) -> GaussianPixel<R> {
-        let weight = pixel.blend.through * fragment.alpha;
-        let mut next = pixel.after(fragment.alpha, splat.color, depth);
+        let weight = pixel.blend.through * alpha;
+        let mut next = pixel.after(alpha, splat.color, depth);
         next.blend = self.buffers.under(next.blend);
         if pixel.id == NO_ID {
             (next.id, next.depth) = (splat.index, depth);

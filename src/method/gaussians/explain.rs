@@ -2,7 +2,8 @@
 
 use super::Settings;
 use super::blending::{Blending, GaussianFragment, GaussianPixel, Rules};
-use super::splats::{Projected, Source, Splats};
+use super::order::Splats;
+use super::splats::{Projected, Source};
 use crate::error::Result;
 use crate::method::Job;
 use crate::method::decisions::Place;
@@ -50,7 +51,7 @@ pub fn explain<R: Exact>(
     let blending = Blending { source, splats: &splats, rules, buffers: job.buffers };
     let places = splats.places(tile, rect);
     let at = |place: usize, fragment: &GaussianFragment<R>, weight| {
-        let index = splats.all[place].index;
+        let index = splats.at(place).index;
         let projected = source.project(index as usize);
         let look = source.look(index as usize, &projected.shape);
         FragmentAt { index, weight, projected, look, fragment: *fragment }
@@ -64,7 +65,7 @@ pub fn explain<R: Exact>(
     });
     let skipped = places.iter().zip(&seen).filter(|(_, seen)| !**seen);
     let skipped =
-        skipped.map(|(&place, _)| at(place, &rules.fragment(&splats.all[place], pixel), None));
+        skipped.map(|(&place, _)| at(place, &rules.fragment(splats.at(place), pixel), None));
     let fragments = drawn.iter().cloned().chain(skipped).collect();
     Ok(GaussianReplay { pixel, fragments, pixel_after, rules })
 }

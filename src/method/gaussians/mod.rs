@@ -62,6 +62,7 @@
 pub(crate) mod blending;
 pub mod explain;
 mod fast;
+mod order;
 pub(crate) mod picture;
 pub(crate) mod planes;
 mod settings;

@@ -2,8 +2,9 @@
 
 use super::Settings;
 use super::blending::{Blending, GaussianPixel, Rules};
+use super::order::Splats;
 use super::planes::STAGES;
-use super::splats::{Source, Splats, in_space};
+use super::splats::{Source, in_space};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Plane};
 use crate::method::Job;
@@ -12,9 +13,8 @@ use crate::method::picture::{Clock, Picture};
 use crate::method::stage::{Keep, unknown};
 use crate::method::surface::{ALPHA, SHADED};
 use crate::method::tiled::Tiled;
-use crate::number::{Exact, MapInline, Real, srgb};
+use crate::number::{Exact, Real, srgb};
 use crate::scene::gaussians::Encoding;
-use crate::splat::Tally;
 
 /// The definition, in any number type.
 pub(super) fn define<R: Exact>(job: &Job<'_>, settings: &Settings, stages: bool) -> Picture<R> {
@@ -25,23 +25,13 @@ pub(super) fn define<R: Exact>(job: &Job<'_>, settings: &Settings, stages: bool)
     let blended = blend(job, source, &splats);
     clock.lap(STAGES[1].name);
     let keep = if stages { Keep::Stages } else { Keep::Picture };
-    finished(job, (&source, &blended), (splats.tally, clock), keep)
-}
-
-/// The picture of blended pixels.
-pub(super) fn finished<R: Exact>(
-    job: &Job<'_>,
-    (source, blended): (&Source<'_, R>, &Tiled<GaussianPixel<R>>),
-    (tally, mut clock): (Tally, Clock),
-    keep: Keep,
-) -> Picture<R> {
     let mut planes = blended.planes(&GaussianPixel::PLANES, 0, &job.there(keep));
     let color = blended.plane(|pixel| pixel.blend.color);
     let through = blended.plane(|pixel| pixel.blend.through);
-    planes.extend(display(job, source, &color, &through));
+    planes.extend(display(job, &source, &color, &through));
     clock.lap(STAGES[2].name);
     let (frame, timings) = (job.frame(planes), clock.into_laps());
-    Picture { frame, tally, timings, seen: None }
+    Picture { frame, tally: splats.tally, timings, seen: None }
 }
 
 fn blend<R: Exact>(
@@ -64,33 +54,34 @@ pub(super) fn display<R: Exact>(
     let mut shown = color.clone();
     // A power a number is enough work to run in parallel.
     job.exec.ordered((0..).zip(shown.rows_mut()).collect(), |(y, row): (u32, &mut [[R; 3]])| {
-        for (x, pixel) in (0..).zip(row) {
-            *pixel = displayed(source, *pixel, || {
-                let ray = source.projector.view.ray(x, y);
-                let light = job.scene.environment.as_ref()?.radiance(ray);
-                Some((*through.at(x, y), light))
-            });
+        if let Some(environment) = &job.scene.environment {
+            for (x, pixel) in (0..).zip(&mut *row) {
+                let light = environment.radiance(source.projector.view.ray(x, y));
+                *pixel = before(source, *pixel, *through.at(x, y), light);
+            }
+        }
+        if source.space == Encoding::Srgb {
+            srgb::decode(row.as_flattened_mut());
         }
     });
-    let before = job.scene.environment.is_some();
-    let alpha = through.map(|&through| if before { R::ONE } else { R::ONE - through });
+    let closed = job.scene.environment.is_some();
+    let alpha = through.map(|&through| if closed { R::ONE } else { R::ONE - through });
     [SHADED.triple(0, shown), ALPHA.scalar(0, alpha)]
 }
 
-/// The light of a pixel: the blended colours, before what is behind them, decoded.
-pub(crate) fn displayed<R: Real>(
+/// The blended colours before this light, in the space of blending.
+pub(crate) fn before<R: Real>(
     source: &Source<'_, R>,
     color: [R; 3],
-    behind: impl FnOnce() -> Option<(R, [R; 3])>,
+    through: R,
+    light: [R; 3],
 ) -> [R; 3] {
+    let light = in_space(light, source.space);
     let mut whole = color;
-    if let Some((through, light)) = behind() {
-        let light = in_space(light, source.space);
-        for (whole, light) in whole.iter_mut().zip(light) {
-            *whole = *whole + through * light;
-        }
+    for (whole, light) in whole.iter_mut().zip(light) {
+        *whole = *whole + through * light;
     }
-    if source.space == Encoding::Srgb { whole.map_inline(srgb::decoded) } else { whole }
+    whole
 }
 
 /// Runs one stage on a client's planes.

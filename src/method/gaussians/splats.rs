@@ -1,15 +1,13 @@
-//! Project all Gaussians of a scene, put them in order, and sort them into tiles.
+//! Project one Gaussian of a scene, and find its colour and the pixels that it may touch.
 
 use super::{BlendSpace, ColorBounds, Order, Settings, Support};
-use crate::frame::{Bins, Exec, Grid, Rect};
-use crate::method::Job;
-use crate::method::prepare::batch_size;
+use crate::frame::Rect;
 use crate::number::{Exact, MapInline, Real, Vector2, Vector3, elementary, srgb};
 use crate::scene::gaussians::Encoding;
 use crate::scene::{Camera, Gaussians, Scene};
 use crate::shade::harmonics;
 use crate::splat::gaussian::{GaussianProjector, GaussianShape, ProjectedGaussian, Symmetric};
-use crate::splat::{Fate, Tally, View};
+use crate::splat::{Fate, View};
 
 /// A splat that is drawn: all that its fragments need.
 #[derive(Clone, Copy, Debug)]
@@ -27,6 +25,8 @@ pub(crate) struct GaussianSplat<R> {
     pub(crate) depth: R,
     /// What one order for the picture compares.
     pub(crate) key: R,
+    /// No fragment beyond this q/2 has the least alpha; the fast path alone needs it.
+    pub(crate) reach: f32,
 }
 
 /// The splat in the camera frame, for the order of a pixel.
@@ -166,20 +166,37 @@ impl<'a, R: Real> Source<'a, R> {
         }
     }
 
-    /// The pixels that a splat may touch; from ranges of its numbers, those that it may touch for
-    /// any of them.
-    pub(crate) fn bounds(&self, center: [[f64; 2]; 2], [xx, xy, yy]: [f64; 3], alpha: f64) -> Rect {
-        let k = f64::from(self.settings.cutoff);
+    /// The q/2 at which o e^(-q/2) is the least alpha: +inf if that is 0, below 0 if o is less.
+    pub(crate) fn reach(&self, alpha: f64) -> f64 {
         let least = f64::from(self.settings.least_alpha);
+        match (alpha < least, least > 0.0) {
+            (true, _) => f64::NEG_INFINITY,
+            (_, true) => elementary::ln(alpha / least),
+            _ => f64::INFINITY,
+        }
+    }
+
+    /// The pixels that a splat of this [`Self::reach`] may touch; from ranges of its numbers, those
+    /// that it may touch for any of them.
+    pub(crate) fn bounds(
+        &self,
+        center: [[f64; 2]; 2],
+        [xx, xy, yy]: [f64; 3],
+        (alpha, reach): (f64, f64),
+    ) -> Rect {
+        let k = f64::from(self.settings.cutoff);
         let wide = |q: f64| {
             let side = |v: f64| (q * v).sqrt() * (1.0 + 1.0 / 1024.0) + 1.0;
             rect(center, [side(xx), side(yy)], self.size, Cover::Centers)
         };
+        if reach < 0.0 {
+            return Rect::default();
+        }
         // A fragment beyond this has less than the least alpha.
-        let dense = match (alpha < least, least > 0.0) {
-            (true, _) => return Rect::default(),
-            (_, true) => wide(2.0 * elementary::ln(alpha / least)),
-            _ => Rect { x0: 0, y0: 0, x1: self.size[0], y1: self.size[1] },
+        let dense = if reach == f64::INFINITY {
+            Rect { x0: 0, y0: 0, x1: self.size[0], y1: self.size[1] }
+        } else {
+            wide(2.0 * reach)
         };
         let support = match self.settings.support {
             Support::None => dense,
@@ -252,82 +269,30 @@ fn rect(center: [[f64; 2]; 2], extent: [f64; 2], size: [u32; 2], cover: Cover) -
     Rect { x0, y0, x1, y1 }
 }
 
-/// All splats of a picture in their order, with the tiles that they may touch.
-#[derive(Debug)]
-pub(crate) struct Splats<R> {
-    pub(crate) tally: Tally,
-    pub(crate) all: Vec<GaussianSplat<R>>,
-    /// Beside each splat, if each pixel has its own order.
-    pub(crate) solids: Vec<Solid<R>>,
-    /// Runs of splats: where each begins, and its bins.
-    bins: Vec<(usize, Bins)>,
-}
-
-impl<R: Exact> Splats<R> {
-    /// The splats of a picture, for the tiles of a grid.
-    pub(crate) fn new(job: &Job<'_>, grid: &Grid, source: &Source<'_, R>) -> Self {
-        let (count, exec) = (source.len(), job.exec);
-        let size = batch_size(grid, count);
-        let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
-        let batches = exec.ordered(ranges.collect(), |range| {
-            let (mut drawn, mut tally) = (Vec::with_capacity(range.len()), Tally::default());
-            for i in range {
-                let (splat, fate) = source.splat(i);
-                tally.count(fate);
-                if fate == Fate::Visible {
-                    drawn.push(splat);
-                }
-            }
-            (drawn, tally)
-        });
-        let tally = batches.iter().fold(Tally::default(), |sum, (_, tally)| sum.plus(tally));
-        let mut all: Vec<_> = batches.into_iter().flat_map(|(drawn, _)| drawn).collect();
-        if source.settings.order == Order::Steps {
-            steps(&mut all);
-        }
-        let own = source.settings.order == Order::Pixel;
-        if !own {
-            all = ordered(&all, exec);
-        }
-        let mut solids = Vec::new();
-        if own {
-            exec.extend(&mut solids, all.len(), |i| source.solid(all[i].index as usize));
-        }
-        let runs: Vec<usize> = (0..all.len()).step_by(size.max(1)).collect();
-        let bins = exec.ordered(runs, |first| {
-            let run = &all[first..all.len().min(first + size)];
-            (first, Bins::new(grid, run.len(), |i| run[i].bounds))
-        });
-        Self { tally, all, solids, bins }
-    }
-
-    /// The places of the splats that may touch a rectangle in a tile, in their order.
-    pub(crate) fn places(&self, tile: usize, rect: Rect) -> Vec<usize> {
-        let mut places = Vec::new();
-        for (first, bins) in &self.bins {
-            bins.for_each(tile, |i| {
-                let place = first + i as usize;
-                if !self.all[place].bounds.intersection(&rect).is_empty() {
-                    places.push(place);
-                }
-            });
-        }
-        places
-    }
-}
-
 impl<R: Exact> Source<'_, R> {
+    /// A q/2 beyond which rounding leaves no fragment the least alpha.
+    fn beyond(&self, reach: f64) -> f32 {
+        // The errors of both factors of alpha, of their product and of q/2 itself are below 2^-20,
+        // but not where numbers are so small that they lose bits.
+        let margin = 1.0 / 1_048_576.0;
+        let small = self.settings.least_alpha < 1e-30;
+        if small { f32::INFINITY } else { (reach * (1.0 + margin) + margin) as f32 }
+    }
+
     /// An item as a splat, and whether it is drawn.
     #[inline]
-    pub(crate) fn splat(&self, i: usize) -> (GaussianSplat<R>, Fate) {
+    pub(super) fn splat(&self, i: usize) -> (GaussianSplat<R>, Fate) {
         let projected = self.project(i);
         let Projected { on_screen, alpha, .. } = projected;
         let ProjectedGaussian { place, center, ellipse, conic, .. } = on_screen;
         let [x, y] = [center.x, center.y].map_inline(R::to_f64);
         let behind = self.projector.behind(place);
         let sound = !on_screen.degenerate();
-        let bounds = if sound && !behind {
-            self.bounds([[x, x], [y, y]], ellipse.map_inline(R::to_f64), alpha.to_f64())
+        let alpha = alpha.to_f64();
+        let seen = sound && !behind;
+        let reach = if seen { self.reach(alpha) } else { f64::NEG_INFINITY };
+        let bounds = if seen {
+            self.bounds([[x, x], [y, y]], ellipse.map_inline(R::to_f64), (alpha, reach))
         } else {
             Rect::default()
         };
@@ -348,45 +313,16 @@ impl<R: Exact> Source<'_, R> {
             color,
             depth: place.z,
             key: projected.key(self.settings.order),
+            reach: self.beyond(reach),
         };
         (splat, fate)
     }
 
-    fn solid(&self, i: usize) -> Solid<R> {
+    /// An item in the camera frame.
+    pub(super) fn solid(&self, i: usize) -> Solid<R> {
         let shape = self.shape(i);
         let place = self.projector.place(shape.position);
         Solid { place, adjugate: self.projector.turned(&shape.adjugate) }
-    }
-}
-
-/// The splats in ascending order of their keys, which are > 0 or of an orthographic camera; ties to
-/// the lower index.
-fn ordered<R: Exact>(all: &[GaussianSplat<R>], exec: &Exec) -> Vec<GaussianSplat<R>> {
-    let mut order = Vec::with_capacity(all.len());
-    exec.extend(&mut order, all.len(), |i| (rank(all[i].key.to_f64()), i as u32));
-    exec.sort(&mut order);
-    let mut sorted = Vec::with_capacity(all.len());
-    exec.extend(&mut sorted, all.len(), |i| all[order[i].1 as usize]);
-    sorted
-}
-
-/// The place of a number in the ascending list of all numbers.
-fn rank(value: f64) -> u64 {
-    let bits = (value + 0.0).to_bits();
-    if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }
-}
-
-/// Replaces each key by its step: floor(((key - least) / (most - least)) 65535); 0 if all are equal.
-fn steps<R: Exact>(all: &mut [GaussianSplat<R>]) {
-    let keys = || all.iter().map(|splat| splat.key);
-    let least = keys().reduce(|a, b| a.at_most(b));
-    let most = keys().reduce(|a, b| a.at_least(b));
-    let (Some(least), Some(most)) = (least, most) else { return };
-    let range = most - least;
-    for splat in all {
-        let share = (splat.key - least) / range;
-        let step = (share * R::from_f32(65_535.0)).floor();
-        splat.key = if range > R::ZERO { step } else { R::ZERO };
     }
 }
 

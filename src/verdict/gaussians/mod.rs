@@ -30,12 +30,13 @@ use crate::frame::Rect;
 use crate::method::Job;
 use crate::method::gaussians::Settings;
 use crate::method::gaussians::blending::GaussianPixel;
-use crate::method::gaussians::picture::displayed;
+use crate::method::gaussians::picture::before;
 use crate::method::gaussians::splats::Source;
 use crate::method::surface::{ALPHA, ID, SHADED};
 use crate::number::ball::Profile;
-use crate::number::{Ball, MapInline, Real};
+use crate::number::{Ball, MapInline, Real, srgb};
 use crate::scene::Environment;
+use crate::scene::gaussians::Encoding;
 use crate::verdict::checks::{input, inputs, number, triple, widened};
 use crate::verdict::client::{Client, Storage, StoredPlane};
 use crate::verdict::marks::{self, Counts, Marks, PixelMarks, counted};
@@ -162,13 +163,14 @@ impl<'a, P: Profile> Judge<'a, P> {
             .through
             .as_ref()
             .map_or_else(|| widened(own.through, lost(1.0)), |plane| input(plane, at));
-        let light = displayed(&self.source, color, || {
-            let environment = self.environment?;
+        let light = self.environment.map_or(color, |environment| {
             let ray = self.source.projector.view.ray(at.0, at.1);
             let twice = self.supposed == Supposed::BackgroundTwice;
             let through = if twice { through + through } else { through };
-            Some((through, environment.enclosure(ray)))
+            before(&self.source, color, through, environment.enclosure(ray))
         });
+        let encoded = self.source.space == Encoding::Srgb;
+        let light = if encoded { light.map_inline(srgb::decoded) } else { light };
         let alpha = if self.environment.is_some() { Ball::ONE } else { Ball::ONE - through };
         let shown = Blend { color: light, alpha };
         let report = &mut |_: usize, error: f64, fault: &dyn Fn() -> _| pixel.found(error, fault);

@@ -101,9 +101,11 @@ fn possible<P: Profile>(
         let [small, large] = if across[0] < across[1] { across } else { [across[1], across[0]] };
         let small = if xy[0] < 0.0 && xy[1] > 0.0 { 0.0 } else { small };
         let positive = |end: f64| if end > 0.0 { end } else { 0.0 };
-        let widest = source.bounds([x, y], [xx[1], large, yy[1]], most);
+        let with_reach = |alpha| (alpha, source.reach(alpha));
+        let widest = source.bounds([x, y], [xx[1], large, yy[1]], with_reach(most));
         let ends = [[x[1], x[0]], [y[1], y[0]]];
-        (widest, source.bounds(ends, [positive(xx[0]), small, positive(yy[0])], least))
+        let smallest = [positive(xx[0]), small, positive(yy[0])];
+        (widest, source.bounds(ends, smallest, with_reach(least)))
     } else {
         (job.picture(), Rect::default())
     };
@@ -126,6 +128,7 @@ fn possible<P: Profile>(
         color: source.look(i, &shape).1,
         depth: place.z,
         key: projected.key(source.settings.order),
+        reach: f32::INFINITY,
     };
     Some(PossibleSplat { splat, certain, sound, products: [a * p.x, b * p.y, c * p.z], solid })
 }

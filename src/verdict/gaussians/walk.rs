@@ -123,7 +123,10 @@ impl<'a, P: Profile> Walker<'a, P> {
             return None;
         }
         let depth = match &splat.solid {
-            Some(solid) => self.source.projector.deepest(&solid.adjugate, solid.place, at),
+            Some(solid) => {
+                let ray = self.source.projector.ray(at);
+                self.source.projector.deepest(&solid.adjugate, solid.place, ray)
+            }
             None => own.depth,
         };
         let key = if splat.solid.is_some() { depth } else { own.key };

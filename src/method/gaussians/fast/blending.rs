@@ -3,11 +3,11 @@
 use crate::frame::{NO_ID, Rect};
 use crate::method::fast::tile::{BlockGrid, SIDE};
 use crate::method::gaussians::Settings;
-use crate::method::gaussians::blending::Rules;
+use crate::method::gaussians::blending::{GaussianPixel, Rules};
 use crate::method::gaussians::splats::GaussianSplat;
 use crate::number::Real;
 use crate::number::elementary::exp_f32_in_range;
-use crate::number::lanes::{LANES, Lanes, any, mask, vectorized};
+use crate::number::lanes::{LANES, Lanes, Mask, any, each, mask, select, select_u32, vectorized};
 use multiversion::target::target_cfg_f;
 
 /// The pixels of a block, row by row.
@@ -31,7 +31,7 @@ pub(super) struct Block {
 }
 
 impl Block {
-    const EMPTY: Self = Self {
+    pub(super) const EMPTY: Self = Self {
         color: [[0.0; LANES]; 3],
         alpha: [0.0; LANES],
         through: [1.0; LANES],
@@ -45,6 +45,17 @@ impl Block {
         count: [0; LANES],
         alive: [u32::MAX; LANES],
     };
+
+    /// Replaces a pixel by one that is finished.
+    pub(super) fn set(&mut self, i: usize, pixel: GaussianPixel<f32>) {
+        for (lanes, part) in self.color.iter_mut().zip(pixel.blend.color) {
+            lanes[i] = part;
+        }
+        self.through[i] = pixel.blend.through;
+        (self.expected[i], self.median[i]) = (pixel.expected, pixel.median);
+        (self.depth[i], self.id[i], self.heaviest[i]) = (pixel.depth, pixel.id, pixel.heaviest);
+        self.count[i] = pixel.count.into();
+    }
 }
 
 /// The blocks of a tile.
@@ -59,27 +70,14 @@ impl Blocks {
         let mut all = vec![Block::EMPTY; grid.len()];
         // Lanes beyond the edge of the picture never begin, so that they hold up no block.
         for (block, pixels) in all.iter_mut().enumerate() {
-            let (x, y) = grid.corner(block);
-            pixels.alive = mask(|i| {
-                let (column, row) = (i as u32 % SIDE, i as u32 / SIDE);
-                x + column < rect.x1 && y + row < rect.y1
-            });
+            pixels.alive = inside(rect, grid.corner(block));
         }
         Self { grid, all }
     }
 
     /// Blends splats in their order.
     pub(super) fn blend(&mut self, splats: &[GaussianSplat<f32>], settings: &Settings) {
-        let rules = Rules::new(settings);
-        let limits = Limits {
-            inside: rules.limit.unwrap_or(f32::INFINITY),
-            least: rules.least,
-            most: rules.most,
-            // No transmittance is below 0, so none ends.
-            stop: if settings.stop > 0.0 { settings.stop } else { -1.0 },
-            stop_at: settings.stop_at,
-        };
-        blend(self, splats, &limits);
+        blend(self, splats, &Limits::new(settings));
     }
 
     /// The blocks when all splats are blended.
@@ -96,12 +94,26 @@ impl Blocks {
 
 /// The limits of the decisions on a fragment.
 #[derive(Clone, Copy)]
-struct Limits {
+pub(super) struct Limits {
     inside: f32,
     least: f32,
     most: f32,
     stop: f32,
     stop_at: bool,
+}
+
+impl Limits {
+    pub(super) fn new(settings: &Settings) -> Self {
+        let rules = Rules::new(settings);
+        Self {
+            inside: rules.limit.unwrap_or(f32::INFINITY),
+            least: rules.least,
+            most: rules.most,
+            // No transmittance is below 0, so none ends.
+            stop: if settings.stop > 0.0 { settings.stop } else { -1.0 },
+            stop_at: settings.stop_at,
+        }
+    }
 }
 
 vectorized!(
@@ -121,7 +133,10 @@ vectorized!(
                         continue;
                     }
                     let corner = (rect.x0 + column * SIDE, rect.y0 + row * SIDE);
-                    block.meet::<FUSED>(splat, limits, corner);
+                    let fragments = fragments::<FUSED>(splat, limits, corner, &block.alive);
+                    if let Some((alpha, takes)) = fragments {
+                        block.add(splat, limits, (&alpha, &takes));
+                    }
                     left -= usize::from(!any(&block.alive));
                 }
             }
@@ -132,66 +147,112 @@ vectorized!(
     }
 );
 
+/// The pixels of a block that are in a tile.
+pub(super) fn inside(rect: Rect, (x, y): (u32, u32)) -> Mask {
+    mask(|i| {
+        let (column, row) = (i as u32 % SIDE, i as u32 / SIDE);
+        x + column < rect.x1 && y + row < rect.y1
+    })
+}
+
+/// The alphas of a splat in a block from this pixel on, and the lanes among `of` that take them; none
+/// if no lane does.
+#[inline(always)]
+pub(super) fn fragments<const FUSED: bool>(
+    splat: &GaussianSplat<f32>,
+    limits: &Limits,
+    (x, y): (u32, u32),
+    of: &Mask,
+) -> Option<(Lanes, Mask)> {
+    let of = *of;
+    let Rect { x0, y0, x1, y1 } = splat.bounds;
+    let ([xx, xy, yy], center) = (splat.conic, splat.center);
+    // Most blocks that a splat does not touch are left before the exponential.
+    let limit = limits.inside.at_most(splat.reach);
+    let (mut power, mut takes) = ([0.0; LANES], [0_u32; LANES]);
+    for i in 0..LANES {
+        let (column, row) = (x + i as u32 % SIDE, y + i as u32 / SIDE);
+        let dx = center.x - (column as f32 + 0.5);
+        let dy = center.y - (row as f32 + 0.5);
+        power[i] = 0.5 * (xx * (dx * dx) + yy * (dy * dy)) + xy * (dx * dy);
+        let inside = (power[i] >= 0.0)
+            & (power[i] <= limit)
+            & (column >= x0)
+            & (column < x1)
+            & (row >= y0)
+            & (row < y1);
+        takes[i] = if inside { of[i] } else { 0 };
+    }
+    if !any(&takes) {
+        return None;
+    }
+    let mut alpha = [0.0; LANES];
+    for i in 0..LANES {
+        // A greater q/2 gives 0 as well, and no other number is used.
+        let negative = (-power[i]).clamped(-104.0, 0.0);
+        alpha[i] = (splat.alpha * exp_f32_in_range::<FUSED>(negative)).at_most(limits.most);
+        takes[i] = if alpha[i] >= limits.least { takes[i] } else { 0 };
+    }
+    any(&takes).then_some((alpha, takes))
+}
+
 impl Block {
-    /// Blends the fragments of a splat.
+    /// Blends the fragments of a splat in the lanes that take it. Numbers that few splats change are
+    /// touched only by those.
     #[inline(always)]
-    fn meet<const FUSED: bool>(
+    fn add(
         &mut self,
         splat: &GaussianSplat<f32>,
         limits: &Limits,
-        (x, y): (u32, u32),
+        (alpha, takes): (&Lanes, &Mask),
     ) {
-        let mut own = *self;
-        let Rect { x0, y0, x1, y1 } = splat.bounds;
-        let ([xx, xy, yy], center) = (splat.conic, splat.center);
-        let (mut alpha, mut takes) = ([0.0; LANES], [0_u32; LANES]);
-        for i in 0..LANES {
-            let (column, row) = (x + i as u32 % SIDE, y + i as u32 / SIDE);
-            let dx = center.x - (column as f32 + 0.5);
-            let dy = center.y - (row as f32 + 0.5);
-            let power = 0.5 * (xx * (dx * dx) + yy * (dy * dy)) + xy * (dx * dy);
-            // A greater q/2 gives 0 as well, and no other number is used.
-            let negative = (-power).clamped(-104.0, 0.0);
-            alpha[i] = (splat.alpha * exp_f32_in_range::<FUSED>(negative)).at_most(limits.most);
-            let inside = (power >= 0.0)
-                & (power <= limits.inside)
-                & (column >= x0)
-                & (column < x1)
-                & (row >= y0)
-                & (row < y1);
-            let drawn = inside & (alpha[i] >= limits.least);
-            takes[i] = if drawn { own.alive[i] } else { 0 };
-        }
-        if !any(&takes) {
-            return;
-        }
+        let before = self.through;
+        let weight = each(|i| before[i] * alpha[i]);
+        let through = each(|i| before[i] * (1.0 - alpha[i]));
+        let ends = if limits.stop_at {
+            mask(|i| through[i] <= limits.stop)
+        } else {
+            mask(|i| through[i] < limits.stop)
+        };
+        let drawn = each(|i| takes[i] & !ends[i]);
+        self.alive = each(|i| self.alive[i] & !(takes[i] & ends[i]));
+        self.through = select(&drawn, &through, &before);
+        let adds = mask(|i| (drawn[i] != 0) & (weight[i] > 0.0));
         let [r, g, b] = splat.color;
-        for i in 0..LANES {
-            let through = own.through[i] * (1.0 - alpha[i]);
-            let ends = if limits.stop_at { through <= limits.stop } else { through < limits.stop };
-            let met = takes[i] != 0;
-            own.alive[i] = if met & ends { 0 } else { own.alive[i] };
-            let drawn = met & !ends;
-            let weight = own.through[i] * alpha[i];
-            let adds = drawn & (weight > 0.0);
-            own.color[0][i] = if adds { own.color[0][i] + weight * r } else { own.color[0][i] };
-            own.color[1][i] = if adds { own.color[1][i] + weight * g } else { own.color[1][i] };
-            own.color[2][i] = if adds { own.color[2][i] + weight * b } else { own.color[2][i] };
-            own.alpha[i] = if adds { own.alpha[i] + weight } else { own.alpha[i] };
-            let moment = own.moment[i] + weight * splat.depth;
-            own.moment[i] = if drawn { moment } else { own.moment[i] };
-            let half = drawn & (own.through[i] > 0.5);
-            own.median[i] = if half { splat.depth } else { own.median[i] };
-            let first = drawn & (own.id[i] == NO_ID);
-            own.id[i] = if first { splat.index } else { own.id[i] };
-            own.depth[i] = if first { splat.depth } else { own.depth[i] };
-            let heavier = drawn & ((own.heaviest[i] == NO_ID) | (weight > own.weight[i]));
-            own.heaviest[i] = if heavier { splat.index } else { own.heaviest[i] };
-            own.weight[i] = if heavier { weight } else { own.weight[i] };
-            let more = drawn & (own.count[i] < 255);
-            own.count[i] += u32::from(more);
-            own.through[i] = if drawn { through } else { own.through[i] };
-        }
-        *self = own;
+        self.color[0] = sum(&adds, &self.color[0], &weight, r);
+        self.color[1] = sum(&adds, &self.color[1], &weight, g);
+        self.color[2] = sum(&adds, &self.color[2], &weight, b);
+        self.alpha = sum(&adds, &self.alpha, &weight, 1.0);
+        self.moment = sum(&drawn, &self.moment, &weight, splat.depth);
+        // There are fewer than 2^32 splats.
+        self.count = each(|i| self.count[i] + (drawn[i] & 1));
+        self.mark(splat, &before, &weight, &drawn);
     }
+
+    /// Notes the splat in the lanes where it is the first, the heaviest or the median.
+    #[inline(always)]
+    fn mark(&mut self, splat: &GaussianSplat<f32>, before: &Lanes, weight: &Lanes, drawn: &Mask) {
+        let half = mask(|i| (drawn[i] != 0) & (before[i] > 0.5));
+        if any(&half) {
+            self.median = select(&half, &[splat.depth; LANES], &self.median);
+        }
+        let (id, heaviest, most) = (self.id, self.heaviest, self.weight);
+        let first = mask(|i| (drawn[i] != 0) & (id[i] == NO_ID));
+        if any(&first) {
+            self.id = select_u32(&first, &[splat.index; LANES], &id);
+            self.depth = select(&first, &[splat.depth; LANES], &self.depth);
+        }
+        let heavier = mask(|i| (drawn[i] != 0) & ((heaviest[i] == NO_ID) | (weight[i] > most[i])));
+        if any(&heavier) {
+            self.heaviest = select_u32(&heavier, &[splat.index; LANES], &heaviest);
+            self.weight = select(&heavier, weight, &most);
+        }
+    }
+}
+
+/// The sums with weight times a factor in the chosen lanes.
+#[inline(always)]
+fn sum(chosen: &Mask, sums: &Lanes, weight: &Lanes, factor: f32) -> Lanes {
+    let more = each(|i| sums[i] + weight[i] * factor);
+    select(chosen, &more, sums)
 }

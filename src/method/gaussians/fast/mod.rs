@@ -2,22 +2,21 @@
 //!
 //! A tile gathers its splats in their order. Each splat is blended into the blocks that it may touch;
 //! a block whose pixels are all done is left out, and the tile ends when all of its blocks are. In an
-//! order of each pixel's own, the definition draws each block from the splats that may touch it.
+//! order of each pixel's own, a block lists all fragments first, and each pixel then sorts its own.
 
 mod blending;
+mod own_order;
 
 use super::blending::{Blending, GaussianPixel, Rules};
+use super::order::Splats;
 use super::picture::{self, display};
-use super::splats::{Source, Splats};
+use super::splats::Source;
 use super::{Order, Settings, planes};
-use crate::frame::{Grid, NO_ID, NamedPlane, Plane, Pool, Rect, TileMut};
+use crate::frame::{Grid, NO_ID, NamedPlane, Plane, Pool, TileMut};
 use crate::method::Job;
 use crate::method::buffer_formats::Buffers;
 use crate::method::fast::store::{clear_plane, store_plane};
-use crate::method::fast::tile::{BlockGrid, SIDE};
 use crate::method::picture::{Clock, Picture};
-use crate::method::stage::Keep;
-use crate::method::tiled::{self, Tiled};
 use blending::{Block, Blocks};
 
 /// Draws the picture.
@@ -27,21 +26,24 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Pictu
     }
     let mut clock = Clock::default();
     let source = Source::<f32>::new(job.scene, job.camera, settings);
-    if settings.order == Order::Pixel {
-        return by_pixels(job, source, clock);
-    }
-    let grid = job.strips();
+    let own = settings.order == Order::Pixel;
+    // Strips for one order; blocks that list their splats look at fewer in a square tile.
+    let grid = if own { job.grid() } else { job.strips() };
     let splats = Splats::new(job, &grid, &source);
     clock.lap(planes::STAGES[0].name);
+    let rules = Rules::new(settings);
+    let blending = Blending { source, splats: &splats, rules, buffers: Buffers::F32 };
     let mut target = Target::new(job.camera.size(), pool);
     let tiles = target.cut(&grid, job);
     job.exec.ordered(tiles, |mut tile| {
-        let rect = tile.depth.rect;
-        let places = splats.places(tile.depth.index, rect);
-        let gathered: Vec<_> = places.into_iter().map(|place| splats.all[place]).collect();
-        if gathered.is_empty() {
+        let (index, rect) = (tile.depth.index, tile.depth.rect);
+        let places = splats.places(index, rect);
+        if places.is_empty() {
             tile.clear();
+        } else if own {
+            tile.store(&own_order::blend(&blending, &places, rect));
         } else {
+            let gathered: Vec<_> = places.into_iter().map(|place| *splats.at(place)).collect();
             let mut blocks = Blocks::new(rect);
             blocks.blend(&gathered, settings);
             tile.store(blocks.finished());
@@ -49,40 +51,12 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Pictu
     });
     clock.lap(planes::STAGES[1].name);
     let mut left = Vec::new();
-    let shown = display(job, &source, &target.color, &target.through);
+    let shown = display(job, &blending.source, &target.color, &target.through);
     left.extend(target.planes());
     left.extend(shown);
     clock.lap(planes::STAGES[2].name);
     let (frame, timings) = (job.frame(left), clock.into_laps());
     Picture { frame, tally: splats.tally, timings, seen: None }
-}
-
-/// Draws a picture in an order of each pixel's own: as the definition does, but each pixel looks only
-/// at the splats of its block.
-fn by_pixels(job: &Job<'_>, source: Source<'_, f32>, mut clock: Clock) -> Picture<f32> {
-    let splats = Splats::new(job, &job.grid(), &source);
-    clock.lap(planes::STAGES[0].name);
-    let rules = Rules::new(source.settings);
-    let blending = Blending { source, splats: &splats, rules, buffers: Buffers::F32 };
-    let blended = Tiled::new(job, |tile, rect| {
-        let places = splats.places(tile, rect);
-        let mut pixels = vec![GaussianPixel::EMPTY; rect.pixels()];
-        let grid = BlockGrid::new(rect);
-        for block in 0..grid.len() {
-            let (x0, y0) = grid.corner(block);
-            let own = Rect { x0, y0, x1: x0 + SIDE, y1: y0 + SIDE }.intersection(&rect);
-            let touches =
-                |place: &&usize| !splats.all[**place].bounds.intersection(&own).is_empty();
-            let near: Vec<usize> = places.iter().filter(touches).copied().collect();
-            for (x, y) in tiled::pixels(own) {
-                let at = (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize;
-                pixels[at] = blending.pixel(&near, (x, y), |_, _, _| ());
-            }
-        }
-        pixels
-    });
-    clock.lap(planes::STAGES[1].name);
-    picture::finished(job, (&blending.source, &blended), (splats.tally, clock), Keep::Picture)
 }
 
 /// The planes of blending.
@@ -192,7 +166,7 @@ impl TargetTile<'_> {
         store_plane(blocks, &mut self.median, |block, i| block.median[i]);
         store_plane(blocks, &mut self.id, |block, i| block.id[i]);
         store_plane(blocks, &mut self.heaviest, |block, i| block.heaviest[i]);
-        store_plane(blocks, &mut self.count, |block, i| block.count[i] as u8);
+        store_plane(blocks, &mut self.count, |block, i| block.count[i].min(255) as u8);
     }
 }
 

@@ -59,6 +59,7 @@ fn every_pixel_has_the_bits_of_the_definition() {
             *preset,
             Settings { order: Order::Steps, stop: 0.3, stop_at: true, ..*preset },
             Settings { cutoff: 1.5, least_alpha: 0.1, most_alpha: 0.4, degree: 1, ..*preset },
+            Settings { least_alpha: 3e-44, stop: 0.0, ..*preset },
         ];
         for (k, settings) in others.into_iter().enumerate() {
             let mut scene = scene(300, (k + number) as u32 % 4, (3 * number + k) as u64);

@@ -1,0 +1,121 @@
+//! Blend a tile in an order of each pixel's own.
+
+use super::blending::{Block, Limits, fragments, inside};
+use crate::frame::Rect;
+use crate::method::fast::tile::{BlockGrid, SIDE};
+use crate::method::gaussians::blending::{Blending, GaussianPixel};
+use crate::method::gaussians::splats::{GaussianSplat, Solid};
+use crate::number::lanes::{LANES, Lanes, each, vectorized};
+use crate::splat::gaussian::GaussianProjector;
+use multiversion::target::target_cfg_f;
+
+/// A fragment of a pixel.
+#[derive(Clone, Copy)]
+struct Fragment {
+    /// What orders it: [`rank`] of its depth, then its place in the order of the indices.
+    key: u64,
+    depth: f32,
+    alpha: f32,
+    /// Which of the tile's splats it is of.
+    splat: u32,
+}
+
+/// A splat of a tile, with its place in the order of the indices.
+struct Near {
+    splat: GaussianSplat<f32>,
+    solid: Solid<f32>,
+    place: u32,
+}
+
+/// The blocks of a tile.
+pub(super) fn blend(blending: &Blending<'_, f32>, places: &[usize], rect: Rect) -> Vec<Block> {
+    let splats = blending.splats;
+    let near = |&place: &usize| {
+        let (splat, solid) = (*splats.at(place), *splats.solid(place));
+        Near { splat, solid, place: place as u32 }
+    };
+    let mut all: Vec<Near> = places.iter().map(near).collect();
+    // Fragments that come about in order are sorted fast; the order of the lists decides nothing.
+    all.sort_unstable_by_key(|near| (rank(near.splat.depth), near.place));
+    let limits = Limits::new(blending.source.settings);
+    let mut lists: [Vec<Fragment>; LANES] = Default::default();
+    let grid = BlockGrid::new(rect);
+    let blocks = (0..grid.len()).map(|block| {
+        let mut pixels = Block::EMPTY;
+        lists.iter_mut().for_each(Vec::clear);
+        let place = (rect, grid.corner(block));
+        list(&mut lists, &all, (&limits, &blending.source.projector), place);
+        for (i, list) in lists.iter_mut().enumerate() {
+            if !list.is_empty() {
+                pixels.set(i, blended(blending, &all, list));
+            }
+        }
+        pixels
+    });
+    blocks.collect()
+}
+
+/// Sorts the fragments of a pixel and blends them.
+fn blended(
+    blending: &Blending<'_, f32>,
+    all: &[Near],
+    list: &mut [Fragment],
+) -> GaussianPixel<f32> {
+    list.sort_unstable_by_key(|fragment| fragment.key);
+    let mut pixel = GaussianPixel::EMPTY;
+    for &Fragment { depth, alpha, splat, .. } in &*list {
+        if blending.rules.ends(pixel.blend.through * (1.0 - alpha)) {
+            break;
+        }
+        pixel = blending.add(pixel, &all[splat as usize].splat, alpha, depth);
+    }
+    pixel.finished()
+}
+
+/// The place of a number in the ascending list of all numbers.
+#[inline(always)]
+fn rank(depth: f32) -> u32 {
+    let bits = (depth + 0.0).to_bits();
+    if bits >> 31 == 1 { !bits } else { bits | 1 << 31 }
+}
+
+vectorized!(
+    /// Lists the fragments of a block.
+    fn list(
+        lists: &mut [Vec<Fragment>; LANES],
+        all: &[Near],
+        (limits, projector): (&Limits, &GaussianProjector<f32>),
+        (rect, corner): (Rect, (u32, u32)),
+    ) {
+        const FUSED: bool = target_cfg_f!(target_feature = "fma");
+        let own = inside(rect, corner);
+        let block = Rect { x0: corner.0, y0: corner.1, x1: corner.0 + SIDE, y1: corner.1 + SIDE };
+        let pixel = |i: usize| (corner.0 + i as u32 % SIDE, corner.1 + i as u32 / SIDE);
+        let (u, v) = (each(|i| projector.ray(pixel(i))[0]), each(|i| projector.ray(pixel(i))[1]));
+        for (index, near) in (0..).zip(all) {
+            if near.splat.bounds.intersection(&block).is_empty() {
+                continue;
+            }
+            let Some((alpha, takes)) = fragments::<FUSED>(&near.splat, limits, corner, &own) else {
+                continue;
+            };
+            let depth = depths(projector, &near.solid, &u, &v);
+            for i in 0..LANES {
+                if takes[i] != 0 {
+                    let key = u64::from(rank(depth[i])) << 32 | u64::from(near.place);
+                    lists[i].push(Fragment { key, depth: depth[i], alpha: alpha[i], splat: index });
+                }
+            }
+        }
+    }
+);
+
+/// The depths of a splat along the rays of a block.
+#[inline(always)]
+fn depths(projector: &GaussianProjector<f32>, solid: &Solid<f32>, u: &Lanes, v: &Lanes) -> Lanes {
+    let mut depth = [0.0; LANES];
+    for i in 0..LANES {
+        depth[i] = projector.deepest(&solid.adjugate, solid.place, [u[i], v[i]]);
+    }
+    depth
+}

@@ -1,0 +1,144 @@
+//! Put all splats of a picture in order, and sort them into tiles.
+
+use super::Order;
+use super::splats::{GaussianSplat, Solid, Source};
+use crate::frame::{Bins, Exec, Grid, Rect};
+use crate::method::Job;
+use crate::method::prepare::batch_size;
+use crate::number::Exact;
+use crate::splat::{Fate, Tally};
+use std::ops::Range;
+
+/// All splats of a picture in their order, with the tiles that they may touch.
+#[derive(Debug)]
+pub(crate) struct Splats<R> {
+    pub(crate) tally: Tally,
+    /// The splats of each run of items.
+    batches: Vec<Batch<R>>,
+    /// How many items a run has, as a power of 2.
+    shift: u32,
+    /// Which splat has each place: its batch times the size of a run, and its index in the batch.
+    order: Vec<u32>,
+    /// Runs of places: where each begins, and its bins.
+    bins: Vec<(usize, Bins)>,
+}
+
+/// The splats of a run of items, in the order of their indices.
+#[derive(Debug)]
+struct Batch<R> {
+    splats: Vec<GaussianSplat<R>>,
+    /// Beside each splat, if each pixel has its own order.
+    solids: Vec<Solid<R>>,
+}
+
+impl<R: Exact> Batch<R> {
+    /// The splats of a run of items, and what became of all of them.
+    fn new(source: &Source<'_, R>, range: Range<usize>, own: bool) -> (Self, Tally) {
+        let (mut splats, mut tally) = (Vec::with_capacity(range.len()), Tally::default());
+        for i in range {
+            let (splat, fate) = source.splat(i);
+            tally.count(fate);
+            if fate == Fate::Visible {
+                splats.push(splat);
+            }
+        }
+        let solid = |splat: &GaussianSplat<R>| source.solid(splat.index as usize);
+        let solids = if own { splats.iter().map(solid).collect() } else { Vec::new() };
+        (Self { splats, solids }, tally)
+    }
+}
+
+impl<R: Exact> Splats<R> {
+    /// The splats of a picture, for the tiles of a grid.
+    pub(crate) fn new(job: &Job<'_>, grid: &Grid, source: &Source<'_, R>) -> Self {
+        let (count, exec) = (source.len(), job.exec);
+        let shift = batch_size(grid, count).next_power_of_two().ilog2();
+        let size = 1 << shift;
+        let own = source.settings.order == Order::Pixel;
+        let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
+        let batches = exec.ordered(ranges.collect(), |range| Batch::new(source, range, own));
+        let (mut batches, tallies): (Vec<_>, Vec<_>) = batches.into_iter().unzip();
+        let tally = tallies.into_iter().fold(Tally::default(), |sum, tally| sum.plus(&tally));
+        if source.settings.order == Order::Steps {
+            steps(&mut batches);
+        }
+        let order = ordered(&batches, shift, own, exec);
+        let mut all = Self { tally, batches, shift, order, bins: Vec::new() };
+        let runs: Vec<usize> = (0..all.order.len()).step_by(size).collect();
+        all.bins = exec.ordered(runs, |first| {
+            let end = all.order.len().min(first + size);
+            (first, Bins::new(grid, end - first, |i| all.at(first + i).bounds))
+        });
+        all
+    }
+
+    /// The splat at a place of the order.
+    #[inline(always)]
+    pub(crate) fn at(&self, place: usize) -> &GaussianSplat<R> {
+        let (batch, i) = self.split(place);
+        &self.batches[batch].splats[i]
+    }
+
+    /// The same splat in the camera frame, if each pixel has its own order.
+    #[inline(always)]
+    pub(crate) fn solid(&self, place: usize) -> &Solid<R> {
+        let (batch, i) = self.split(place);
+        &self.batches[batch].solids[i]
+    }
+
+    #[inline(always)]
+    fn split(&self, place: usize) -> (usize, usize) {
+        let at = self.order[place] as usize;
+        (at >> self.shift, at & ((1 << self.shift) - 1))
+    }
+
+    /// The places of the splats that may touch a rectangle in a tile, in their order.
+    pub(crate) fn places(&self, tile: usize, rect: Rect) -> Vec<usize> {
+        let mut places = Vec::new();
+        for (first, bins) in &self.bins {
+            bins.for_each(tile, |i| {
+                let place = first + i as usize;
+                if !self.at(place).bounds.intersection(&rect).is_empty() {
+                    places.push(place);
+                }
+            });
+        }
+        places
+    }
+}
+
+/// The splats in ascending order of their keys, ties to the lower index; in that of their indices if
+/// each pixel has its `own` order.
+fn ordered<R: Exact>(batches: &[Batch<R>], shift: u32, own: bool, exec: &Exec) -> Vec<u32> {
+    let ranked = exec.ordered((0..batches.len()).collect(), |batch| {
+        let places = (batch as u32) << shift..;
+        let splats = batches[batch].splats.iter().zip(places);
+        let key = |splat: &GaussianSplat<R>| if own { 0 } else { rank(splat.key.to_f64()) };
+        splats.map(|(splat, place)| (key(splat), place)).collect::<Vec<_>>()
+    });
+    let mut ranked = ranked.concat();
+    if !own {
+        exec.sort(&mut ranked);
+    }
+    ranked.into_iter().map(|(_, place)| place).collect()
+}
+
+/// The place of a number in the ascending list of all numbers.
+pub(super) fn rank(value: f64) -> u64 {
+    let bits = (value + 0.0).to_bits();
+    if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }
+}
+
+/// Replaces each key by its step: floor(((key - least) / (most - least)) 65535); 0 if all are equal.
+fn steps<R: Exact>(batches: &mut [Batch<R>]) {
+    let keys = || batches.iter().flat_map(|batch| &batch.splats).map(|splat| splat.key);
+    let least = keys().reduce(|a, b| a.at_most(b));
+    let most = keys().reduce(|a, b| a.at_least(b));
+    let (Some(least), Some(most)) = (least, most) else { return };
+    let range = most - least;
+    for splat in batches.iter_mut().flat_map(|batch| &mut batch.splats) {
+        let share = (splat.key - least) / range;
+        let step = (share * R::from_f32(65_535.0)).floor();
+        splat.key = if range > R::ZERO { step } else { R::ZERO };
+    }
+}
