@@ -1,10 +1,9 @@
-//! Judge a part of a picture: only the surfels that may touch it need a projection.
+//! Judge a part of a picture: only what may touch it needs a projection.
 
 use crate::frame::Rect;
-use crate::number::MapInline;
-use crate::scene::{Camera, Surfels};
-use crate::splat::{SplatSettings, View, batch};
-use std::ops::Range;
+use crate::number::{MapInline, Vector3};
+use crate::scene::Camera;
+use crate::splat::View;
 
 /// A part of a picture.
 #[derive(Clone, Copy, Debug)]
@@ -15,17 +14,24 @@ pub(crate) struct Part<'a> {
     pub(crate) spread: f64,
 }
 
+/// The most pieces of a part for which what is near them is looked for.
+const MOST_PIECES: usize = 32;
+
 impl Part<'_> {
+    /// Whether it pays to look for what is near: many pieces are near almost everything.
+    pub(crate) fn is_small(&self) -> bool {
+        self.pieces.len() <= MOST_PIECES
+    }
+
     /// Whether a splat with these bounds touches the part.
     pub(crate) fn touches(&self, bounds: &Rect) -> bool {
         self.pieces.iter().any(|(_, rect)| !rect.intersection(bounds).is_empty())
     }
 }
 
-/// Finds the surfels that may touch a part. This takes a fraction of the time of a projection.
+/// Finds what may touch a part. This takes a fraction of the time of a projection.
 pub(crate) struct Nearby<'a> {
     part: Part<'a>,
-    surfels: &'a Surfels,
     view: View<f64>,
     /// How far the low-pass filter reaches, in pixels, and a few pixels more.
     skirt: f64,
@@ -35,27 +41,16 @@ pub(crate) struct Nearby<'a> {
 const SLACK: f64 = 2.0;
 
 impl<'a> Nearby<'a> {
-    pub(crate) fn new(
-        part: Part<'a>,
-        (surfels, camera): (&'a Surfels, &Camera),
-        settings: &SplatSettings,
-    ) -> Self {
-        let kernel = &settings.kernel;
-        let skirt = f64::from(kernel.cutoff) * f64::from(kernel.low_pass).sqrt();
-        Self { part, surfels, view: View::new(camera), skirt: skirt + SLACK }
+    /// What is near a part, if splats are wider by `skirt` pixels than what they show.
+    pub(crate) fn new(part: Part<'a>, camera: &Camera, skirt: f64) -> Self {
+        Self { part, view: View::new(camera), skirt: skirt + SLACK }
     }
 
-    /// The surfels of a range that may touch the part.
-    pub(crate) fn of_range(&self, range: Range<usize>) -> Vec<usize> {
-        range.filter(|surfel| self.holds(*surfel)).collect()
-    }
-
-    /// Whether a surfel may touch the part. A sphere about the surfel decides it, where the sphere is
-    /// far before the eye.
-    fn holds(&self, surfel: usize) -> bool {
-        let Self { part, view, skirt, .. } = self;
-        let disc = batch::disc::<f64>(self.surfels, surfel);
-        let (p, reach) = (view.point(disc.position), disc.reach() * part.spread);
+    /// Whether a splat may touch the part, whose centre is here, and which reaches this far in the
+    /// world. A sphere decides it, where the sphere is far before the eye.
+    pub(crate) fn holds(&self, center: Vector3<f64>, reach: f64) -> bool {
+        let Self { part, view, skirt } = self;
+        let (p, reach) = (view.point(center), reach * part.spread);
         let t = -p.z;
         if view.perspective && !(t > 4.0 * reach) {
             return true;

@@ -3,7 +3,7 @@
 use super::Settings;
 use crate::frame::Rect;
 use crate::method::Job;
-use crate::method::part::Nearby;
+use crate::method::part::{Nearby, Part};
 use crate::method::prepare::Prepared;
 use crate::number::ball::{Common, Profile};
 use crate::number::{Ball, Truth};
@@ -23,9 +23,6 @@ pub(crate) struct PossibleSplat<P: Profile> {
 /// The splats of a picture, each with the pixels that may be inside.
 pub(crate) type PossibleSplats<P> = Prepared<Ball<P>, PossibleSplat<P>>;
 
-/// The most pieces of a part for which the surfels near them are looked for.
-const MOST_PIECES: usize = 32;
-
 /// Projects the surfels that may be drawn.
 pub(crate) fn project<P: Profile>(job: &Job<'_>, settings: &Settings) -> PossibleSplats<P> {
     project_into(job, settings, |possible| possible, |possible| possible.splat.bounds)
@@ -41,9 +38,10 @@ pub(crate) fn project_into<P: Profile, S: Copy + Send>(
     let surfels = &job.scene.surfels;
     let picture = job.picture();
     let common = Projector::new(View::new(job.camera), &settings.kernel, settings.cull);
-    // Many pieces are near most surfels.
-    let part = job.part.filter(|part| part.pieces.len() <= MOST_PIECES);
-    let nearby = part.map(|part| Nearby::new(part, (surfels, job.camera), settings));
+    let part = job.part.filter(Part::is_small);
+    let kernel = &settings.kernel;
+    let skirt = f64::from(kernel.cutoff) * f64::from(kernel.low_pass).sqrt();
+    let nearby = part.map(|part| Nearby::new(part, job.camera, skirt));
     Prepared::new(
         (job, &job.grid()),
         settings,
@@ -59,7 +57,13 @@ pub(crate) fn project_into<P: Profile, S: Copy + Send>(
                     splats.push(possible);
                 }
             };
-            let list = nearby.as_ref().map(|nearby| nearby.of_range(range.clone()));
+            let list = nearby.as_ref().map(|nearby| {
+                let near = |surfel: &usize| {
+                    let disc = batch::disc::<f64>(surfels, *surfel);
+                    nearby.holds(disc.position, disc.reach())
+                };
+                range.clone().filter(near).collect::<Vec<_>>()
+            });
             let some = (range, list.as_deref());
             each_of_range((projector, &common), surfels, some, each);
             Tally::default()

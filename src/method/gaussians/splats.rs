@@ -7,7 +7,7 @@ use crate::scene::gaussians::Encoding;
 use crate::scene::{Camera, Gaussians, Scene};
 use crate::shade::harmonics;
 use crate::splat::gaussian::{GaussianProjector, GaussianShape, ProjectedGaussian, Symmetric};
-use crate::splat::{Fate, View};
+use crate::splat::{Fate, View, batch};
 
 /// A splat that is drawn: all that its fragments need.
 #[derive(Clone, Copy, Debug)]
@@ -164,6 +164,43 @@ impl<'a, R: Real> Source<'a, R> {
             (Encoding::Linear, Encoding::Srgb) => srgb::encoded(part),
             _ => part,
         }
+    }
+
+    /// A sphere that holds an item as far as it may be drawn: its centre and radius in the world.
+    pub(crate) fn sphere(&self, i: usize) -> (Vector3<f64>, f64) {
+        let Self { scene, settings, .. } = self;
+        match &scene.gaussians {
+            Some(gaussians) => {
+                let scale = f64::from(gaussians.scale()[i].max_element());
+                (Vector3::from_glam(gaussians.position()[i]), self.widest() * scale)
+            }
+            None => {
+                let disc = batch::disc::<f64>(&scene.surfels, i);
+                (disc.position, disc.reach() * self.widest() / f64::from(settings.cutoff))
+            }
+        }
+    }
+
+    /// How many pixels farther a splat may reach than what it shows: by the low-pass filter, and to
+    /// the ends of tiles.
+    pub(crate) fn skirt(&self) -> f64 {
+        let filter = self.widest() * f64::from(self.settings.kernel.low_pass).sqrt();
+        match self.settings.support {
+            Support::None | Support::Ellipse => filter,
+            // The original program adds the root of 0.1 px^2 to a variance.
+            Support::Tiles | Support::Boxes => filter + 0.6 * self.widest() + TILE + 1.0,
+        }
+    }
+
+    /// How many standard deviations from its centre a fragment may be.
+    fn widest(&self) -> f64 {
+        let Settings { support, cutoff, least_alpha, .. } = *self.settings;
+        let dense = if least_alpha > 0.0 {
+            (-2.0 * elementary::ln(f64::from(least_alpha))).sqrt()
+        } else {
+            f64::INFINITY
+        };
+        if support == Support::None { dense } else { dense.at_most(f64::from(cutoff)) }
     }
 
     /// The q/2 at which o e^(-q/2) is the least alpha: +inf if that is 0, below 0 if o is less.

@@ -4,6 +4,7 @@ use crate::frame::{Bins, Rect};
 use crate::method::Job;
 use crate::method::gaussians::Order;
 use crate::method::gaussians::splats::{GaussianSplat, Projected, Solid, Source};
+use crate::method::part::{Nearby, Part};
 use crate::number::ball::Profile;
 use crate::number::{Ball, MapInline, Real, Truth};
 use crate::splat::gaussian::{GaussianShape, ProjectedGaussian};
@@ -38,10 +39,20 @@ impl<P: Profile> PossibleSplats<P> {
     pub(super) fn new(job: &Job<'_>, source: &Source<'_, Ball<P>>, supposed: Supposed) -> Self {
         /// Items that one job projects.
         const SIZE: usize = 1024;
+        // A step depends on the keys of all splats.
+        let whole = source.settings.order == Order::Steps;
+        let part = job.part.filter(|part| part.is_small() && !whole);
+        let nearby = part.map(|part| Nearby::new(part, job.camera, source.skirt()));
+        let near = |i: &usize| {
+            nearby.as_ref().is_none_or(|nearby| {
+                let (center, reach) = source.sphere(*i);
+                nearby.holds(center, reach)
+            })
+        };
         let firsts: Vec<usize> = (0..source.len()).step_by(SIZE).collect();
         let batches = job.exec.ordered(firsts, |first| {
-            let range = first..source.len().min(first + SIZE);
-            range.filter_map(|i| possible(job, source, supposed, i)).collect::<Vec<_>>()
+            let range = (first..source.len().min(first + SIZE)).filter(near);
+            range.filter_map(|i| possible((job, part), source, supposed, i)).collect::<Vec<_>>()
         });
         let mut all: Vec<_> = batches.into_iter().flatten().collect();
         if source.settings.order == Order::Steps {
@@ -72,7 +83,7 @@ impl<P: Profile> PossibleSplats<P> {
 
 /// An item, if it may be drawn.
 fn possible<P: Profile>(
-    job: &Job<'_>,
+    (job, part): (&Job<'_>, Option<Part<'_>>),
     source: &Source<'_, Ball<P>>,
     supposed: Supposed,
     i: usize,
@@ -109,7 +120,7 @@ fn possible<P: Profile>(
     } else {
         (job.picture(), Rect::default())
     };
-    if bounds.is_empty() {
+    if bounds.is_empty() || part.is_some_and(|part| !part.touches(&bounds)) {
         return None;
     }
     let [a, b, c, _] = source.projector.view.rows[2].map_inline(|part| part.middle);

@@ -1,8 +1,9 @@
 //! Blend a pixel in balls, with every decision that is open.
 
 use super::splats::{PossibleSplat, PossibleSplats, tie};
+use super::walked::Walked;
 use crate::composite::under::Under;
-use crate::frame::{NO_ID, Rect};
+use crate::frame::Rect;
 use crate::method::gaussians::Order;
 use crate::method::gaussians::blending::{GaussianFragment, GaussianPixel, Rules};
 use crate::method::gaussians::splats::Source;
@@ -29,24 +30,6 @@ struct Candidate<P: Profile> {
     index: u32,
     weight: Ball<P>,
     drawn: Three,
-}
-
-/// What may be at a pixel.
-pub(super) struct Walked<P: Profile> {
-    /// The numbers; ids and count mean nothing.
-    pub(super) numbers: GaussianPixel<Ball<P>>,
-    /// The fragments that may be the first, in their order; with none, nothing is drawn for certain.
-    firsts: Vec<(u32, Ball<P>)>,
-    /// Whether a fragment certainly is drawn.
-    covered: bool,
-    /// The items that may be the heaviest.
-    heaviest: Vec<u32>,
-    /// The least and the greatest count.
-    least: u32,
-    pub(super) most: u32,
-    /// The largest component of a colour.
-    pub(super) brightest: f64,
-    pub(super) doubts: u8,
 }
 
 /// Walks the pixels of a rectangle in a tile.
@@ -83,8 +66,7 @@ impl<'a, P: Profile> Walker<'a, P> {
             rules: &self.rules,
             supposed: self.supposed,
             own,
-            numbers: GaussianPixel::EMPTY,
-            alive: true.into(),
+            states: vec![(GaussianPixel::EMPTY, true.into())],
             candidates: Vec::with_capacity(all.len()),
             firsts: Vec::new(),
             covered: false,
@@ -95,7 +77,7 @@ impl<'a, P: Profile> Walker<'a, P> {
         // NaN stands for any number.
         let widest = widest.fold(0.0, |most, r| if r <= most { most } else { r * 1.000_001 });
         let mut rest = &all[..];
-        while !rest.is_empty() && walk.alive.possibly() {
+        while !rest.is_empty() && walk.alive().possibly() {
             let (group, after) = rest.split_at(walk.tied(rest, widest));
             walk.group(group);
             rest = after;
@@ -154,9 +136,8 @@ struct Walk<'r, P: Profile> {
     supposed: Supposed,
     /// Whether the pixel has its own order.
     own: bool,
-    numbers: GaussianPixel<Ball<P>>,
-    /// Whether blending has not ended.
-    alive: Three,
+    /// What may be there, one state for each order that is followed.
+    states: Vec<State<P>>,
     candidates: Vec<Candidate<P>>,
     firsts: Vec<(u32, Ball<P>)>,
     covered: bool,
@@ -164,8 +145,13 @@ struct Walk<'r, P: Profile> {
     brightest: f64,
 }
 
+/// The numbers of a pixel, and whether blending has not ended.
+type State<P> = (GaussianPixel<Ball<P>>, Three);
+
 /// The most fragments of which every order is followed.
 const ORDERS: usize = 3;
+/// The most states that are followed side by side, before they are put into one.
+const STATES: usize = 12;
 
 impl<P: Profile> Walk<'_, P> {
     /// How many of the next fragments may come in another order: all of them certainly come before
@@ -202,8 +188,8 @@ impl<P: Profile> Walk<'_, P> {
             self.brightest = parts.into_iter().fold(self.brightest, f64::at_least);
         }
         if let [one] = group {
-            self.candidate(one, self.numbers.blend.through, self.alive);
-            (self.numbers, self.alive) = self.next((self.numbers, self.alive), one);
+            self.candidate(one, self.through(), self.alive());
+            self.each_state(|walk, state| walk.next(state, one));
         } else {
             self.doubts |= Doubt::Nearer as u8;
             self.any_order(group);
@@ -211,6 +197,24 @@ impl<P: Profile> Walk<'_, P> {
         if self.candidates.iter().any(|one| one.drawn.certainly()) {
             self.covered = true;
         }
+    }
+
+    /// How much is seen through what was blended, in any state.
+    fn through(&self) -> Ball<P> {
+        let all = self.states.iter().map(|(numbers, _)| numbers.blend.through);
+        all.reduce(Ball::either).unwrap_or(Ball::ONE)
+    }
+
+    /// Whether blending has not ended, in any state.
+    fn alive(&self) -> Three {
+        let all = self.states.iter().map(|(_, alive)| *alive);
+        all.reduce(either).unwrap_or(true.into())
+    }
+
+    /// Replaces each state by the one after it.
+    fn each_state(&mut self, mut after: impl FnMut(&mut Self, State<P>) -> State<P>) {
+        let states = std::mem::take(&mut self.states);
+        self.states = states.into_iter().map(|state| after(self, state)).collect();
     }
 
     /// The colour of a fragment by the rule that is supposed.
@@ -224,11 +228,7 @@ impl<P: Profile> Walk<'_, P> {
     }
 
     /// The state after one more fragment, which may be drawn or not.
-    fn next(
-        &mut self,
-        (numbers, alive): (GaussianPixel<Ball<P>>, Three),
-        one: &Possible<'_, P>,
-    ) -> (GaussianPixel<Ball<P>>, Three) {
+    fn next(&mut self, (numbers, alive): State<P>, one: &Possible<'_, P>) -> State<P> {
         let ends = self.rules.ends(left(numbers.blend.through, one.alpha));
         let goes_on = alive & !(one.drawn & ends);
         let drawn = alive & one.drawn & !self.leaves_out(ends);
@@ -247,50 +247,59 @@ impl<P: Profile> Walk<'_, P> {
 
     /// Follows every order of a few fragments, and bounds the weights of many.
     fn any_order(&mut self, group: &[Possible<'_, P>]) {
-        let through = self.numbers.blend.through;
-        let alive = self.alive;
+        let (through, alive) = (self.through(), self.alive());
         let cover = |skip: usize| {
             let others = group.iter().enumerate().filter(|(j, _)| *j != skip);
             others.fold(Ball::ONE, |cover, (_, one)| cover * seen(one, Ball::ONE))
         };
-        let weights: Vec<Ball<P>> =
-            (0..group.len()).map(|i| through.either(through * cover(i))).collect();
-        for (one, before) in group.iter().zip(&weights) {
-            self.candidate(one, *before, alive);
+        let covers: Vec<Ball<P>> = (0..group.len()).map(cover).collect();
+        for (one, cover) in group.iter().zip(&covers) {
+            self.candidate(one, through.either(through * *cover), alive);
         }
-        if group.len() <= ORDERS {
-            let state = (self.numbers, self.alive);
-            let mut all: Option<(GaussianPixel<Ball<P>>, Three)> = None;
-            for order in orders(group.len()) {
-                let mut own = state;
-                for i in order {
-                    own = self.next(own, &group[i]);
-                }
-                all = Some(all.map_or(own, |(numbers, alive)| {
-                    (hull(&numbers, &own.0), either(alive, own.1))
-                }));
-            }
-            (self.numbers, self.alive) = all.unwrap_or(state);
+        if group.len() > ORDERS {
+            self.each_state(|walk, state| walk.many(state, group, &covers));
             return;
         }
-        for (one, before) in group.iter().zip(weights) {
-            let here = GaussianPixel {
-                blend: Under { through: before, ..self.numbers.blend },
-                ..self.numbers
-            };
+        let orders = orders(group.len());
+        if self.states.len() * orders.len() > STATES {
+            let all = std::mem::take(&mut self.states).into_iter();
+            self.states =
+                all.reduce(|a, b| (hull(&a.0, &b.0), either(a.1, b.1))).into_iter().collect();
+        }
+        for state in std::mem::take(&mut self.states) {
+            for order in &orders {
+                let after = order.iter().fold(state, |state, &i| self.next(state, &group[i]));
+                self.states.push(after);
+            }
+        }
+    }
+
+    /// The state after many fragments in any order, each with how much the others leave.
+    fn many(
+        &mut self,
+        (mut numbers, mut alive): State<P>,
+        group: &[Possible<'_, P>],
+        covers: &[Ball<P>],
+    ) -> State<P> {
+        let (first, open) = (numbers.blend.through, alive);
+        for (one, cover) in group.iter().zip(covers) {
+            let before = first.either(first * *cover);
+            let here =
+                GaussianPixel { blend: Under { through: before, ..numbers.blend }, ..numbers };
             let ends = one.drawn & self.rules.ends(left(before, one.alpha));
-            let drawn = alive & one.drawn & !self.leaves_out(ends);
+            let drawn = open & one.drawn & !self.leaves_out(ends);
             let after = here.after(one.alpha, self.color(one), one.depth);
             let blended = select(drawn, &after, &here);
-            let through = self.numbers.blend.through;
-            let median = self.numbers.median.either(after.median);
-            self.numbers = GaussianPixel { median, ..blended };
-            self.numbers.blend.through = Ball::select(drawn, left(through, one.alpha), through);
+            let through = numbers.blend.through;
+            let median = numbers.median.either(after.median);
+            numbers = GaussianPixel { median, ..blended };
+            numbers.blend.through = Ball::select(drawn, left(through, one.alpha), through);
             if drawn.possibly() && !drawn.certainly() {
                 self.doubts |= Doubt::CutOff as u8;
             }
-            self.alive = self.alive & !ends;
+            alive = alive & !ends;
         }
+        (numbers, alive)
     }
 
     /// Remembers a fragment in front of which this much is seen.
@@ -316,7 +325,7 @@ impl<P: Profile> Walk<'_, P> {
             heaviest: heavy.map(|one| one.index).collect(),
             least,
             most: self.candidates.len() as u32,
-            numbers: self.numbers.finished(),
+            numbers: self.states.iter().map(|(numbers, _)| numbers.finished()).collect(),
             firsts: self.firsts,
             covered: self.covered,
             brightest: self.brightest,
@@ -380,34 +389,4 @@ fn orders(count: usize) -> Vec<Vec<usize>> {
     }
     let firsts = [[0, 1, 2], [0, 2, 1], [1, 0, 2], [1, 2, 0], [2, 0, 1], [2, 1, 0]];
     firsts.map(|order| order.to_vec()).to_vec()
-}
-
-impl<P: Profile> Walked<P> {
-    /// The pixel with the ids and the count that the client has, if it may have them. Its depth is that
-    /// of its first fragment.
-    pub(super) fn truth(
-        &self,
-        id: Option<u32>,
-        heaviest: Option<u32>,
-        count: Option<u8>,
-    ) -> GaussianPixel<Ball<P>> {
-        let empty = (NO_ID, Ball::INFINITY);
-        let may_be_empty = (!self.covered).then_some(empty);
-        let mut firsts = self.firsts.iter().copied().chain(may_be_empty);
-        let found = id.and_then(|id| firsts.clone().find(|(first, _)| *first == id));
-        let (id, depth) = match (id, found) {
-            (_, Some(found)) => found,
-            // Without an id, the depth may be that of any first fragment.
-            (None, None) => firsts.clone().reduce(|a, b| (a.0, a.1.either(b.1))).unwrap_or(empty),
-            (Some(_), None) => firsts.next().unwrap_or(empty),
-        };
-        let may_weigh = |own: u32| self.heaviest.contains(&own) || (own == NO_ID && !self.covered);
-        let heaviest = heaviest
-            .filter(|own| may_weigh(*own))
-            .or_else(|| self.heaviest.first().copied())
-            .unwrap_or(NO_ID);
-        let (least, most) = (self.least.min(255) as u8, self.most.min(255) as u8);
-        let count = count.map_or(least, |count| count.clamp(least, most));
-        GaussianPixel { id, depth, heaviest, count, ..self.numbers }
-    }
 }

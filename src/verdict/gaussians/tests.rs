@@ -1,0 +1,136 @@
+use super::splats::PossibleSplats;
+use crate::frame::{Exec, Frame, Plane, Rect, Samples};
+use crate::index::Index;
+use crate::method::gaussians::Settings;
+use crate::method::gaussians::splats::Source;
+use crate::method::part::Part;
+use crate::method::{Job, Method, Session};
+use crate::number::Ball;
+use crate::number::ball::Gpu;
+use crate::number::elementary::pow_f32;
+use crate::number::random::unit;
+use crate::scene::gaussians::{Encoding, GaussianArrays, Gaussians};
+use crate::scene::{Camera, Lens, Pose, Scene};
+use crate::setting::Words;
+use crate::verdict::client::Client;
+use crate::verdict::supposed::Supposed;
+use crate::verdict::{Doubt, Outcome, Verdict};
+use glam::{DVec3, Vec3};
+
+/// Splats around the origin, some of them clear, whose sizes are 10^-decades to 10^decades times
+/// this one.
+fn cloud(count: u64, size: f32, decades: f32) -> Scene {
+    let random = |i: u64, k: u64| 2.0 * unit(5, 31 * i + k) - 1.0;
+    let vector = |i: u64, k: u64| Vec3::new(random(i, k), random(i, k + 1), random(i, k + 2));
+    let scale = |i: u64| {
+        let [a, b, c] = (vector(i, 3) * decades).to_array().map(|part| pow_f32(10.0, part));
+        Vec3::new(a, b, c) * size
+    };
+    let arrays = GaussianArrays {
+        position: (0..count).map(|i| vector(i, 0) * 2.0).collect(),
+        scale: (0..count).map(scale).collect(),
+        rotation: (0..count)
+            .map(|i| [random(i, 6), random(i, 7), random(i, 8), random(i, 9)])
+            .collect(),
+        opacity: (0..count).map(|i| random(i, 10).abs()).collect(),
+        degree: 0,
+        harmonics: (0..count).map(|i| vector(i, 11)).collect(),
+        encoding: Encoding::Srgb,
+    };
+    Scene::of_gaussians("cloud", Gaussians::new(arrays).unwrap().0)
+}
+
+fn camera(width: u32, height: u32) -> Camera {
+    let pose = Pose { eye: DVec3::new(0.4, 0.3, 3.0), target: DVec3::ZERO, up: DVec3::Y };
+    Camera::new(width, height, pose, Lens::FieldOfView(60.0)).unwrap()
+}
+
+#[test]
+fn a_part_has_the_splats_of_the_whole() {
+    let (scene, camera, exec) = (cloud(3_000, 0.02, 1.5), camera(160, 96), Exec::sequential());
+    let index = Index::default();
+    let mut left_out = 0;
+    for (name, settings) in Settings::WORDS {
+        let source = Source::<Ball<Gpu>>::new(&scene, &camera, settings);
+        let whole = Job::new(&scene, &index, &camera, &exec);
+        let all = PossibleSplats::new(&whole, &source, Supposed::Nothing);
+        for piece in whole.grid().rects().into_iter().enumerate().step_by(3) {
+            let (tile, own) = piece;
+            let piece = [(tile, Rect { x1: own.x0 + 7, y1: own.y0 + 5, ..own })];
+            let part = Some(Part { pieces: &piece, spread: 1.0 });
+            let some = PossibleSplats::new(&Job { part, ..whole }, &source, Supposed::Nothing);
+            let near = |splats: &PossibleSplats<Gpu>| -> Vec<u32> {
+                let places = splats.places(piece[0]).into_iter();
+                places.map(|place| splats.all[place].splat.index).collect()
+            };
+            assert_eq!(near(&some), near(&all), "{name}: tile {tile}");
+            left_out += all.all.len() - some.all.len();
+        }
+    }
+    assert!(left_out > 50_000, "most splats are far from a part: {left_out}");
+}
+
+#[test]
+fn a_dense_scene_is_judged() {
+    let (scene, camera, exec) = (cloud(20_000, 0.01, 1.0), camera(96, 64), Exec::sequential());
+    let mut session = Session::new(&scene, Method::from(Settings::INRIA), &exec).unwrap();
+    let client = Client::from(&session.render(&camera).unwrap().frame.clone());
+    let verdict = session.verify(&camera, &client, Verdict::BUDGET).unwrap();
+    let doubts = verdict.stages[0].doubtful(Doubt::OF_SUMS);
+    assert_eq!(verdict.outcome(), Outcome::Right, "{} undecided", verdict.undecided);
+    assert!(
+        doubts > verdict.covered / 50,
+        "many decisions are open: {doubts}, {}",
+        verdict.undecided
+    );
+}
+
+#[test]
+fn two_splats_of_one_depth_have_the_sum_of_an_order_not_one_between() {
+    let (camera, exec) = (camera(48, 32), Exec::sequential());
+    // Across the direction of view, so that only rounding tells the depths apart.
+    let aside = DVec3::new(3.0, 0.0, -0.4).normalize() * 0.05;
+    let one = |i: usize| (Vec3::ZERO + aside.as_vec3() * i as f32, [Vec3::X, Vec3::Y][i]);
+    let scene = |items: &[usize]| {
+        let arrays = GaussianArrays {
+            position: items.iter().map(|i| one(*i).0).collect(),
+            scale: vec![Vec3::splat(0.3); items.len()],
+            rotation: vec![[0.0, 0.0, 0.0, 1.0]; items.len()],
+            opacity: vec![0.9; items.len()],
+            degree: 0,
+            harmonics: items.iter().map(|i| one(*i).1).collect(),
+            encoding: Encoding::Srgb,
+        };
+        Scene::of_gaussians("two", Gaussians::new(arrays).unwrap().0)
+    };
+    let draw = |items: &[usize]| {
+        let scene = scene(items);
+        let mut session = Session::new(&scene, Settings::INRIA.into(), &exec).unwrap();
+        session.render(&camera).unwrap().frame.clone()
+    };
+    let (both, own) = (scene(&[0, 1]), [draw(&[0]), draw(&[1])]);
+    let parts = own.each_ref().map(|frame| {
+        let color = frame.color("blended").unwrap().values();
+        color.iter().zip(frame.scalar("T").unwrap().values()).collect::<Vec<_>>()
+    });
+    let sums = |order: [usize; 2], share: f32| {
+        let each = parts[order[0]].iter().zip(&parts[order[1]]);
+        each.map(|((front, through), (behind, _))| {
+            [0, 1, 2].map(|k| share * (front[k] + *through * behind[k]))
+        })
+        .collect::<Vec<[f32; 3]>>()
+    };
+    let outcome = |sums: Vec<[f32; 3]>| {
+        let plane = Plane::from_values(48, 32, sums);
+        let frame = Frame::new(48, 32).with("blended", Samples::Color(plane)).unwrap();
+        let session = Session::new(&both, Settings::INRIA.into(), &exec).unwrap();
+        let verdict = session.verify(&camera, &Client::from(&frame), Verdict::BUDGET).unwrap();
+        verdict.outcome()
+    };
+    let [first, second] = [[0, 1], [1, 0]].map(|order| sums(order, 1.0));
+    let half = sums([0, 1], 0.5).into_iter().zip(sums([1, 0], 0.5));
+    let mean = half.map(|(a, b)| [0, 1, 2].map(|k| a[k] + b[k])).collect();
+    assert_eq!(outcome(first), Outcome::Right);
+    assert_eq!(outcome(second), Outcome::Right);
+    assert_eq!(outcome(mean), Outcome::Wrong);
+}
