@@ -15,7 +15,7 @@ Examples:
 Axes are kept: nothing is turned. A GLB holds the Gaussians bit for bit. A PLY holds logarithms of scales
 and logits of opacities; the command says how many of them change when the PLY is read.")]
 pub(super) struct Args {
-    /// A .ply, .glb, .gltf or .splat with 3D Gaussians
+    /// A .ply, .glb, .gltf, .splat or .spz with 3D Gaussians
     input: PathBuf,
     /// Write this .ply or .glb
     output: PathBuf,

@@ -20,7 +20,7 @@ Examples:
   splatref info bunny.ply
   splatref info out/cluster.exr")]
 pub(super) struct Args {
-    /// A .ply, .obj, .las, .laz, .e57, .glb, .gltf or .splat, a scene .toml, an .exr, or a folder that "splatref surfels" wrote
+    /// A .ply, .obj, .las, .laz, .e57, .glb, .gltf, .splat or .spz, a scene .toml, an .exr, or a folder that "splatref surfels" wrote
     file: PathBuf,
 }
 

@@ -101,7 +101,7 @@ enum Command {
     Quality(quality::Args),
     /// Write the visible splats as records for a backend to upload
     Project(project::Args),
-    /// Convert 3D Gaussians to PLY or GLB, from these or a .splat
+    /// Convert 3D Gaussians to PLY or GLB, from these, a .splat or an .spz
     Convert(convert::Args),
     /// Describe a model, a scene file, an EXR or a folder of surfels
     Info(info::Args),

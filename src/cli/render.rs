@@ -29,7 +29,7 @@ Examples:
   splatref render bunny.ply --turntable 60 -o out/turn.exr
   splatref render bunny.ply --write-depth png --depth-as t,1000 -o bunny.exr")]
 pub(super) struct Args {
-    /// A .ply, .obj, .las, .laz, .e57, .glb, .gltf or .splat, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster,
+    /// A .ply, .obj, .las, .laz, .e57, .glb, .gltf, .splat or .spz, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster,
     /// or tree (with --method pyramid)
     #[arg(default_value = "cluster", hide_default_value = false)]
     scene: PathBuf,

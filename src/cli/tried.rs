@@ -14,7 +14,7 @@ use std::path::{Path, PathBuf};
 
 #[derive(clap::Args)]
 pub(super) struct Tried {
-    /// A .ply, .obj, .las, .laz, .e57, .glb, .gltf or .splat, a scene .toml, a folder of surfels, or a shape
+    /// A .ply, .obj, .las, .laz, .e57, .glb, .gltf, .splat or .spz, a scene .toml, a folder of surfels, or a shape
     // Required, except before a subcommand.
     #[arg(required = true)]
     scene: Option<PathBuf>,

@@ -43,6 +43,8 @@ fn splatref_is_right_by_every_method() {
         "positions.npy",
         "radii.npy",
         "records.bin",
+        "reference.exr",
+        "reference.png",
         "scene.json",
         "scene.toml",
         "surfels.ply",
@@ -76,6 +78,8 @@ fn scenes_of_gaussians_are_files_of_other_programs() {
         "harmonics.npy",
         "opacities.npy",
         "positions.npy",
+        "reference.exr",
+        "reference.png",
         "rotations.npy",
         "scales.npy",
         "scene.json",
@@ -88,6 +92,51 @@ fn scenes_of_gaussians_are_files_of_other_programs() {
     assert!(said.contains("gaussians  1, spherical harmonics"), "{said}");
     let page = fs::read_to_string(scene.join("README.md")).unwrap();
     assert!(page.contains("| splats.glb |") && !page.contains("surfels.ply"), "{page}");
+}
+
+/// The page of a suite shows every scene, and its commands run, with splatref as the renderer.
+#[test]
+fn the_page_of_a_suite_can_be_followed() {
+    for (options, names) in [
+        ("gaussians --preset khr --only middle,tie", ["middle", "tie"]),
+        ("ewa --only rim,tie", ["rim", "tie"]),
+    ] {
+        let at = TempDir::new().unwrap();
+        let words: Vec<&str> = options.split(' ').collect();
+        succeeds(at.path(), &[&["conformance"], &words[..], &["-o", "suite"]].concat());
+        let folder = at.path().join("suite").join(words[0]);
+        let page = fs::read_to_string(folder.join("README.md")).unwrap();
+        assert!(page.starts_with(&format!("# Test a renderer of `{}`\n", words[0])), "{page}");
+        for name in names {
+            for link in [format!("({name}/reference.png)"), format!("({name}/README.md)")] {
+                assert!(page.contains(&link), "{link}: {page}");
+                assert!(folder.join(link.trim_matches(['(', ')'])).exists(), "{link}");
+            }
+            // A file that the page names is there, and all of them are named.
+            for file in self::names(&folder.join(name)) {
+                assert!(page.contains(&file), "{file}: {page}");
+            }
+            let picture = "render scene.toml --stages -o again.exr";
+            succeeds(&folder.join(name), &picture.split(' ').collect::<Vec<_>>());
+            succeeds(&folder.join(name), &["compare", "again.exr", "reference.exr"]);
+        }
+        // The renderer of the page is splatref itself.
+        let mine = format!("./mine {0} {0}/client.exr", names[0]);
+        assert!(page.contains(&mine), "{page}");
+        let page = page.replace(
+            &mine,
+            &format!("splatref render {0}/scene.toml --stages -o {0}/client.exr", names[0]),
+        );
+        let page =
+            page.replace("'./mine {scene} {out}'", &format!("'{}'", itself("--stages").trim()));
+        assert!(!page.contains("'./mine"), "{page}");
+        assert_eq!(guide::follow_page(&folder, &page), 3, "{page}");
+        assert!(folder.join("report.html").exists());
+        let again = folder.join("out/conformance").join(words[0]);
+        let scenes = names.iter().map(|name| (*name).to_owned());
+        let wanted: Vec<String> = ["README.md".into()].into_iter().chain(scenes).collect();
+        assert_eq!(self::names(&again), wanted);
+    }
 }
 
 /// A page that cannot be written ends the command; the renderer is not to blame.

@@ -153,6 +153,48 @@ fn gaussians_are_converted_and_described_in_every_format() {
     assert!(said.contains("because of logarithms in f32"), "{said}");
 }
 
+/// An SPZ of one Gaussian at (1, 2, -4), flattened along z.
+fn spz(flags: u8) -> Vec<u8> {
+    use std::io::Write;
+    let head = [b"NGSP", &2_u32.to_le_bytes()[..], &1_u32.to_le_bytes(), &[0, 12, flags, 0]];
+    let position = [0, 16, 0, 0, 32, 0, 0, 192, 255];
+    let rest = [230, 255, 0, 128, 140, 132, 90, 127, 127, 127];
+    let mut file = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::default());
+    file.write_all(&[&head.concat()[..], &position, &rest].concat()).unwrap();
+    file.finish().unwrap()
+}
+
+#[test]
+fn an_spz_is_drawn_described_and_converted() {
+    let at = TempDir::new().unwrap();
+    fs::write(at.path().join("a.spz"), spz(1)).unwrap();
+    let said = succeeds(at.path(), &["info", "a.spz"]);
+    assert!(said.contains("  read as  SPZ version 2: positions of 24 bits, other"), "{said}");
+    assert!(said.contains("with antialiasing: draw it with --compensation ratio"), "{said}");
+    let said = succeeds(at.path(), &["convert", "a.spz", "a.glb"]);
+    assert!(said.contains("  changed  nothing"), "{said}");
+    succeeds(at.path(), &["convert", "a.spz", "a.ply"]);
+    fs::write(at.path().join("s.toml"), "[[model]]\nfile = \"a.spz\"\n").unwrap();
+    // The same Gaussian in three files, by its name and in a scene, makes the same picture.
+    let view =
+        ["--eye", "1,2,0", "--target", "1,2,-4", "--size", "24x16", "--compensation", "ratio"];
+    let picture = |name: &str| {
+        let arguments = [&["render", name, "--method", "gaussians", "-o", "p.exr"], &view[..]];
+        succeeds(at.path(), &arguments.concat());
+        let said = succeeds(at.path(), &["info", "p.exr"]);
+        said.lines().find(|line| line.trim().starts_with("sha256")).unwrap().to_owned()
+    };
+    assert_eq!(picture("a.spz"), picture("a.glb"));
+    assert_eq!(picture("a.spz"), picture("s.toml"));
+    let line = fails(at.path(), &["render", "a.spz"], 1);
+    assert!(line.contains("a has 3D Gaussians, but the method ewa draws surfels"), "{line}");
+    fs::write(at.path().join("b.spz"), &spz(0)[..30]).unwrap();
+    for arguments in [&["info", "b.spz"][..], &["convert", "b.spz", "b.ply"]] {
+        let line = fails(at.path(), arguments, 1);
+        assert!(line.contains("b.spz: the gzip stream ends early"), "{line}");
+    }
+}
+
 #[test]
 fn what_cannot_be_converted_is_refused() {
     let at = TempDir::new().unwrap();
@@ -164,7 +206,9 @@ fn what_cannot_be_converted_is_refused() {
         (["g.ply", "g.obj"], 2, "g.obj: Gaussians are written as .ply or .glb"),
         (["g.ply", "no/g.glb"], 1, "no/g.glb"),
         (["none.ply", "g.glb"], 1, "none.ply"),
-        (["g.spz", "g.glb"], 1, "g.spz: SPZ is not read"),
+        (["g.ply", "g.spz"], 2, "g.spz: Gaussians are written as .ply or .glb"),
+        (["g.ply", "g.splat"], 2, "g.splat: Gaussians are written as .ply or .glb"),
+        (["none.spz", "g.glb"], 1, "none.spz"),
     ] {
         let line = fails(at.path(), &[&["convert"], &arguments[..]].concat(), code);
         assert!(line.contains(what), "{line}");

@@ -170,6 +170,15 @@ fn follow(page: &str) {
     }
 }
 
+/// Runs the commands of a page in a folder; how many there are.
+pub(super) fn follow_page(at: &Path, page: &str) -> usize {
+    let runs = steps(page).into_iter().filter_map(|step| match step {
+        Step::Run(run) => Some(run),
+        Step::Write(..) => None,
+    });
+    runs.map(|run| run.check(at, "a page that splatref wrote")).count()
+}
+
 /// The names of the PNG files in a folder, if there is one.
 fn names_of_pictures(folder: &Path) -> impl Iterator<Item = String> {
     let all = if folder.is_dir() { names(folder) } else { Vec::new() };

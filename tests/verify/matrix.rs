@@ -251,6 +251,9 @@ fn the_matrix_is_that_of_the_page() {
     check(Section::Finds, &page);
 }
 
+/// How the part of the page begins that [`super::gaussians`] writes.
+pub(crate) const GAUSSIANS: &str = "## gaussians: ";
+
 /// The heading of the part of the page that [`super::matrix_of_causes`] writes.
 pub(crate) const NAMES: &str = "## The names of mistakes";
 
@@ -258,6 +261,7 @@ pub(crate) const NAMES: &str = "## The names of mistakes";
 #[derive(Clone, Copy, PartialEq, Eq)]
 pub(crate) enum Section {
     Finds,
+    Gaussians,
     Names,
 }
 
@@ -265,10 +269,12 @@ pub(crate) enum Section {
 pub(crate) fn check(section: Section, text: &str) {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let old = std::fs::read_to_string(root.join("docs/verdicts-tried.md")).unwrap_or_default();
-    let (finds, names) = old.split_at(old.find(NAMES).unwrap_or(old.len()));
+    let (all, names) = old.split_at(old.find(NAMES).unwrap_or(old.len()));
+    let (finds, gaussians) = all.split_at(all.find(GAUSSIANS).unwrap_or(all.len()));
     let page = match section {
-        Section::Finds => format!("{text}\n{names}"),
-        Section::Names => format!("{finds}{text}"),
+        Section::Finds => format!("{text}\n{gaussians}{names}"),
+        Section::Gaussians => format!("{finds}{text}\n{names}"),
+        Section::Names => format!("{all}{text}"),
     };
     if old != page {
         let path = root.join("out/verdicts-tried.md");

@@ -11,7 +11,7 @@ use command::{Program, split};
 use page::Shown;
 use report::{Run, Tried};
 use splatref::frame::Exec;
-use splatref::io::conformance::write;
+use splatref::io::conformance::{write, write_index};
 use splatref::io::replace::Pending;
 use splatref::method::Method;
 use splatref::setting::{Fields, Refused, Value};
@@ -27,7 +27,8 @@ use std::time::{Duration, Instant};
 #[command(after_help = "\
 Each rule has a small scene. For each scene, splatref writes a folder FOLDER/METHOD/RULE, runs the
 command, and judges the planes that the command wrote. The folder has a README.md that lists the files
-of the scene and the planes to leave.
+of the scene and the planes to leave. FOLDER/METHOD/README.md shows all scenes, with the conventions and
+what the verdicts mean: the folder can be given away.
 
 In the command, {scene} stands for the folder of the scene, and {out} for the EXR to write, which is
 {scene}/client.exr. A command that writes other files describes them in {scene}/client.toml, as for
@@ -94,7 +95,7 @@ pub(super) fn run(args: &Args) -> Ended {
 }
 
 fn suite(args: &Args) -> Ended {
-    let rules = rules(args)?;
+    let (method, rules) = rules(args)?;
     if args.list {
         let width = Report::width(&rules);
         rules.iter().for_each(|rule| say(format!("{:<width$}  {}", rule.name, rule.tests)));
@@ -107,8 +108,9 @@ fn suite(args: &Args) -> Ended {
     }
     let exec = args.exec.exec()?;
     let folder = args.output.join(args.method);
-    let Some(command) = &args.command else { return scenes(&rules, &folder, &exec) };
-    let words = split(command).map_err(Error::Usage)?;
+    let words = args.command.as_deref().map(split).transpose().map_err(Error::Usage)?;
+    write_index(&folder, &method, &options(args), &rules)?;
+    let Some(words) = words else { return scenes(&rules, &folder, &exec) };
     let timeout = args.timeout.map(Duration::from_secs);
     let absolute = std::path::absolute(&folder).map_err(|source| Error::io(&folder, source))?;
     let mut program =
@@ -117,8 +119,15 @@ fn suite(args: &Args) -> Ended {
     finish(args, &folder, &tried)
 }
 
-/// The rules to run.
-fn rules(args: &Args) -> Result<Vec<Rule>> {
+/// The options that choose the same rules again.
+fn options(args: &Args) -> String {
+    let preset = args.preset.iter().map(|preset| format!(" --preset {preset}"));
+    let only = (!args.only.is_empty()).then(|| format!(" --only {}", args.only.join(",")));
+    preset.chain(only).fold(args.method.to_owned(), |all, option| all + &option)
+}
+
+/// The method, and the rules to run.
+fn rules(args: &Args) -> Result<(Method, Vec<Rule>)> {
     let mut method = Method::by_name(args.method)?;
     if let Some(preset) = &args.preset {
         set_preset(&mut method, preset)?;
@@ -133,7 +142,8 @@ fn rules(args: &Args) -> Result<Vec<Rule>> {
         )));
     }
     let taken = |rule: &Rule| args.only.is_empty() || args.only.contains(&rule.name);
-    Ok(all.into_iter().filter(taken).collect())
+    let taken = all.into_iter().filter(taken).collect();
+    Ok((method, taken))
 }
 
 /// Sets the preset with this name.

@@ -15,20 +15,23 @@
 //! | `members.npy` | `uint32` (m, 2): pairs of a surfel and a group, if the method draws groups |
 //! | `polygons.ply`, `ribbons.ply`, `tubes.ply` | the primitives, if any |
 //! | `polygons-positions.npy`, and so on | their vertices: positions, directions, radii, colors; and their corners as `uint32` |
+//! | `reference.exr`, `reference.png` | all planes as splatref draws them, and the picture |
 //! | `records.bin` | the projected splats, [`SplatRecord`], if the method draws splats |
 
+mod index;
 mod json;
 mod page;
 
 use super::gaussians;
 use super::npy::{self, Values};
-use super::ply;
 use super::replace::write_atomically;
 use super::scene_file::{
-    CameraChoice, Draw, EnvironmentChoice, MethodChoice, Model, SceneFile, Source,
+    CameraChoice, Draw, EnvironmentChoice, MethodChoice, Model, OutputSettings, SceneFile, Source,
 };
+use super::{exr, ply, png, provenance};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::method::Method;
 use crate::scene::gaussians::Encoding;
 use crate::scene::indexed::Indexed;
 use crate::scene::{Gaussians, Intrinsics, Vertices};
@@ -74,7 +77,23 @@ pub fn write(folder: &Path, rule: &Rule, case: &Case, exec: &Exec) -> Result<()>
         })?;
     }
     text(&folder.join("scene.json"), &json::text(rule, case)?)?;
-    text(&folder.join("README.md"), &page::text(rule, case, &case.planes(exec)?))
+    let frame = case.session(exec)?.define::<f32>(&case.camera, true)?.frame;
+    let (scene, method) = (&case.scene, &case.method);
+    let groups = scene.surfels.groups();
+    let says = provenance::text(scene, groups, &case.camera, method, OutputSettings::default());
+    exr::write(&folder.join("reference.exr"), &frame, &says)?;
+    png::write_frame(&folder.join("reference.png"), &frame)?;
+    text(&folder.join("README.md"), &page::text(rule, case, &case.planes_of(&frame)))
+}
+
+/// Writes the page of a suite into the folder that holds the folders of its cases. `options` are
+/// those of the command `conformance` that writes these rules, such as `ewa --only rim`.
+///
+/// # Errors
+/// [`Error::Io`] if it cannot be written.
+pub fn write_index(folder: &Path, method: &Method, options: &str, rules: &[Rule]) -> Result<()> {
+    fs::create_dir_all(folder).map_err(|source| Error::io(folder, source))?;
+    text(&folder.join("README.md"), &index::text(method, options, rules))
 }
 
 fn text(path: &Path, text: &str) -> Result<()> {

@@ -6,7 +6,8 @@ use crate::splat::record::{SplatRecord, shared_numbers};
 use crate::verdict::conformance::{Case, Rule};
 use std::fmt::Write;
 
-const SPLATS: &[[&str; 2]] = &[
+/// The files of a scene of Gaussians.
+pub(super) const SPLATS: &[[&str; 2]] = &[
     ["scene.toml", "the scene file, for `splatref render` and `splatref verify`"],
     ["scene.json", "camera and settings as plain numbers"],
     ["splats.glb", "the Gaussians (`KHR_gaussian_splatting`), every number as it is"],
@@ -20,9 +21,11 @@ const SPLATS: &[[&str; 2]] = &[
         "the Gaussians as arrays; a rotation is a quaternion (x, y, z, w)",
     ],
     ["harmonics.npy", "the coefficients of each Gaussian, one colour after the other"],
+    REFERENCE,
 ];
 
-const FILES: &[[&str; 2]] = &[
+/// The files of a scene of surfels.
+pub(super) const FILES: &[[&str; 2]] = &[
     ["scene.toml", "the scene file, for `splatref render` and `splatref verify`"],
     ["scene.json", "camera, settings, lights and material as plain numbers"],
     ["surfels.ply", "the surfels"],
@@ -31,7 +34,11 @@ const FILES: &[[&str; 2]] = &[
         "the surfels as arrays; colors.npy, opacities.npy, half_axes.npy (two vectors a surfel), prefiltered.npy \
          if the scene has them",
     ],
+    REFERENCE,
 ];
+
+const REFERENCE: [&str; 2] =
+    ["reference.exr, reference.png", "all planes, as splatref draws them, and the picture"];
 
 /// The text of `README.md`.
 pub(super) fn text(
@@ -46,7 +53,6 @@ pub(super) fn text(
         .and_then(|()| leave(&mut page, planes));
     page.push_str(
         "\n## Look closer\n\nRun these in this folder; `client.exr` is your file.\n\n```sh\n\
-         splatref render scene.toml --stages -o reference.exr\n\
          splatref verify scene.toml client.exr\n\
          splatref explain scene.toml X Y --client client.exr\n```\n",
     );

@@ -5,6 +5,7 @@
 //! | `.ply` of the original program, of gsplat and of their kin | log scales, logit opacities, quaternions w x y z of any length, coefficients channel by channel | activates them, see [the properties](#the-properties-of-a-ply) |
 //! | `.gltf`, `.glb` with [`KHR_gaussian_splatting`] | scales, opacities in \[0, 1\], quaternions x y z w, coefficients one by one | applies the transforms of nodes, see [below](#gltf); needs the feature `cli` |
 //! | `.splat` | rows of 32 bytes: position and scale as floats, red, green, blue and opacity as bytes, a quaternion w x y z as bytes b that mean (b - 128) / 128 | a colour byte c becomes the coefficient (c / 255 - 1/2) / 0.2820947917738781, in f64, rounded once |
+//! | `.spz`, versions 1 to 3 | a gzip stream: fixed-point positions; logarithms of scales, opacities, colours and coefficients of a byte each; quaternions without one part | decodes them, see [below](#spz); needs the feature `cli` |
 //!
 //! [`KHR_gaussian_splatting`]: https://github.com/KhronosGroup/glTF/tree/main/extensions/2.0/Khronos/KHR_gaussian_splatting
 //!
@@ -50,12 +51,35 @@
 //! The reader is our own, on `serde_json` and `base64`, which the program has anyway: the extension needs
 //! accessors and nodes alone, and no crate that was found reads it.
 //!
-//! SPZ, another compressed format, is refused by name.
+//! # SPZ
+//!
+//! [SPZ](https://github.com/nianticlabs/spz) holds one array after the other, which stand for these
+//! numbers. Each is computed in f64 and rounded once; `exp` is that of a PLY.
+//!
+//! | bytes | become |
+//! |---|---|
+//! | positions: 3 integers of 24 bits | the integers, divided by 2^places; the header has the places |
+//! | opacities: a byte b | b / 255 |
+//! | colours: 3 bytes | the first coefficient, (b / 255 - 1/2) / 0.15 |
+//! | scales: 3 bytes | exp(b / 16 - 10) |
+//! | rotations, versions 1 and 2: 3 bytes | x, y and z: b / 127.5 - 1; w makes the length 1, and is 0 if they are longer |
+//! | rotations, version 3: 32 bits | the index of the greatest part in 2 bits, and from x to w the others, each as a sign and 9 bits b: b / 511 sqrt(1/2); the greatest part makes the length 1 |
+//! | the other coefficients: bytes, colour by colour of each coefficient | (b - 128) / 128 |
+//!
+//! - Version 1 was never released; its positions are half floats.
+//! - `Decided:` the axes are kept as for all other files, nothing is turned. SPZ has x to the right, y up
+//!   and z towards the viewer, as the cameras of this crate have. The PLY of a capture often has y down.
+//! - A flag says that the Gaussians were trained with antialiasing: they are right with
+//!   [compensated](crate::splat::gaussian::Compensation) opacities. The reader says so in
+//!   [`GaussianFile::convention`], and changes no setting.
+//! - Extensions of vendors are skipped with a warning. Degree 4 and versions from 4 on are refused.
 
 mod activation;
 #[cfg(feature = "cli")]
 mod gltf;
 mod splat;
+#[cfg(feature = "cli")]
+mod spz;
 #[cfg(feature = "cli")]
 mod write_ply;
 
@@ -127,10 +151,12 @@ pub fn read(path: &Path) -> Result<GaussianFile> {
             Err(Error::format(path, "glTF is read with the feature `cli` of this crate only"))
         }
         Kind::Splat => splat::read(path),
-        Kind::Spz => Err(Error::format(
-            path,
-            "SPZ is not read, because it is compressed with loss; convert it to a plain PLY or GLB",
-        )),
+        #[cfg(feature = "cli")]
+        Kind::Spz => spz::read(path),
+        #[cfg(not(feature = "cli"))]
+        Kind::Spz => {
+            Err(Error::format(path, "SPZ is read with the feature `cli` of this crate only"))
+        }
         Kind::Other => ply::read_gaussians(path),
     }
 }

@@ -146,8 +146,8 @@ impl FileKind {
             _ => Err(Error::Usage(match input::no_file(path) {
                 Some(what) => format!("{}: {what}", path.display()),
                 None => format!(
-                    "{}: unknown kind of file; give a .ply, .obj, .las, .laz, .e57, .glb, .gltf or \
-                     .splat, a scene .toml, an .exr, or a shape: {}",
+                    "{}: unknown kind of file; give a .ply, .obj, .las, .laz, .e57, .glb, .gltf, \
+                     .splat or .spz, a scene .toml, an .exr, or a shape: {}",
                     path.display(),
                     shapes()
                 ),

@@ -49,7 +49,7 @@ use super::causes::likely_cause;
 use super::client::Client;
 use super::{StageVerdict, Verdict};
 use crate::error::Result;
-use crate::frame::Exec;
+use crate::frame::{Exec, Frame};
 use crate::method::{Holds, Method, PlaneRow, Session, Stage};
 use crate::scene::{Camera, Cloud, Scene};
 use sketch::Sketch;
@@ -184,14 +184,19 @@ impl Case {
     /// # Errors
     /// As [`Session::define`].
     pub fn planes(&self, exec: &Exec) -> Result<Vec<(&'static Stage, Vec<&'static PlaneRow>)>> {
-        let frame = self.session(exec)?.define::<f32>(&self.camera, true)?.frame;
+        Ok(self.planes_of(&self.session(exec)?.define::<f32>(&self.camera, true)?.frame))
+    }
+
+    /// [`Case::planes`], if splatref's picture of the case with all its stages is there already.
+    #[must_use]
+    pub fn planes_of(&self, frame: &Frame<f32>) -> Vec<(&'static Stage, Vec<&'static PlaneRow>)> {
         let there = |row: &&'static PlaneRow| {
             row.holds != Holds::Diagnostic
                 && frame.planes.iter().any(|plane| row.is_called(&plane.name))
         };
         let stages = self.method.stages().iter();
         let rows = stages.map(|stage| (stage, stage.leaves.iter().filter(there).collect()));
-        Ok(rows.filter(|(_, rows): &(_, Vec<_>)| !rows.is_empty()).collect())
+        rows.filter(|(_, rows): &(_, Vec<_>)| !rows.is_empty()).collect()
     }
 
     /// Judges the planes of a client, and looks for the mistake behind a wrong one.

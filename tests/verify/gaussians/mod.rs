@@ -4,6 +4,7 @@
 mod blend;
 mod bug;
 mod habit;
+mod page;
 mod project;
 mod scenes;
 mod tests;
