@@ -7,7 +7,8 @@
 //!
 //! The truth is [`mod@crate::study::truth`] if a surface is known. Layers have no surface, so
 //! entries about layers compare with depth peeling. Entries about arithmetic compare with the same
-//! formula in f64. Errors depend on the scene alone, and are the same on every machine. Times are
+//! formula in f64. Entries about Gaussians say what they compare with, mostly the greatest density
+//! along each ray. Errors depend on the scene alone, and are the same on every machine. Times are
 //! not, and no test checks them.
 //!
 //! `splatref study failures -o docs` writes the page, `docs/atlas.md`.
@@ -15,6 +16,7 @@
 mod case;
 mod conics;
 mod footprints;
+mod gaussians;
 mod groups;
 mod layers;
 mod moving;
@@ -88,7 +90,7 @@ pub struct Curve {
 /// Every failure.
 #[must_use]
 pub fn failures() -> Vec<&'static Failure> {
-    let rooms: [&[Failure]; 8] = [
+    let rooms: [&[Failure]; 10] = [
         &footprints::FAILURES,
         &numbers::FAILURES,
         &conics::FAILURES,
@@ -97,6 +99,8 @@ pub fn failures() -> Vec<&'static Failure> {
         &moving::FAILURES,
         &reconstruction::FAILURES,
         &prefixes::FAILURES,
+        &gaussians::footprints::FAILURES,
+        &gaussians::blending::FAILURES,
     ];
     rooms.into_iter().flatten().collect()
 }

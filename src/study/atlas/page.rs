@@ -26,7 +26,7 @@ const INTRODUCTION: &str = "\
 This page shows where each method breaks, and what cures it. Every entry sweeps one parameter of a scene, and
 measures an error. The entry breaks at the first value whose error exceeds the limit. The row *cured* shows the same
 sweep with the cure. The pictures show the last value before the break, the broken value, and the broken value with
-the cure. The truth is the exact surface at 8 x 8 samples a pixel, unless the error names another picture.
+the cure. The truth is the exact surface at 8 x 8 samples a pixel, unless the entry names another truth.
 
 The command `splatref study failures -o docs` writes this page. Its errors are the same on every machine, and a test
 compares the page with them. The cost of a cure was measured on the machine that wrote the page,
