@@ -5,7 +5,6 @@ use crate::frame::NO_ID;
 use crate::method::gaussians::blending::GaussianPixel;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
-use crate::verdict::Doubt;
 
 /// What may be at a pixel.
 pub(super) struct Walked<P: Profile> {
@@ -34,7 +33,7 @@ impl<P: Profile> Walked<P> {
             let widest = most * self.brightest.at_least(1.0);
             through.radius <= most && color.iter().all(|part| part.radius <= widest)
         };
-        self.doubts & Doubt::OF_SUMS != 0 && !self.numbers.iter().all(narrow)
+        self.doubts != 0 && !self.numbers.iter().all(narrow)
     }
 
     /// The numbers in the order that comes closest to a client's, where `error` is its distance from
