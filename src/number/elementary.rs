@@ -35,8 +35,8 @@ pub fn pow(x: f64, y: f64) -> f64 {
 
 /// The bits of [`pow`], rounded to `f32` once, for bases that are not negative (nor -0).
 ///
-/// An approximation in f64 is wrong by a relative error of at most e, see [`squares`] and
-/// [`by_logarithm`]. [`pow`] is off by less than an ulp. So its value is in the interval of e + 2^-52
+/// An approximation in f64 is wrong by a relative error of at most e, see `squares` and
+/// `by_logarithm`. [`pow`] is off by less than an ulp. So its value is in the interval of e + 2^-52
 /// about the approximation, and if both ends round to one `f32`, so does that value. Where they do
 /// not, this function calls [`pow`]: for one number in some ten thousand. A NaN differs from itself,
 /// and is left to [`pow`].
