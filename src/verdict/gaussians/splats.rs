@@ -26,6 +26,31 @@ pub(super) struct PossibleSplat<P: Profile> {
     pub(super) products: [f64; 3],
     /// In the camera frame, if each pixel has its own order.
     pub(super) solid: Option<Solid<Ball<P>>>,
+    /// V: (xx, xy, yy).
+    ellipse: [Ball<P>; 3],
+    /// 1/det V.
+    inverse: Ball<P>,
+}
+
+impl<P: Profile> PossibleSplat<P> {
+    /// q/2 at a pixel.
+    ///
+    /// In balls the numbers of the conic are independent, but they share the error of 1/det, which is
+    /// great where a splat is long and thin. So 1/det times the form of V is an enclosure too, with
+    /// what the products of the conic round: 2^-23 each at most, of which there are three; 2^-20 is
+    /// more than twice that. The smaller of both is taken.
+    pub(super) fn power(&self, (x, y): (u32, u32)) -> Ball<P> {
+        let GaussianSplat { center, conic, .. } = self.splat;
+        let plain = ProjectedGaussian::power(center, conic, (x, y));
+        let [xx, xy, yy] = self.ellipse;
+        let dx = center.x - Ball::from_f32(x as f32 + 0.5);
+        let dy = center.y - Ball::from_f32(y as f32 + 0.5);
+        let along = Ball::from_f32(0.5) * (yy * (dx * dx) + xx * (dy * dy));
+        let across = xy * (dx * dy);
+        let terms = (along.middle + across.middle.abs()) * self.inverse.middle;
+        let shared = widened((along - across) * self.inverse, terms.abs() / 1_048_576.0);
+        if shared.radius < plain.radius { shared } else { plain }
+    }
 }
 
 /// All splats that may be drawn, ascending in the middles of their keys, with the tiles that they
@@ -141,7 +166,9 @@ fn possible<P: Profile>(
         key: projected.key(source.settings.order),
         reach: f32::INFINITY,
     };
-    Some(PossibleSplat { splat, certain, sound, products: [a * p.x, b * p.y, c * p.z], solid })
+    let products = [a * p.x, b * p.y, c * p.z];
+    let (ellipse, inverse) = (on_screen.ellipse, Ball::ONE / on_screen.det);
+    Some(PossibleSplat { splat, certain, sound, products, solid, ellipse, inverse })
 }
 
 /// The order of two items with the same key.
@@ -168,7 +195,9 @@ fn supposed_ellipse<P: Profile>(
 ) -> ProjectedGaussian<Ball<P>> {
     let ([xx, xy, yy], [a, b, c]) = (own.ellipse, own.conic);
     match supposed {
-        Supposed::Mirrored => ProjectedGaussian { conic: [a, -b, c], ..own },
+        Supposed::Mirrored => {
+            ProjectedGaussian { ellipse: [xx, -xy, yy], conic: [a, -b, c], ..own }
+        }
         Supposed::Transposed => {
             ProjectedGaussian { ellipse: [yy, xy, xx], conic: [c, b, a], ..own }
         }

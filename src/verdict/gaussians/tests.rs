@@ -5,13 +5,14 @@ use crate::method::gaussians::Settings;
 use crate::method::gaussians::splats::Source;
 use crate::method::part::Part;
 use crate::method::{Job, Method, Session};
-use crate::number::Ball;
 use crate::number::ball::Gpu;
 use crate::number::elementary::pow_f32;
 use crate::number::random::unit;
+use crate::number::{Ball, Exact, Real};
 use crate::scene::gaussians::{Encoding, GaussianArrays, Gaussians};
 use crate::scene::{Camera, Lens, Pose, Scene};
 use crate::setting::Words;
+use crate::splat::gaussian::ProjectedGaussian;
 use crate::verdict::client::Client;
 use crate::verdict::supposed::Supposed;
 use crate::verdict::{Doubt, Outcome, Verdict};
@@ -133,4 +134,56 @@ fn two_splats_of_one_depth_have_the_sum_of_an_order_not_one_between() {
     assert_eq!(outcome(first), Outcome::Right);
     assert_eq!(outcome(second), Outcome::Right);
     assert_eq!(outcome(mean), Outcome::Wrong);
+}
+
+/// q/2 at a pixel by the definition, and with the division at the end.
+fn powers<R: Exact>(source: &Source<'_, R>, i: usize, at: (u32, u32)) -> [f64; 2] {
+    let own = source.project(i).on_screen;
+    let [xx, xy, yy] = own.ellipse;
+    let (dx, dy) = (
+        own.center.x - R::from_f32(at.0 as f32 + 0.5),
+        own.center.y - R::from_f32(at.1 as f32 + 0.5),
+    );
+    let form = R::from_f32(0.5) * (yy * (dx * dx) + xx * (dy * dy)) - xy * (dx * dy);
+    [ProjectedGaussian::power(own.center, own.conic, at), form / own.det].map(R::to_f64)
+}
+
+#[test]
+fn every_way_to_compute_q_is_enclosed_and_needles_are_not_lost() {
+    let (scene, camera, exec) = (cloud(2_000, 0.02, 1.5), camera(160, 96), Exec::sequential());
+    let settings = &Settings::INRIA;
+    let (single, double) = (
+        Source::<f32>::new(&scene, &camera, settings),
+        Source::<f64>::new(&scene, &camera, settings),
+    );
+    let source = Source::<Ball<Gpu>>::new(&scene, &camera, settings);
+    let index = Index::default();
+    let job = Job::new(&scene, &index, &camera, &exec);
+    let all = PossibleSplats::new(&job, &source, Supposed::Nothing);
+    let (mut wide, mut of, mut narrowed) = (0, 0, 0);
+    for possible in &all.all {
+        let i = possible.splat.index as usize;
+        let bounds = possible.splat.bounds;
+        for k in 0..6 {
+            let column = (unit(7, 12 * i as u64 + 2 * k) * bounds.columns() as f32) as u32;
+            let rows = (bounds.y1 - bounds.y0) as f32;
+            let row = (unit(7, 12 * i as u64 + 2 * k + 1) * rows) as u32;
+            let at = (bounds.x0 + column, bounds.y0 + row);
+            let power = possible.power(at);
+            let [low, high] = power.ends();
+            let found = [powers(&single, i, at), powers(&double, i, at)];
+            for q in found.as_flattened() {
+                assert!(!(*q < low || *q > high), "{i} at {at:?}: {q} of {low} to {high}");
+            }
+            if found[1][0] < 6.0 {
+                let plain =
+                    ProjectedGaussian::power(possible.splat.center, possible.splat.conic, at);
+                of += 1;
+                wide += u32::from(!(power.radius < 0.1));
+                narrowed += u32::from(power.radius < 0.1 && !(plain.radius < 0.1));
+            }
+        }
+    }
+    assert!(narrowed > of / 50, "{narrowed} of {of} were lost");
+    assert!(wide < of / 50, "{wide} of {of} are wide");
 }

@@ -91,12 +91,9 @@ impl<'a, P: Profile> Walker<'a, P> {
         if !holds(&own.bounds, at) {
             return None;
         }
-        let fragment = self.rules.fragment(own, at);
-        let fragment = if self.supposed == Supposed::ExpWithoutHalf {
-            self.rules.with_power(own, fragment.power + fragment.power)
-        } else {
-            fragment
-        };
+        let power = splat.power(at);
+        let twice = self.supposed == Supposed::ExpWithoutHalf;
+        let fragment = self.rules.with_power(own, if twice { power + power } else { power });
         let GaussianFragment { alpha, inside, dense, .. } = fragment;
         let alpha = bounded(alpha, own.alpha.at_most(self.rules.most));
         let certain = splat.sound && holds(&splat.certain, at);
