@@ -186,6 +186,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         let shown = check(closest, &mut |_, error, fault| pixel.found(error, fault));
         self.shaded.is_none() || shown.color.iter().all(|part| part.radius.is_finite())
     }
+
     /// The picture at a pixel of the client's C and T, or of these numbers.
     fn shown_of(
         &self,
