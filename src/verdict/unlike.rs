@@ -75,7 +75,7 @@ const USUAL: [(&str, [f64; 2]); 18] = [
     ("normalization", [0.47, 1.0]),
     ("compositing", [0.75, 1.0]),
     ("averaging", [0.24, 0.55]),
-    ("blending", [0.37, 0.68]),
+    ("blending", [0.37, 0.72]),
     ("shading", [0.43, 0.83]),
     // The errors of one power fill its bounds.
     ("display", [1.0, 1.0]),
