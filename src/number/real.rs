@@ -319,8 +319,8 @@ pub(crate) fn ordered_f32(value: f32) -> i64 {
 }
 
 /// As [`ordered_f32`].
-fn ordered_f64(value: f64) -> i128 {
-    let magnitude = i128::from(value.to_bits() & 0x7FFF_FFFF_FFFF_FFFF);
+pub(crate) fn ordered_f64(value: f64) -> i64 {
+    let magnitude = (value.to_bits() & 0x7FFF_FFFF_FFFF_FFFF) as i64;
     if value.is_sign_negative() { -magnitude } else { magnitude }
 }
 

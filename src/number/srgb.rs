@@ -24,22 +24,30 @@ pub fn from_linear(x: f64) -> f64 {
 /// `c <= 0.04045`, else `((c + 0.055) / 1.055)^2.4`.
 #[inline]
 pub fn decoded<R: Real>(c: R) -> R {
-    let n = R::from_f32;
-    let power = ((c.at_least(R::ZERO) + n(0.055)) / n(1.055)).pow(n(2.4));
-    R::select(c.le(n(0.040_45)), c / n(12.92), power)
+    decoded_by(c, base(c).pow(R::from_f32(2.4)))
+}
+
+/// What the power of [`decoded`] is of.
+#[inline(always)]
+fn base<R: Real>(c: R) -> R {
+    (c.at_least(R::ZERO) + R::from_f32(0.055)) / R::from_f32(1.055)
+}
+
+/// [`decoded`], if the power is known.
+#[inline(always)]
+fn decoded_by<R: Real>(c: R, power: R) -> R {
+    R::select(c.le(R::from_f32(0.040_45)), c / R::from_f32(12.92), power)
 }
 
 vectorized!(
     /// [`decoded`] of every value.
     pub fn decode<R: Exact>(values: &mut [R]) {
-        let n = R::from_f32;
         for chunk in values.chunks_mut(LANES) {
             let mut own = [R::ZERO; LANES];
             own[..chunk.len()].copy_from_slice(chunk);
-            let bases = own.map_inline(|c| (c.at_least(R::ZERO) + n(0.055)) / n(1.055));
-            let powers = R::powers(&bases, n(2.4));
-            for (i, value) in chunk.iter_mut().enumerate() {
-                *value = R::select(own[i].le(n(0.040_45)), own[i] / n(12.92), powers[i]);
+            let powers = R::powers(&own.map_inline(base), R::from_f32(2.4));
+            for (value, power) in chunk.iter_mut().zip(powers) {
+                *value = decoded_by(*value, power);
             }
         }
     }

@@ -1,6 +1,6 @@
 //! Blend the fragments of a pixel from front to back.
 
-use super::order::{Splats, rank};
+use super::order::Splats;
 use super::splats::{GaussianSplat, Solid, Source};
 use super::{Order, Settings, Support};
 use crate::composite::decide;
@@ -9,6 +9,7 @@ use crate::frame::stencil::{Outcome, Stencil};
 use crate::frame::{NO_ID, Rect};
 use crate::method::buffer_formats::Buffers;
 use crate::method::tiled::pixels;
+use crate::number::real::ordered_f64;
 use crate::number::{Exact, Real};
 use crate::splat::gaussian::ProjectedGaussian;
 
@@ -192,7 +193,7 @@ impl<R: Exact> Blending<'_, R> {
                 }
             }
             // Stable, so that ties stay in the order of the indices.
-            listed.sort_by_key(|(.., depth)| rank(depth.to_f64()));
+            listed.sort_by_key(|(.., depth)| ordered_f64(depth.to_f64()));
             listed.iter().all(&mut draw);
         } else {
             for &place in places {

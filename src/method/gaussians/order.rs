@@ -6,6 +6,7 @@ use crate::frame::{Bins, Exec, Grid, Rect};
 use crate::method::Job;
 use crate::method::prepare::batch_size;
 use crate::number::Exact;
+use crate::number::real::ordered_f64;
 use crate::splat::{Fate, Tally};
 use std::ops::Range;
 
@@ -113,7 +114,7 @@ fn ordered<R: Exact>(batches: &[Batch<R>], shift: u32, own: bool, exec: &Exec) -
     let ranked = exec.ordered((0..batches.len()).collect(), |batch| {
         let places = (batch as u32) << shift..;
         let splats = batches[batch].splats.iter().zip(places);
-        let key = |splat: &GaussianSplat<R>| if own { 0 } else { rank(splat.key.to_f64()) };
+        let key = |splat: &GaussianSplat<R>| if own { 0 } else { ordered_f64(splat.key.to_f64()) };
         splats.map(|(splat, place)| (key(splat), place)).collect::<Vec<_>>()
     });
     let mut ranked = ranked.concat();
@@ -121,12 +122,6 @@ fn ordered<R: Exact>(batches: &[Batch<R>], shift: u32, own: bool, exec: &Exec) -
         exec.sort(&mut ranked);
     }
     ranked.into_iter().map(|(_, place)| place).collect()
-}
-
-/// The place of a number in the ascending list of all numbers.
-pub(super) fn rank(value: f64) -> u64 {
-    let bits = (value + 0.0).to_bits();
-    if bits >> 63 == 1 { !bits } else { bits | 1 << 63 }
 }
 
 /// Replaces each key by its step: floor(((key - least) / (most - least)) 65535); 0 if all are equal.

@@ -6,15 +6,16 @@ use crate::method::fast::tile::{BlockGrid, SIDE};
 use crate::method::gaussians::blending::{Blending, GaussianPixel};
 use crate::method::gaussians::splats::{GaussianSplat, Solid};
 use crate::number::lanes::{LANES, Lanes, each, vectorized};
+use crate::number::real::ordered_f32;
 use crate::splat::gaussian::GaussianProjector;
 use multiversion::target::target_cfg_f;
 
-/// A fragment of a pixel.
+/// A fragment of a pixel. Fragments are ordered by depth, then by place.
 #[derive(Clone, Copy)]
 struct Fragment {
-    /// What orders it: [`rank`] of its depth, then its place in the order of the indices.
-    key: u64,
     depth: f32,
+    /// See [`Near::place`].
+    place: u32,
     alpha: f32,
     /// Which of the tile's splats it is of.
     splat: u32,
@@ -36,7 +37,7 @@ pub(super) fn blend(blending: &Blending<'_, f32>, places: &[usize], rect: Rect) 
     };
     let mut all: Vec<Near> = places.iter().map(near).collect();
     // Fragments that come about in order are sorted fast; the order of the lists decides nothing.
-    all.sort_unstable_by_key(|near| (rank(near.splat.depth), near.place));
+    all.sort_unstable_by_key(|near| (ordered_f32(near.splat.depth), near.place));
     let limits = Limits::new(blending.source.settings);
     let mut lists: [Vec<Fragment>; LANES] = Default::default();
     let grid = BlockGrid::new(rect);
@@ -61,7 +62,7 @@ fn blended(
     all: &[Near],
     list: &mut [Fragment],
 ) -> GaussianPixel<f32> {
-    list.sort_unstable_by_key(|fragment| fragment.key);
+    list.sort_unstable_by_key(|one| (ordered_f32(one.depth), one.place));
     let mut pixel = GaussianPixel::EMPTY;
     for &Fragment { depth, alpha, splat, .. } in &*list {
         if blending.rules.ends(pixel.blend.through * (1.0 - alpha)) {
@@ -70,13 +71,6 @@ fn blended(
         pixel = blending.add(pixel, &all[splat as usize].splat, alpha, depth);
     }
     pixel.finished()
-}
-
-/// The place of a number in the ascending list of all numbers.
-#[inline(always)]
-fn rank(depth: f32) -> u32 {
-    let bits = (depth + 0.0).to_bits();
-    if bits >> 31 == 1 { !bits } else { bits | 1 << 31 }
 }
 
 vectorized!(
@@ -102,8 +96,8 @@ vectorized!(
             let depth = depths(projector, &near.solid, &u, &v);
             for i in 0..LANES {
                 if takes[i] != 0 {
-                    let key = u64::from(rank(depth[i])) << 32 | u64::from(near.place);
-                    lists[i].push(Fragment { key, depth: depth[i], alpha: alpha[i], splat: index });
+                    let (depth, alpha) = (depth[i], alpha[i]);
+                    lists[i].push(Fragment { depth, place: near.place, alpha, splat: index });
                 }
             }
         }
