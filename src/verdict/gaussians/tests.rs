@@ -12,6 +12,7 @@ use crate::number::{Ball, Exact};
 use crate::scene::gaussians::{Encoding, GaussianArrays, Gaussians};
 use crate::scene::{Camera, Lens, Pose, Scene};
 use crate::setting::Words;
+use crate::source::Shape;
 use crate::splat::gaussian::ProjectedGaussian;
 use crate::verdict::client::Client;
 use crate::verdict::supposed::Supposed;
@@ -46,14 +47,38 @@ fn camera(width: u32, height: u32) -> Camera {
     Camera::new(width, height, pose, Lens::FieldOfView(60.0)).unwrap()
 }
 
+/// A view of the cloud, one from within it, and one without perspective.
+fn cameras() -> [Camera; 3] {
+    let from = |eye, lens| {
+        let pose = Pose { eye, target: DVec3::new(0.1, 0.0, -1.0), up: DVec3::Y };
+        Camera::new(160, 96, pose, lens).unwrap()
+    };
+    [
+        camera(160, 96),
+        from(DVec3::new(0.2, 0.1, 1.0), Lens::FieldOfView(90.0)),
+        from(DVec3::new(1.0, 0.5, 4.0), Lens::Orthographic(3.0)),
+    ]
+}
+
 #[test]
 fn a_part_has_the_splats_of_the_whole() {
-    let (scene, camera, exec) = (cloud(3_000, 0.02, 1.5), camera(160, 96), Exec::sequential());
+    let surfels = Shape::Torus.surfels(3_000, 0).unwrap();
+    let scenes =
+        [cloud(3_000, 0.02, 1.5), cloud(3_000, 0.1, 0.5), Scene::unlit("surfels", surfels)];
+    for (scene, camera) in scenes.iter().zip(cameras()) {
+        let [left_out, of] = left_out(scene, &camera);
+        assert!(2 * left_out > of, "{}: of {of} only {left_out} are left out", scene.name);
+    }
+}
+
+/// Checks that small parts have the splats that touch them; how many others are left out, of how many.
+fn left_out(scene: &Scene, camera: &Camera) -> [usize; 2] {
+    let exec = Exec::sequential();
     let index = Index::default();
-    let mut left_out = 0;
+    let (mut left_out, mut of) = (0, 0);
     for (name, settings) in Settings::WORDS {
-        let source = Source::<Ball<Gpu>>::new(&scene, &camera, settings);
-        let whole = Job::new(&scene, &index, &camera, &exec);
+        let source = Source::<Ball<Gpu>>::new(scene, camera, settings);
+        let whole = Job::new(scene, &index, camera, &exec);
         let all = PossibleSplats::new(&whole, &source, Supposed::Nothing);
         for piece in whole.grid().rects().into_iter().enumerate().step_by(3) {
             let (tile, own) = piece;
@@ -66,9 +91,10 @@ fn a_part_has_the_splats_of_the_whole() {
             };
             assert_eq!(near(&some), near(&all), "{name}: tile {tile}");
             left_out += all.all.len() - some.all.len();
+            of += all.all.len();
         }
     }
-    assert!(left_out > 50_000, "most splats are far from a part: {left_out}");
+    [left_out, of]
 }
 
 #[test]
@@ -146,15 +172,26 @@ fn powers<R: Exact>(source: &Source<'_, R>, i: usize, at: (u32, u32)) -> [f64; 2
 
 #[test]
 fn every_way_to_compute_q_is_enclosed_and_needles_are_not_lost() {
-    let (scene, camera, exec) = (cloud(2_000, 0.02, 1.5), camera(160, 96), Exec::sequential());
-    let settings = &Settings::INRIA;
-    let (single, double) = (
-        Source::<f32>::new(&scene, &camera, settings),
-        Source::<f64>::new(&scene, &camera, settings),
-    );
-    let source = Source::<Ball<Gpu>>::new(&scene, &camera, settings);
+    let views = [0.02, 0.005, 0.05].into_iter().zip(cameras());
+    let found = views.map(|(size, camera)| enclosed(&cloud(2_000, size, 1.5), &camera));
+    let found: Vec<_> = found.collect();
+    for [narrowed, wide, of] in &found {
+        assert!(*wide < of / 50, "{wide} of {of} are wide");
+        assert!(*narrowed > 0, "none of {of} was lost");
+    }
+    let [narrowed, _, of] = found[0];
+    assert!(narrowed > of / 50, "{narrowed} of {of} were lost");
+}
+
+/// Checks the enclosures of q/2 at some pixels of each splat; where it is below 6, how many are narrow
+/// because 1/det is shared, how many are wide, and of how many.
+fn enclosed(scene: &Scene, camera: &Camera) -> [u32; 3] {
+    let (settings, exec) = (&Settings::INRIA, Exec::sequential());
+    let (single, double) =
+        (Source::<f32>::new(scene, camera, settings), Source::<f64>::new(scene, camera, settings));
+    let source = Source::<Ball<Gpu>>::new(scene, camera, settings);
     let index = Index::default();
-    let job = Job::new(&scene, &index, &camera, &exec);
+    let job = Job::new(scene, &index, camera, &exec);
     let all = PossibleSplats::new(&job, &source, Supposed::Nothing);
     let (mut wide, mut of, mut narrowed) = (0, 0, 0);
     for possible in &all.all {
@@ -180,6 +217,5 @@ fn every_way_to_compute_q_is_enclosed_and_needles_are_not_lost() {
             }
         }
     }
-    assert!(narrowed > of / 50, "{narrowed} of {of} were lost");
-    assert!(wide < of / 50, "{wide} of {of} are wide");
+    [narrowed, wide, of]
 }
