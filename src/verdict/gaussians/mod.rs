@@ -1,9 +1,9 @@
 //! Verify your planes of Gaussian splats: which planes a correct implementation may leave of each
 //! stage.
 //!
-//! Gaussians are projected in [`Ball`]s of a [`Profile`], with their
-//! colours, alphas and depths. Whatever is undecided is kept open, and the numbers of a pixel are hulls
-//! over the ways to decide, but one set for each order:
+//! Gaussians are projected in [`Ball`]s of a [`Profile`], with their colours, alphas and depths.
+//! Whatever is undecided is kept open. The numbers of a pixel are hulls over all ways to decide; each
+//! order of splats has hulls of its own. What may be undecided:
 //!
 //! - Whether a splat is drawn: near plane, determinant, bounds.
 //! - Whether a fragment is inside, dense enough, or behind the end of blending.
@@ -22,8 +22,8 @@
 //!
 //! `Decided:` a pixel is undecided if open decisions leave T, or a part of C, in an interval wider than
 //! 4/255, times the brightest colour if that is above 1. A narrower one, of fragments at the least
-//! alpha, judges the pixel nearly as well as 8 bits do; scenes of millions of splats have such decisions
-//! at every tenth pixel.
+//! alpha, judges the pixel nearly as well as 8 bits do. A generated capture of 300,000 splats had such
+//! decisions at every tenth pixel.
 
 mod splats;
 #[cfg(test)]
