@@ -4,8 +4,8 @@ use std::sync::OnceLock;
 use wgpu::{
     BindGroup, BindGroupDescriptor, BindGroupEntry, BindGroupLayout, BindingResource, Buffer,
     BufferDescriptor, BufferUsages, CommandEncoder, ComputePipeline, ComputePipelineDescriptor,
-    Device, DeviceDescriptor, Extent3d, Features, Instance, InstanceDescriptor, MapMode,
-    PipelineCompilationOptions, PollType, Queue, RequestAdapterOptions, ShaderModule,
+    Device, DeviceDescriptor, DeviceType, Extent3d, Features, Instance, InstanceDescriptor,
+    MapMode, PipelineCompilationOptions, PollType, Queue, RequestAdapterOptions, ShaderModule,
     ShaderModuleDescriptor, ShaderSource, TexelCopyBufferInfo, TexelCopyBufferLayout, Texture,
     TextureDescriptor, TextureDimension, TextureFormat, TextureUsages, TextureView,
     TextureViewDescriptor, TextureViewDimension,
@@ -16,6 +16,8 @@ pub(crate) struct Gpu {
     pub(crate) queue: Queue,
     /// The adapter and its driver, for the reader of a table.
     pub(crate) name: String,
+    /// Whether the driver draws on the processor.
+    pub(crate) software: bool,
 }
 
 /// The device of this process. Without one, this prints why, past the capture of `cargo test`.
@@ -50,7 +52,7 @@ impl Gpu {
             ..DeviceDescriptor::default()
         }))
         .map_err(|error| format!("{name}: {error}"))?;
-        Ok(Self { device, queue, name })
+        Ok(Self { device, queue, name, software: info.device_type == DeviceType::Cpu })
     }
 
     /// Compiles files of WGSL that follow each other.

@@ -5,7 +5,6 @@ use crate::device::Gpu;
 use crate::exposes;
 use crate::judge::{Judged, judge};
 use crate::operations;
-use crate::scenes::{of_ewa, of_pyramid, of_single_pass};
 use splatref::setting::Words;
 use splatref::verdict::Outcome;
 use splatref::verdict::client::Rounding;
@@ -14,37 +13,26 @@ use std::fmt::Write;
 use std::fs;
 
 const PAGE: &str = concat!(env!("CARGO_MANIFEST_DIR"), "/../../docs/gpu-clients.md");
-/// The comments around the tables.
-const ENDS: [&str; 2] = ["<!-- cargo test: gpu -->", "<!-- end -->"];
+const END: &str = "<!-- end -->";
 
-/// Writes what the clients of this device leave into the page.
+/// Writes what the clients of this device leave into its part of the page: there is one for a
+/// driver in software, and one for a graphics card.
 pub(crate) fn write(gpu: &Gpu) {
     let page = fs::read_to_string(PAGE).expect("the page");
-    let [start, end] = ENDS.map(|mark| page.find(mark).expect("the comments around the tables"));
-    let (before, after) = (&page[..start + ENDS[0].len()], &page[end..]);
+    let start =
+        format!("<!-- cargo test: gpu, {} -->", if gpu.software { "software" } else { "card" });
+    let (before, rest) = page.split_once(&start).expect("the comment before the tables");
+    let after = &rest[rest.find(END).expect("the comment after the tables")..];
     let [errors, pictures] = clients(gpu);
     let tables = [
         ("The device", format!("{}.\n", gpu.name)),
-        ("The scenes", scenes()),
         ("The largest error of each stage, in bounds", errors),
         ("Undecided decisions, and outcomes", pictures),
         ("The seeded bugs", bugs(gpu)),
         ("The operations of the device", operations::table(gpu)),
     ];
-    let tables = tables.map(|(heading, table)| format!("## {heading}\n\n{table}")).join("\n");
-    fs::write(PAGE, format!("{before}\n\n{tables}\n{after}")).expect("the page");
-}
-
-/// The scenes of each method.
-fn scenes() -> String {
-    let mut lines = String::new();
-    for (method, jobs) in
-        [("ewa", of_ewa()), ("single-pass", of_single_pass()), ("pyramid", of_pyramid())]
-    {
-        let names: Vec<_> = jobs.iter().map(|job| job.name.as_str()).collect();
-        line(&mut lines, format_args!("- `{method}` draws {}.", names.join("; ")));
-    }
-    lines
+    let tables = tables.map(|(heading, table)| format!("### {heading}\n\n{table}")).join("\n");
+    fs::write(PAGE, format!("{before}{start}\n\n{tables}\n{after}")).expect("the page");
 }
 
 /// What the verdicts of a client's pictures have in common, under one promise.
