@@ -4,19 +4,21 @@ use super::options::{ExecOptions, SceneOptions};
 use super::{Ended, Ending, draw, output, progress, report};
 use splatref::io::replace::write_atomically;
 use splatref::io::scene_file::{Number, Ready};
-use splatref::splat::record::{SplatRecord, project_records, shared_numbers};
+use splatref::method::Records;
 use splatref::{Error, Result};
 use std::io::Write;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 #[derive(clap::Args)]
 #[command(after_help = "\
-The file has no header. Each visible splat is a record of 96 bytes, in ascending surfel index. A record
-holds little-endian 32-bit floats and integers. The program prints the number of records and the offset
-of each field; the documentation of splatref::splat::record::SplatRecord says what they mean.
+The file has no header. Each visible splat is a record of 96 bytes, in ascending surfel index; a 3D
+Gaussian one of 128 bytes, in the order of blending. A record holds little-endian 32-bit floats and
+integers. The program prints the number of records and the offset of each field; the documentation of
+splatref::splat::record::SplatRecord and splatref::method::gaussians::record says what they mean.
 
 Examples:
   splatref project bunny.ply -o records.bin
+  splatref project splats.glb --method gaussians -o records.bin
   splatref project sphere --outline raycast --size 640x480 -o records.bin")]
 pub(super) struct Args {
     /// The scene, as for render
@@ -34,29 +36,30 @@ pub(super) fn run(args: &Args) -> Ended {
     let file = args.options.scene_file(&args.scene)?;
     let exec = args.exec.exec()?;
     let method = file.method.method()?;
-    check(args, method.splats().is_some(), file.output.number)?;
+    check(args, method.has_records(), file.output.number)?;
     file.output.check_kept("records are f32")?;
     output::check(&args.output, &args.scene, &file)?;
     let ready = draw::ready(&file, &exec)?;
     let Ready { loaded, camera, method, .. } = &ready;
-    let Some(splats) = method.splats() else { return Ok(Ending::Good) };
-    let surfels = &loaded.scene.surfels;
-    let (records, tally) = progress::during("projecting", || {
-        project_records(surfels, camera, &splats.kernel, splats.cull)
-    });
-    progress::during("writing", || write(&args.output, &records))?;
+    method.check_scene(&loaded.scene)?;
+    let records = progress::during("projecting", || method.records(&loaded.scene, camera, &exec));
+    let Some(Records { bytes, size, fields, shared, tally }) = records else {
+        return Ok(Ending::Good);
+    };
+    progress::during("writing", || write_atomically(&args.output, |file| file.write_all(&bytes)))?;
 
     report::scene(loaded);
     report::camera(camera);
     report::method(method, &loaded.scene, camera);
     report::tally(&tally);
-    report::line("records", format!("{} of {} bytes", records.len(), SplatRecord::SIZE));
-    for (name, offset, kind) in SplatRecord::FIELDS {
-        report::line("", format!("{offset:>2} {name:<9} {kind}"));
+    report::line("records", format!("{} of {size} bytes", bytes.len() / size));
+    for (name, offset, kind) in fields {
+        report::line("", format!("{offset:>3} {name:<12} {kind}"));
     }
-    let shared = shared_numbers(camera, &splats.kernel);
-    let shared: Vec<String> = shared.iter().map(|(name, v)| format!("{name} = {v:?}")).collect();
-    report::line("all share", shared.join(", "));
+    if !shared.is_empty() {
+        let shared: Vec<_> = shared.iter().map(|(name, v)| format!("{name} = {v:?}")).collect();
+        report::line("all share", shared.join(", "));
+    }
     report::line("file", args.output.display());
     Ok(Ending::Good)
 }
@@ -77,10 +80,4 @@ fn check(args: &Args, splats: bool, number: Number) -> Result<()> {
         )));
     }
     Ok(())
-}
-
-fn write(path: &Path, records: &[SplatRecord]) -> Result<()> {
-    write_atomically(path, |file| {
-        records.iter().try_for_each(|record| file.write_all(&record.to_bytes()))
-    })
 }

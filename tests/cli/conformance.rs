@@ -78,6 +78,7 @@ fn scenes_of_gaussians_are_files_of_other_programs() {
         "harmonics.npy",
         "opacities.npy",
         "positions.npy",
+        "records.bin",
         "reference.exr",
         "reference.png",
         "rotations.npy",

@@ -23,7 +23,7 @@ pub(super) fn text(method: &Method, options: &str, rules: &[Rule]) -> String {
     if !method.draws_gaussians() {
         page += OTHERS;
     }
-    if method.splats().is_some() {
+    if method.has_records() {
         page += "| records.bin | the visible splats, projected |\n";
     }
     page += "\n## The scenes\n\nThe pictures are splatref's own.\n\n";

@@ -16,7 +16,7 @@
 //! | `polygons.ply`, `ribbons.ply`, `tubes.ply` | the primitives, if any |
 //! | `polygons-positions.npy`, and so on | their vertices: positions, directions, radii, colors; and their corners as `uint32` |
 //! | `reference.exr`, `reference.png` | all planes as splatref draws them, and the picture |
-//! | `records.bin` | the projected splats, [`SplatRecord`], if the method draws splats |
+//! | `records.bin` | the projected splats, [`Records`](crate::method::Records), if the method draws splats |
 
 mod index;
 mod json;
@@ -36,7 +36,6 @@ use crate::scene::gaussians::Encoding;
 use crate::scene::indexed::Indexed;
 use crate::scene::{Gaussians, Intrinsics, Vertices};
 use crate::setting::Fields;
-use crate::splat::record::{SplatRecord, project_records};
 use crate::verdict::conformance::{Case, Draws, Rule};
 use glam::Vec3;
 use std::fs;
@@ -69,12 +68,8 @@ pub fn write(folder: &Path, rule: &Rule, case: &Case, exec: &Exec) -> Result<()>
     let scene = folder.join("scene.toml");
     text(&scene, &scene_file(folder, case).text(&scene)?)?;
     arrays(folder, case)?;
-    if let Some(splats) = case.method.splats() {
-        let (records, _) =
-            project_records(&case.scene.surfels, &case.camera, &splats.kernel, splats.cull);
-        write_atomically(&folder.join("records.bin"), |file| {
-            records.iter().try_for_each(|record: &SplatRecord| file.write_all(&record.to_bytes()))
-        })?;
+    if let Some(records) = case.method.records(&case.scene, &case.camera, exec) {
+        write_atomically(&folder.join("records.bin"), |file| file.write_all(&records.bytes))?;
     }
     text(&folder.join("scene.json"), &json::text(rule, case)?)?;
     let frame = case.session(exec)?.define::<f32>(&case.camera, true)?.frame;

@@ -1,8 +1,8 @@
 //! The page of a case: what it tests, and what the renderer must leave.
 
+use crate::frame::Exec;
 use crate::method::{PlaneRow, Stage};
 use crate::setting::Fields;
-use crate::splat::record::{SplatRecord, shared_numbers};
 use crate::verdict::conformance::{Case, Rule};
 use std::fmt::Write;
 
@@ -94,7 +94,7 @@ fn draw(page: &mut String, case: &Case) -> std::fmt::Result {
         let what = "pairs of a surfel and a group that it is drawn into";
         writeln!(page, "| members.npy | {what}; scene.json has the scale of each group's radii |")?;
     }
-    if method.splats().is_some() {
+    if method.has_records() {
         let what = "the visible splats, projected; use them to leave out your own projection";
         writeln!(page, "| records.bin | {what} |")?;
     }
@@ -109,16 +109,18 @@ fn draw(page: &mut String, case: &Case) -> std::fmt::Result {
     for (name, value) in method.settings_in_scene(scene, camera) {
         writeln!(page, "| {name} | {value} |")?;
     }
-    let Some(splats) = method.splats() else { return Ok(()) };
-    let size = SplatRecord::SIZE;
+    let Some(records) = method.records(scene, camera, &Exec::sequential()) else { return Ok(()) };
+    let (size, shared) = (records.size, &records.shared);
     writeln!(
         page,
         "\nA record has {size} bytes, little-endian:\n\n| offset | field | type |\n|---|---|---|"
     )?;
-    for (name, offset, kind) in SplatRecord::FIELDS {
+    for (name, offset, kind) in records.fields {
         writeln!(page, "| {offset} | {name} | {kind} |")?;
     }
-    let shared = shared_numbers(camera, &splats.kernel);
+    if shared.is_empty() {
+        return Ok(());
+    }
     let shared: Vec<String> = shared.iter().map(|(name, v)| format!("{name} = {v:?}")).collect();
     writeln!(page, "\nAll records share {}.", shared.join(", "))
 }

@@ -65,6 +65,7 @@ mod fast;
 mod order;
 pub(crate) mod picture;
 pub(crate) mod planes;
+pub mod record;
 mod settings;
 pub(crate) mod splats;
 

@@ -73,6 +73,11 @@ impl<R: Exact> Splats<R> {
         all
     }
 
+    /// How many splats are seen.
+    pub(crate) fn len(&self) -> usize {
+        self.order.len()
+    }
+
     /// The splat at a place of the order.
     #[inline(always)]
     pub(crate) fn at(&self, place: usize) -> &GaussianSplat<R> {
