@@ -4,8 +4,8 @@
     python examples/python/gaussians_on_cuda.py gsplat suite/gaussians
     for scene in suite/gaussians/*/; do splatref verify $scene/scene.toml $scene/gsplat/client.toml; done
 
-`gsplat` is the package of this name; `inria` is diff_gaussian_rasterization, the original program; `2dgs` is
-diff_surfel_rasterization. Install them as their pages say. Each draws with its own rules, so write the suite with its preset.
+`gsplat` is the package of this name; `inria` is diff_gaussian_rasterization, the original program; `mip` is
+the package of that name in Mip-Splatting; `2dgs` is diff_surfel_rasterization. Install them as their pages say. Each draws with its own rules, so write the suite with its preset.
 """
 
 import importlib
@@ -16,7 +16,7 @@ import sys
 import numpy as np
 
 
-def inria(torch, scene, camera, settings, package="diff_gaussian_rasterization"):
+def inria(torch, scene, camera, settings, package="diff_gaussian_rasterization", **more):
     """The blended colours alone: the program returns no other plane."""
     package = importlib.import_module(package)
     (w, h), (fx, fy, cx, cy) = ([camera[k] for k in keys] for keys in (("width", "height"), ("fx", "fy", "cx", "cy")))
@@ -28,11 +28,17 @@ def inria(torch, scene, camera, settings, package="diff_gaussian_rasterization")
     rules = package.GaussianRasterizationSettings(
         image_height=h, image_width=w, tanfovx=w / (2 * fx), tanfovy=h / (2 * fy), bg=tensor([0, 0, 0]), scale_modifier=1.0,
         viewmatrix=tensor(view.T), projmatrix=tensor((clip @ view).T), sh_degree=settings["degree"],
-        campos=tensor(camera["eye"]), prefiltered=False, debug=False)  # fmt: skip
+        campos=tensor(camera["eye"]), prefiltered=False, debug=False, **more)  # fmt: skip
     names = {"positions": "means3D", "scales": "scales", "rotations": "rotations", "harmonics": "shs"}
     arrays = {names[name]: scene[name] for name in names} | {"opacities": scene["opacities"][:, None]}
     color = package.GaussianRasterizer(rules)(means2D=torch.zeros_like(arrays["means3D"]), **arrays)[0]
     return {"blended": color.permute(1, 2, 0)}
+
+
+def mip(torch, scene, camera, settings):
+    """The original program with another filter."""
+    offset = torch.zeros(camera["height"], camera["width"], 2, device="cuda")
+    return inria(torch, scene, camera, settings, kernel_size=settings["low_pass"], subpixel_offset=offset)
 
 
 def surfels(torch, scene, camera, settings):
@@ -60,6 +66,7 @@ def gsplat(torch, scene, camera, settings):
 # The programs, with the settings that each has.
 PROGRAMS = {
     "inria": (inria, {"degree"}),
+    "mip": (mip, {"degree", "low_pass"}),
     "2dgs": (surfels, {"degree"}),
     "gsplat": (gsplat, {"degree", "near_depth", "low_pass", "compensation"}),
 }
@@ -73,8 +80,10 @@ def draw(torch, name, folder):
     usual = json.loads((folder.parent / "middle" / "scene.json").read_text())["settings"]
     camera, settings = described["camera"], described["settings"]
     unlike = {setting for setting in settings if settings[setting] != usual[setting]} - settable
-    if unlike or settings["compensation"] == "floor":
-        return f"the program has no {', '.join(sorted(unlike)) or 'floor'}"
+    if name == "gsplat" and settings["compensation"] not in ("none", "ratio"):
+        return "the program has no such compensation"
+    if unlike:
+        return f"the program has no {', '.join(sorted(unlike))}"
     if name != "gsplat" and camera["projection"] == "orthographic":
         return "the camera is orthographic"
     names = ("positions", "scales", "rotations", "opacities", "harmonics")

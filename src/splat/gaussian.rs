@@ -37,7 +37,7 @@
 //!   X = cx + fx (x/t)               Y = cy + fy (y/t)             not clamped
 //! ```
 //!
-//! The constants 1.3 and 0.3 of [`Clamp`] and 0.000025 of [`Compensation`] are rounded to `f32`.
+//! The constants 1.3 and 0.3 of [`Clamp`] and those of [`Compensation`] are rounded to `f32`.
 //! Orthographic: jx = fx, jy = fy, jxz = jyz = 0, X = cx + fx x, Y = cy + fy y.
 //!
 //! **Ellipse**, in px^2:
@@ -86,8 +86,11 @@ pub enum Compensation {
     None,
     /// sqrt(max(0, det0 / det)).
     Ratio,
-    /// sqrt(max(0.000025, det0 / det)): the original program.
+    /// sqrt(max(0.000025, det0 / det)): the original program since 2024, if it is asked for antialiasing.
     Floor,
+    /// sqrt(det0 / (det + 0.000001) + 0.000001), and 0 unless det0 > 0.000001 and det > 0.000001:
+    /// Mip-Splatting.
+    Mip,
 }
 
 impl Words for Clamp {
@@ -97,7 +100,7 @@ impl Words for Clamp {
 
 impl Words for Compensation {
     const WORDS: &'static [(&'static str, Self)] =
-        &[("none", Self::None), ("ratio", Self::Ratio), ("floor", Self::Floor)];
+        &[("none", Self::None), ("ratio", Self::Ratio), ("floor", Self::Floor), ("mip", Self::Mip)];
 }
 
 /// What programs do differently when they project a Gaussian.
@@ -230,6 +233,15 @@ pub struct ProjectedGaussian<R> {
     pub compensation: R,
 }
 
+/// See [`Compensation::Mip`].
+#[inline(always)]
+fn compensated_by_mip<R: Real>(det0: R, det: R) -> R {
+    let tiny = R::from_f32(0.000_001);
+    let root = (det0 / (det + tiny) + tiny).root_of_squares();
+    let if_det = R::select(det.gt(tiny), root, R::ZERO);
+    R::select(det0.gt(tiny), if_det, R::ZERO)
+}
+
 /// The camera and the kernel, as all Gaussians of a picture share them.
 #[derive(Clone, Copy, Debug)]
 pub struct GaussianProjector<R> {
@@ -336,6 +348,7 @@ impl<R: Real> GaussianProjector<R> {
             Compensation::None => R::ONE,
             Compensation::Ratio => ratio(0.0),
             Compensation::Floor => ratio(0.000_025),
+            Compensation::Mip => compensated_by_mip(det0, det),
         };
         let conic = [fyy * inverse, -(xy * inverse), fxx * inverse];
         ProjectedGaussian {

@@ -180,7 +180,7 @@ impl Settings {
     pub const MIP: Self = Self {
         kernel: GaussianKernel {
             low_pass: 0.1,
-            compensation: Compensation::Floor,
+            compensation: Compensation::Mip,
             ..Self::INRIA.kernel
         },
         ..Self::INRIA
@@ -269,7 +269,7 @@ impl Settings {
                 .range("0 to 16"),
         );
         let compensation = "multiply opacities by sqrt(det V0 / det V), so that the low-pass filter \
-                            adds no light; floor: by 0.005 at least";
+                            adds no light; floor: by 0.005 at least; mip: as Mip-Splatting does";
         each(Field::new("compensation", compensation, Slot::Word(&mut kernel.compensation)));
         let harmonics = "use spherical harmonics up to this degree";
         each(Field::new("degree", harmonics, Slot::Count(degree)).range("0 to 3"));

@@ -101,6 +101,10 @@ fn filters(own: &Settings, add: &mut dyn FnMut(String, Settings)) {
             Compensation::Floor,
             "opacities are compensated for the low-pass filter, by 0.005 at least",
         ),
+        (
+            Compensation::Mip,
+            "opacities are compensated for the low-pass filter as by Mip-Splatting",
+        ),
     ] {
         let kernel = GaussianKernel { compensation, ..own.kernel };
         add(what.into(), Settings { kernel, ..*own });

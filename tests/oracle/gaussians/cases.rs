@@ -154,6 +154,7 @@ const CHANGES: &[Change] = &[
     ("low_pass 2.5", |s| s.kernel.low_pass = 2.5),
     ("compensation ratio", |s| s.kernel.compensation = Compensation::Ratio),
     ("compensation floor", |s| s.kernel.compensation = Compensation::Floor),
+    ("compensation mip", |s| s.kernel.compensation = Compensation::Mip),
     ("degree 0", |s| s.degree = 0),
     ("degree 2", |s| s.degree = 2),
     ("bounds none", |s| s.bounds = ColorBounds::None),
@@ -242,7 +243,7 @@ fn limits() -> Vec<Case<Settings>> {
         let scene = random(40, 1, Encoding::Srgb, 62);
         case("compensated boxes", scene, camera(false, SIZE), settings)
     };
-    all.extend([Compensation::Ratio, Compensation::Floor].map(compensated));
+    all.extend([Compensation::Ratio, Compensation::Floor, Compensation::Mip].map(compensated));
     all
 }
 

@@ -262,12 +262,17 @@ impl<'a> Model<'a> {
     }
 
     fn compensation(&self, det0: Conditioned, det: Conditioned) -> Conditioned {
-        let least = match self.settings.kernel.compensation {
-            Compensation::None => return Conditioned::exact(1.0),
-            Compensation::Ratio => 0.0,
-            Compensation::Floor => f64::from(0.000_025_f32),
+        let tiny = f64::from(0.000_001_f32);
+        let root = |det0: f64| match self.settings.kernel.compensation {
+            Compensation::None => 1.0,
+            Compensation::Ratio => (det0 / det.value).max(0.0).sqrt(),
+            Compensation::Floor => (det0 / det.value).max(f64::from(0.000_025_f32)).sqrt(),
+            Compensation::Mip if det0 <= tiny || det.value <= tiny => 0.0,
+            Compensation::Mip => (det0 / (det.value + tiny) + tiny).sqrt(),
         };
-        let root = |det0: f64| (det0 / det.value).max(least).sqrt();
+        if self.settings.kernel.compensation == Compensation::None {
+            return Conditioned::exact(1.0);
+        }
         let value = root(det0.value);
         let change = |by: f64| (root(det0.value + by * det0.condition) - value).abs();
         let rest = value * (det.condition / det.value + 2.0 * self.step);

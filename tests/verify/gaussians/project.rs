@@ -195,13 +195,14 @@ impl Shared<'_> {
     }
 
     fn compensation(&self, [a, b, c]: [f32; 3], det: f32) -> f32 {
-        let least = match self.settings.kernel.compensation {
+        let det0 = self.difference(a, c, b, b);
+        let ratio = match self.settings.kernel.compensation {
             Compensation::None => return 1.0,
-            Compensation::Ratio => 0.0,
-            Compensation::Floor => 0.000_025,
+            Compensation::Ratio => (det0 / det).max(0.0),
+            Compensation::Floor => (det0 / det).max(0.000_025),
+            Compensation::Mip if det0 > 1e-6 && det > 1e-6 => det0 / (det + 1e-6) + 1e-6,
+            Compensation::Mip => 0.0,
         };
-        let ratio = self.difference(a, c, b, b) / det;
-        let ratio = if ratio > least { ratio } else { least };
         if self.how.habit == Habit::InverseSqrt && ratio > 0.0 {
             return ratio * (1.0 / ratio.sqrt());
         }

@@ -148,6 +148,7 @@ pub(super) const ROWS: &[SettingRow] = &[
     SettingRow { of: GAUSSIANS, name: "low_pass", value: "0.1", draw: blobs },
     SettingRow { of: GAUSSIANS, name: "compensation", value: "ratio", draw: blobs },
     SettingRow { of: GAUSSIANS, name: "compensation", value: "floor", draw: blobs },
+    SettingRow { of: GAUSSIANS, name: "compensation", value: "mip", draw: blobs },
     SettingRow { of: GAUSSIANS, name: "degree", value: "0", draw: blobs },
     SettingRow { of: GAUSSIANS, name: "degree", value: "1", draw: blobs },
     SettingRow { of: GAUSSIANS, name: "degree", value: "2", draw: blobs },
