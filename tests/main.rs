@@ -3,6 +3,7 @@
 //!
 //! - [`oracle`]: every method, stage by stage, against independent computations; laws; bits.
 //! - [`verify`]: verdicts on a client that is no part of the crate.
+//! - [`regions`]: parts of pictures have the bits of whole pictures.
 //! - [`settings`], [`docs`], [`models`]: the rows of settings, the pages, real scans.
 //! - [`rooms`]: no folder of `src/` imports a higher one.
 //! - [`examples`]: the programs in `examples/` are short, and a page names each.
@@ -16,6 +17,7 @@ mod docs;
 mod examples;
 mod models;
 mod oracle;
+mod regions;
 mod rooms;
 mod settings;
 mod verify;

@@ -2,13 +2,16 @@
 
 use super::options::SceneOptions;
 use super::output;
-use splatref::frame::{Exec, Frame};
+use splatref::frame::{Exec, Frame, Rect};
 use splatref::index::seen::Seen;
 use splatref::io::client::{DepthConvention, DepthFile};
+use splatref::io::exr::{self, Window};
+use splatref::io::png;
 use splatref::io::replace::Pending;
 use splatref::io::scene_file::{FileKind, OutputSettings, Ready, SceneFile};
 use splatref::io::state::{self, State};
-use splatref::io::{exr, png};
+use splatref::method::Session;
+use splatref::scene::Camera;
 use splatref::{Error, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -24,6 +27,8 @@ pub(super) struct Destination<'a> {
     /// Where what the last frame saw goes, if it is kept.
     pub(super) keep_state: Option<&'a Path>,
     pub(super) options: &'a SceneOptions,
+    /// The part of the picture that is drawn; none: all of it.
+    pub(super) region: Option<Rect>,
     pub(super) depth: Option<Depth>,
 }
 
@@ -63,7 +68,11 @@ impl Destination<'_> {
                 )))
             }
             None => {
-                let path = named(&Path::new(FOLDER).join(format!("{}.exr", file.name)));
+                // Parts with names of their own, so that none replaces another, or the whole picture.
+                let part = self.region.map_or(String::new(), |Rect { x0, y0, x1, y1 }| {
+                    format!(".{x0}-{y0}-{x1}-{y1}")
+                });
+                let path = named(&Path::new(FOLDER).join(format!("{}{part}.exr", file.name)));
                 output::check_unread(&path, self.scene, file)?;
                 self.check_depth(&path, file)?;
                 Ok(path)
@@ -114,6 +123,17 @@ impl Destination<'_> {
         Ok(())
     }
 
+    /// Checks, before long work, that the region is inside a camera's picture.
+    pub(super) fn check_region(&self, camera: &Camera) -> Result<()> {
+        self.region.map_or(Ok(()), |region| camera.check_region(&region))
+    }
+
+    /// Makes a session draw the region alone. Returns the place of its pixels in the camera's picture.
+    pub(super) fn limit(&self, session: &mut Session<'_>, camera: &Camera) -> Result<Window> {
+        session.set_region(self.region)?;
+        Ok(Window { region: session.window(camera)?, picture: camera.size() })
+    }
+
     /// Makes the default folder, if no output is named.
     pub(super) fn make_folder(&self) -> Result<()> {
         if self.output.is_some() {
@@ -128,14 +148,14 @@ impl Destination<'_> {
 /// writes the depths, if they are wanted.
 pub(super) fn write(
     picture: &Path,
-    frame: &Frame<f32>,
+    (frame, window): (&Frame<f32>, Window),
     text: impl Fn() -> String + Sync,
     (output, depth): (OutputSettings, Option<Depth>),
     exec: &Exec,
 ) -> Result<()> {
     let (small, large) = exec.join(
         || png::pending_frame(&picture.with_extension("png"), frame),
-        || exr::pending(picture, frame, &text(), output.compression, exec),
+        || exr::pending_part(picture, (frame, window), &text(), output.compression, exec),
     );
     let (small, large) = (small?, large?);
     large.put()?;

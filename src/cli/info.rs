@@ -1,7 +1,7 @@
 //! `splatref info`: describes a file or a folder of surfels.
 
 use super::report::{self, line};
-use super::{Ended, Ending, hierarchy, progress, say, warn, warn_of};
+use super::{Ended, Ending, hierarchy, progress, region, say, warn, warn_of};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::exr::{self, ChannelType};
@@ -169,6 +169,9 @@ fn source(model: &Model) -> String {
 fn picture(path: &Path) -> Result<()> {
     let header = exr::read_header(path)?;
     line("picture", format!("{} x {} pixels", header.width, header.height));
+    if let Some(data) = header.data.filter(|data| data.size() != [header.width, header.height]) {
+        line("region", region::words(data));
+    }
     line("stored", header.compressions.join("; "));
     for (name, kind) in &header.channels {
         line(

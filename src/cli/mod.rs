@@ -4,6 +4,7 @@
 //! 2 for wrong usage, and 1 for everything else, pictures that differ included. `verify` has exit
 //! codes of its own.
 
+mod assemble;
 mod atlas;
 mod camera;
 mod claims;
@@ -26,6 +27,7 @@ mod plan;
 mod progress;
 mod project;
 mod quality;
+mod region;
 mod render;
 mod report;
 mod rows;
@@ -77,6 +79,8 @@ Exit codes: 0 success, 1 different or failed, 2 wrong usage; of verify, suite an
 enum Command {
     /// Render a scene into an EXR with every plane and a PNG
     Render(render::Args),
+    /// Join the parts of a picture that `render --region` wrote
+    Assemble(assemble::Args),
     /// Check that the pictures under golden/ are reproduced, bit for bit
     Golden(golden::Args),
     /// Compare two pictures, plane by plane: EXR, PNG or NPY
@@ -125,6 +129,7 @@ pub(crate) fn run() -> ExitCode {
     memory::limit(cli.memory);
     let outcome = match cli.command {
         Command::Render(args) => render::run(&args),
+        Command::Assemble(args) => assemble::run(&args),
         Command::Golden(args) => golden::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Verify(args) => verify::run(&args),

@@ -4,8 +4,8 @@ use super::destination::{Depth, Destination, write};
 use super::options::{ExecOptions, SceneOptions};
 use super::rows::{OfFiles, RowOptions};
 use super::sequence::{self, Frames};
-use super::{Ended, Ending, draw, progress, report};
-use splatref::frame::Exec;
+use super::{Ended, Ending, draw, progress, region, report};
+use splatref::frame::{Exec, Rect};
 use splatref::io::client::{DepthConvention, DepthFile};
 use splatref::io::provenance;
 use splatref::io::scene_file::{OutputSettings, Ready, SceneFile};
@@ -27,6 +27,7 @@ Examples:
   splatref render scene.toml --frames 0..60 -o out/walk.exr
   splatref render scan.ply --cameras transforms.json --view r_12
   splatref render bunny.ply --turntable 60 -o out/turn.exr
+  splatref render bunny.ply --size 4096x4096 --region 0,0,4096,512 -o parts/0.exr
   splatref render bunny.ply --write-depth png --depth-as t,1000 -o bunny.exr")]
 pub(super) struct Args {
     /// A .ply, .obj, .las, .laz, .e57, .glb, .gltf, .splat or .spz, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster,
@@ -36,6 +37,12 @@ pub(super) struct Args {
     /// Write the EXR here, and the PNG beside it [default: out/NAME.exr]
     #[arg(short, long, value_name = "FILE.exr")]
     output: Option<PathBuf>,
+    /// Draw only the columns from X0 up to X1 and the rows from Y0 up to Y1, X1 and Y1 excluded. The EXR has
+    /// the bits of the whole picture there, as its data window; `assemble` joins such parts [default
+    /// output: out/NAME.X0-Y0-X1-Y1.exr]
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = region::region, allow_hyphen_values = true,
+        conflicts_with = "write_depth")]
+    region: Option<Rect>,
     #[command(flatten)]
     files: RowOptions<OfFiles>,
     /// Render N times; print the minimum and the median of each stage. For the method deferred these
@@ -82,6 +89,21 @@ impl Args {
         Ok(Some(Depth { file, convention }))
     }
 
+    /// The files to write, and what part of the picture they hold.
+    fn destination(&self, file: &SceneFile) -> Result<Destination<'_>> {
+        if self.region.is_some() {
+            file.method.method()?.check_region()?;
+        }
+        Ok(Destination {
+            scene: &self.scene,
+            output: self.output.as_deref(),
+            keep_state: self.keep_state.as_deref(),
+            options: &self.options,
+            depth: self.depth()?,
+            region: self.region,
+        })
+    }
+
     /// The frames to render as a sequence; `None` for one picture.
     fn sequence(&self, file: &SceneFile) -> Option<Range<u32>> {
         match &self.frames {
@@ -101,13 +123,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let mut file = args.options.scene_file(&args.scene)?;
     file.output = args.files.chosen.on(file.output, "the output")?;
     let exec = args.exec.exec()?;
-    let destination = Destination {
-        scene: &args.scene,
-        output: args.output.as_deref(),
-        keep_state: args.keep_state.as_deref(),
-        options: &args.options,
-        depth: args.depth()?,
-    };
+    let destination = args.destination(&file)?;
     if let Some(frames) = args.sequence(&file) {
         file.check_frame(frames.end - 1)?;
         file.frame = frames.start;
@@ -117,7 +133,9 @@ pub(super) fn run(args: &Args) -> Ended {
     let preview = picture.with_extension("png");
     let ready = draw::ready(&file, &exec)?;
     destination.check_state(&ready, &file, std::slice::from_ref(&picture))?;
+    destination.check_region(&ready.camera)?;
     let (mut session, made) = draw::session(&ready, &args.options, &exec)?;
+    let window = destination.limit(&mut session, &ready.camera)?;
     let loading = start.elapsed();
     let Ready { loaded, camera, method, .. } = &ready;
     let scene = &loaded.scene;
@@ -133,7 +151,7 @@ pub(super) fn run(args: &Args) -> Ended {
     destination.make_folder()?;
     progress::during("writing", || -> Result<()> {
         let text = || provenance::text(scene, groups.as_ref(), camera, method, file.output);
-        write(&picture, &drawing.frame, text, (file.output, destination.depth), &exec)
+        write(&picture, (&drawing.frame, window), text, (file.output, destination.depth), &exec)
     })?;
     let (writing, tally, seen) = (writing.elapsed(), drawing.tally, drawing.seen.clone());
     drop(drawing);
@@ -143,6 +161,9 @@ pub(super) fn run(args: &Args) -> Ended {
     report::camera(camera);
     report::far(&file, scene, camera);
     report::picture(camera, file.output);
+    if let Some(part) = args.region {
+        report::line("region", region::words(part));
+    }
     report::method(method, scene, camera);
     report::groups(session.groups(), made.as_ref());
     report::tally(&tally);

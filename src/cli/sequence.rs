@@ -62,13 +62,14 @@ pub(super) fn render(
     let last = frames.end - 1;
     let all: Vec<_> = frames.zip(&places).collect();
     let show = |done: usize| steps.show("rendering", done as u64, all.len() as u64);
-    let output = (file.output, to.depth);
     if ready.is_still() {
         let mut session = times.of("preparing", || ready.session(exec, &|_, _, _| ()))?.0;
         for (done, (frame, path)) in all.iter().enumerate() {
             show(done);
             session.resume(seen);
-            seen = one(&mut session, &ready.camera_at(*frame)?, path, output, exec, &mut times)?;
+            let camera = ready.camera_at(*frame)?;
+            let picture = (to, file.output, path.as_path());
+            seen = one(&mut session, &camera, picture, exec, &mut times)?;
         }
     } else {
         for (done, (frame, path)) in all.iter().enumerate() {
@@ -76,7 +77,8 @@ pub(super) fn render(
             ready = times.of("placing", || ready.at(*frame, exec))?;
             let mut session = times.of("preparing", || ready.session(exec, &|_, _, _| ()))?.0;
             session.resume(seen);
-            seen = one(&mut session, &ready.camera, path, output, exec, &mut times)?;
+            let picture = (to, file.output, path.as_path());
+            seen = one(&mut session, &ready.camera, picture, exec, &mut times)?;
         }
     }
     drop(steps);
@@ -93,16 +95,17 @@ pub(super) fn render(
 fn one(
     session: &mut Session<'_>,
     camera: &Camera,
-    path: &Path,
-    (output, depth): (OutputSettings, Option<Depth>),
+    (to, output, path): (&Destination<'_>, OutputSettings, &Path),
     exec: &Exec,
     times: &mut Times,
 ) -> Result<Option<Seen>> {
     let (scene, method, groups) = (session.scene(), *session.method(), session.groups().cloned());
+    let window = to.limit(session, camera)?;
     let drawing = output.draw(session, camera)?;
     drawing.timings.iter().for_each(|(stage, time)| times.add(stage, *time));
     let text = || provenance::text(scene, groups.as_ref(), camera, &method, output);
-    times.of("writing", || write(path, &drawing.frame, text, (output, depth), exec))?;
+    let pixels = (&drawing.frame, window);
+    times.of("writing", || write(path, pixels, text, (output, to.depth), exec))?;
     Ok(drawing.seen.clone())
 }
 

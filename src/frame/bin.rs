@@ -1,7 +1,6 @@
 //! Sort screen bounds into tiles, by counting sort, at the resolution that suits the bounds.
 
 use super::{Grid, Rect};
-use crate::number::MapInline;
 
 /// The bounds that touch each tile: for each tile, indices in ascending order.
 ///
@@ -35,18 +34,11 @@ struct Level {
     items: Vec<u32>,
 }
 
-/// Columns and rows of tiles that bounds touch, the ends exclusive.
+/// The cells of 2 x 2 that a rectangle touches; the rectangle is not empty.
 #[inline(always)]
-fn tiles(grid: &Grid, r: &Rect) -> Rect {
-    // Tiles are powers of two wide and high; a shift is much faster than a division.
-    coarser(r, grid.side.map_inline(u32::trailing_zeros))
-}
-
-/// The cells of 2^x by 2^y that a rectangle touches; the rectangle is not empty.
-#[inline(always)]
-fn coarser(r: &Rect, [x, y]: [u32; 2]) -> Rect {
-    let end = |end: u32, shift: u32| ((end - 1) >> shift) + 1;
-    Rect { x0: r.x0 >> x, y0: r.y0 >> y, x1: end(r.x1, x), y1: end(r.y1, y) }
+fn coarser(r: &Rect) -> Rect {
+    let end = |end: u32| ((end - 1) >> 1) + 1;
+    Rect { x0: r.x0 >> 1, y0: r.y0 >> 1, x1: end(r.x1), y1: end(r.y1) }
 }
 
 /// The level for bounds that touch these tiles, and the cells that they touch on that level.
@@ -54,17 +46,17 @@ fn coarser(r: &Rect, [x, y]: [u32; 2]) -> Rect {
 fn place(tiles: Rect) -> (u32, Rect) {
     let (mut shift, mut cells) = (0, tiles);
     while (cells.x1 - cells.x0) * (cells.y1 - cells.y0) > MOST {
-        cells = coarser(&cells, [1, 1]);
+        cells = coarser(&cells);
         shift += 1;
     }
     (shift, cells)
 }
 
 impl Bins {
-    /// Sorts `count` bounds, none of them empty, into the tiles of a grid.
+    /// Sorts `count` bounds into the tiles of a grid; each of them touches the grid's window.
     #[must_use]
     pub fn new(grid: &Grid, count: usize, bounds: impl Fn(usize) -> Rect) -> Self {
-        let placed = |i: usize| place(tiles(grid, &bounds(i)));
+        let placed = |i: usize| place(grid.touched(&bounds(i)));
         // Count first; a level is made when the first item is listed in it.
         let mut levels: [Option<Level>; LEVELS] = Default::default();
         for i in 0..count {
@@ -256,7 +248,7 @@ mod tests {
             for (bounds, met) in bounds.iter().zip(met) {
                 // 5 tiles a side can lie in 3 cells of 2, so 36 tiles instead of 25; 9 tiles a side
                 // in 4 cells of 4.
-                let touched = tiles(&grid, bounds).pixels();
+                let touched = grid.touched(bounds).pixels();
                 prop_assert!(met <= 4 * touched, "{met} tiles for {touched}");
             }
             let listed: usize = bins.levels.iter().map(|level| level.items.len()).sum();

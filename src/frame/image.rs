@@ -1,6 +1,7 @@
 //! A picture as files hold it: the form that is compared, measured and hashed.
 
-use super::{ChannelData, Frame, Plane};
+use super::{ChannelData, Frame, Plane, Rect};
+use crate::error::Result;
 
 /// A picture as files hold it: channels by name, without the planes that the channels belong to.
 #[derive(Clone, Debug, PartialEq)]
@@ -45,6 +46,30 @@ impl From<&Frame<f32>> for Image {
 }
 
 impl Image {
+    /// The pixels of a region of the picture.
+    ///
+    /// # Errors
+    /// As [`Rect::check_inside`].
+    pub fn region(&self, region: &Rect) -> Result<Self> {
+        region.check_inside([self.width, self.height])?;
+        let Rect { x0, y0, x1, y1 } = *region;
+        let rows = || (y0..y1).map(|y| y as usize * self.width as usize);
+        let row = |first: usize| first + x0 as usize..first + x1 as usize;
+        let channels = self.channels.iter().map(|(name, values)| {
+            let values = match values {
+                Values::Float(all) => {
+                    Values::Float(rows().flat_map(|first| &all[row(first)]).copied().collect())
+                }
+                Values::Index(all) => {
+                    Values::Index(rows().flat_map(|first| &all[row(first)]).copied().collect())
+                }
+            };
+            (name.clone(), values)
+        });
+        let ([width, height], channels) = (region.size(), channels.collect());
+        Ok(Self { width, height, channels, text: self.text.clone() })
+    }
+
     /// The values of the channel called `name`.
     #[must_use]
     pub fn channel(&self, name: &str) -> Option<&Values> {

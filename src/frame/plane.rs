@@ -1,5 +1,6 @@
 //! A rectangle of pixels of one type.
 
+use super::Rect;
 use std::slice::ChunksMut;
 
 /// `width` x `height` values, row by row from the top left.
@@ -32,7 +33,14 @@ impl<T> Plane<T> {
 
     /// Computes a value for each pixel from its column and row.
     pub(crate) fn from_pixels([width, height]: [u32; 2], value: impl Fn(u32, u32) -> T) -> Self {
-        let pixels = (0..height).flat_map(|y| (0..width).map(move |x| (x, y)));
+        Self::of_window(Rect::of_size([width, height]), value)
+    }
+
+    /// As [`Plane::from_pixels`], for the pixels of a part of a picture, counted in the picture.
+    pub(crate) fn of_window(window: Rect, value: impl Fn(u32, u32) -> T) -> Self {
+        let [width, height] = window.size();
+        let columns = window.x0..window.x1;
+        let pixels = (window.y0..window.y1).flat_map(|y| columns.clone().map(move |x| (x, y)));
         Self::from_values(width, height, pixels.map(|(x, y)| value(x, y)).collect())
     }
 

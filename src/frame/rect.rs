@@ -1,5 +1,7 @@
 //! Rectangles of pixels.
 
+use crate::error::{Error, Result};
+
 /// The pixels of columns `x0 .. x1` and rows `y0 .. y1`, the ends exclusive.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Default)]
 pub struct Rect {
@@ -17,6 +19,40 @@ impl Rect {
     /// One pixel.
     pub(crate) fn pixel((x, y): (u32, u32)) -> Self {
         Self { x0: x, y0: y, x1: x + 1, y1: y + 1 }
+    }
+
+    /// All pixels of a picture of this width and height.
+    #[must_use]
+    pub fn of_size([x1, y1]: [u32; 2]) -> Self {
+        Self { x0: 0, y0: 0, x1, y1 }
+    }
+
+    /// Width and height of a rectangle that is not reversed.
+    #[inline(always)]
+    #[must_use]
+    pub fn size(&self) -> [u32; 2] {
+        [self.x1 - self.x0, self.y1 - self.y0]
+    }
+
+    /// Checks that a region has pixels, all of them in a picture of this width and height.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if it has none, or others.
+    pub fn check_inside(&self, [w, h]: [u32; 2]) -> Result<()> {
+        let Self { x0, y0, x1, y1 } = *self;
+        if self.is_empty() {
+            return Err(Error::Usage(format!(
+                "the region {x0},{y0},{x1},{y1} has no pixel, because the ends are excluded; give the \
+                 first column and row, then one after the last"
+            )));
+        }
+        if self.intersection(&Self::of_size([w, h])) == *self {
+            return Ok(());
+        }
+        Err(Error::Usage(format!(
+            "the region {x0},{y0},{x1},{y1} is not inside the picture of {w} x {h} pixels; give columns \
+             up to {w} and rows up to {h}"
+        )))
     }
 
     /// Whether no pixel is inside.

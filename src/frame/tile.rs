@@ -6,6 +6,7 @@
 
 use super::{Plane, Rect};
 use crate::error::{Error, Result};
+use crate::number::MapInline;
 use rayon::prelude::*;
 use std::mem;
 use std::panic::resume_unwind;
@@ -88,7 +89,13 @@ impl Exec {
     /// The tiles of a picture.
     #[must_use]
     pub fn grid(&self, width: u32, height: u32) -> Grid {
-        Grid::new([width, height], [self.tile; 2])
+        self.grid_of(Rect::of_size([width, height]))
+    }
+
+    /// The tiles of a part of a picture, see [`Grid`].
+    #[must_use]
+    pub fn grid_of(&self, window: Rect) -> Grid {
+        Grid::new(window, [self.tile; 2])
     }
 
     /// Runs every job, in parallel, and returns the results in the order of the jobs.
@@ -202,11 +209,13 @@ enum Slot<J, T> {
     Result(T),
 }
 
-/// The division of a picture into tiles; the tiles at the right and lower edge may be cut.
+/// The division of a picture, or of a part of it, into tiles. The tiles of a part are those of the
+/// picture that touch it, cut at its edges. Pixels are counted in the picture; planes hold the part.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Grid {
-    width: u32,
-    height: u32,
+    window: Rect,
+    /// Column and row, in the picture, of the first tile.
+    first: [u32; 2],
     /// Width and height of a tile in pixels, powers of two.
     pub side: [u32; 2],
     /// Tiles in a row.
@@ -216,9 +225,33 @@ pub struct Grid {
 }
 
 impl Grid {
-    fn new([width, height]: [u32; 2], side: [u32; 2]) -> Self {
-        let [columns, rows] = [width.div_ceil(side[0]), height.div_ceil(side[1])];
-        Self { width, height, side, columns, rows }
+    fn new(window: Rect, side: [u32; 2]) -> Self {
+        let first = [window.x0 / side[0], window.y0 / side[1]];
+        let columns = window.x1.div_ceil(side[0]) - first[0];
+        let rows = window.y1.div_ceil(side[1]) - first[1];
+        Self { window, first, side, columns, rows }
+    }
+
+    /// The pixels that the tiles cover.
+    #[must_use]
+    pub fn window(&self) -> Rect {
+        self.window
+    }
+
+    /// The tiles that a rectangle touches, as columns and rows of the grid, the ends exclusive. The
+    /// rectangle must touch the window.
+    #[inline(always)]
+    pub(super) fn touched(&self, rect: &Rect) -> Rect {
+        let Rect { x0, y0, x1, y1 } = rect.intersection(&self.window);
+        // Tiles are powers of two wide and high; a shift is much faster than a division.
+        let [across, down] = self.side.map_inline(u32::trailing_zeros);
+        let ([left, top], end) = (self.first, |end: u32, shift: u32| ((end - 1) >> shift) + 1);
+        Rect {
+            x0: (x0 >> across) - left,
+            y0: (y0 >> down) - top,
+            x1: end(x1, across) - left,
+            y1: end(y1, down) - top,
+        }
     }
 
     /// The same picture in strips, the tiles of the fast paths: as high as a tile, and at least 64
@@ -227,13 +260,13 @@ impl Grid {
     #[must_use]
     pub fn strips(&self) -> Self {
         let [wide, high] = self.side;
-        Self::new([self.width, self.height], [wide.max(STRIP), high])
+        Self::new(self.window, [wide.max(STRIP), high])
     }
 
-    /// Whether a pixel is in the picture.
+    /// Whether a pixel of the picture is in the window.
     #[must_use]
     pub fn holds(&self, x: u32, y: u32) -> bool {
-        x < self.width && y < self.height
+        self.window.contains(x, y)
     }
 
     /// How many tiles there are.
@@ -251,22 +284,22 @@ impl Grid {
     /// The pixels of the tile at a column and row of tiles.
     #[must_use]
     pub fn rect(&self, column: u32, row: u32) -> Rect {
-        let [wide, high] = self.side;
-        let (x0, y0) = (column * wide, row * high);
-        Rect { x0, y0, x1: self.width.min(x0 + wide), y1: self.height.min(y0 + high) }
+        let ([wide, high], [left, top]) = (self.side, self.first);
+        let (x0, y0) = ((left + column) * wide, (top + row) * high);
+        Rect { x0, y0, x1: x0 + wide, y1: y0 + high }.intersection(&self.window)
     }
 
-    /// Width and height of the picture in pixels.
+    /// Width and height of the window in pixels.
     #[must_use]
     pub fn size(&self) -> [u32; 2] {
-        [self.width, self.height]
+        self.window.size()
     }
 
     /// The tile of a pixel, and the index of the pixel in its tile, both counted row by row.
     #[must_use]
     #[inline]
     pub fn place(&self, x: u32, y: u32) -> (usize, usize) {
-        let (column, row) = (x / self.side[0], y / self.side[1]);
+        let (column, row) = (x / self.side[0] - self.first[0], y / self.side[1] - self.first[1]);
         let Rect { x0, y0, x1, .. } = self.rect(column, row);
         let tile = (row * self.columns + column) as usize;
         (tile, ((y - y0) * (x1 - x0) + (x - x0)) as usize)
@@ -281,11 +314,13 @@ impl Grid {
 
     /// Assembles a plane from values by tile and by pixel in the tile, both counted row by row.
     pub fn assemble<T: Clone>(&self, fill: T, value: impl Fn(usize, usize) -> T) -> Plane<T> {
-        let mut plane = Plane::filled(self.width, self.height, fill);
+        let [width, height] = self.size();
+        let mut plane = Plane::filled(width, height, fill);
         for (tile, rect) in self.rects().iter().enumerate() {
             let columns = (rect.x1 - rect.x0) as usize;
             for y in rect.y0..rect.y1 {
-                let start = y as usize * self.width as usize + rect.x0 as usize;
+                let [left, top] = [rect.x0 - self.window.x0, y - self.window.y0];
+                let start = top as usize * width as usize + left as usize;
                 let first = (y - rect.y0) as usize * columns;
                 for x in 0..columns {
                     plane.values_mut()[start + x] = value(tile, first + x);
@@ -297,10 +332,15 @@ impl Grid {
 
     /// Cuts a plane into its tiles, disjoint and writable, row by row.
     pub fn cut<'a, T: Send>(&self, plane: &'a mut Plane<T>, exec: &Exec) -> Vec<TileMut<'a, T>> {
-        let (width, high) = (self.width.max(1) as usize, self.side[1] as usize);
-        let bands = (0..).zip(plane.values_mut().chunks_mut(width * high));
+        let (width, high) = (self.size()[0].max(1) as usize, self.side[1] as usize);
+        let (mut rest, mut bands) = (plane.values_mut(), Vec::new());
+        for row in 0..self.rows {
+            // The first row of tiles may be cut too.
+            let band = rest.split_at_mut(width * self.rect(0, row).rows());
+            (_, rest) = (bands.push((row, band.0)), band.1);
+        }
         // A tile is many short rows, so cutting them out is enough work to run in parallel.
-        let cut = exec.ordered(bands.collect(), |(row, band): (u32, &'a mut [T])| {
+        let cut = exec.ordered(bands, |(row, band): (u32, &'a mut [T])| {
             let empty = |column| TileMut {
                 index: (row * self.columns + column) as usize,
                 rect: self.rect(column, row),
@@ -356,8 +396,12 @@ mod tests {
         let exec = Exec::new(3, 16).unwrap();
         for (width, height) in [(1, 1), (16, 16), (17, 33), (64, 5), (100, 1), (129, 20)] {
             let tiles = exec.grid(width, height);
-            for grid in [tiles, tiles.strips()] {
-                let mut plane = Plane::filled(width, height, 0_u32);
+            let part = Rect { x0: width / 3, y0: height / 2, x1: width, y1: height - height / 3 };
+            let [parts, whole] = [part, Rect::of_size([width, height])].map(|w| exec.grid_of(w));
+            assert_eq!(whole, tiles);
+            for grid in [tiles, tiles.strips(), parts, parts.strips()] {
+                let [wide, high] = grid.size();
+                let mut plane = Plane::filled(wide, high, 0_u32);
                 let written = exec.ordered(grid.cut(&mut plane, &exec), |mut tile| {
                     let Rect { x0, y0, x1, .. } = tile.rect;
                     for (y, row) in (y0..).zip(tile.rows()) {
@@ -369,8 +413,24 @@ mod tests {
                 });
                 let rects: Vec<_> = grid.rects().into_iter().enumerate().collect();
                 assert_eq!(written, rects, "results come in the order of the jobs");
-                let expected: Vec<_> = (1..=width * height).collect();
+                let Rect { x0, y0, x1, y1 } = grid.window();
+                let pixels = (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y)));
+                let expected: Vec<_> = pixels.clone().map(|(x, y)| 1 + x + width * y).collect();
                 assert_eq!(plane.values(), expected, "each pixel once: {width} x {height}");
+                for (x, y) in pixels {
+                    let (tile, pixel) = grid.place(x, y);
+                    let (_, rect) = rects[tile];
+                    assert_eq!((x, y), {
+                        let columns = rect.columns();
+                        (rect.x0 + (pixel % columns) as u32, rect.y0 + (pixel / columns) as u32)
+                    });
+                }
+                let again = grid.assemble(0, |tile, pixel| {
+                    let (_, rect) = rects[tile];
+                    let (x, y) = (pixel % rect.columns(), pixel / rect.columns());
+                    1 + rect.x0 + x as u32 + width * (rect.y0 + y as u32)
+                });
+                assert_eq!(again, plane);
             }
         }
     }

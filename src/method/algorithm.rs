@@ -33,6 +33,9 @@ pub struct Job<'a> {
     /// The one level that a stage makes, from the list of [`Algorithm::levels`]; none: the stage
     /// makes all levels.
     pub(crate) level: Option<usize>,
+    /// The part of the picture that is drawn. Pixels are counted in the picture, so that rounding
+    /// is the picture's; planes have the size of the window.
+    pub(crate) window: Rect,
     /// The only part of the picture that a verdict judges; none: all of it.
     pub(crate) part: Option<Part<'a>>,
 }
@@ -42,7 +45,8 @@ impl<'a> Job<'a> {
     #[must_use]
     pub fn new(scene: &'a Scene, index: &'a Index, camera: &'a Camera, exec: &'a Exec) -> Self {
         let (buffers, key) = (Buffers::F32, DepthKey::WHOLE);
-        Self { scene, index, camera, exec, buffers, key, level: None, part: None }
+        let window = Rect::of_size(camera.size());
+        Self { scene, index, camera, exec, buffers, key, level: None, window, part: None }
     }
 
     /// The levels that this job makes, from all `levels` of a stage.
@@ -50,9 +54,27 @@ impl<'a> Job<'a> {
         self.level.map_or(levels, |level| vec![level])
     }
 
-    /// The tiles of the picture.
+    /// Whether only a part of the picture is drawn.
+    pub(crate) fn is_part(&self) -> bool {
+        self.window != self.picture()
+    }
+
+    /// Drops the items that do not touch the window, so that memory grows with the window.
+    pub(crate) fn keep_touching<T>(&self, items: &mut Vec<T>, bounds: impl Fn(&T) -> Rect) {
+        if self.is_part() {
+            items.retain(|item| !bounds(item).intersection(&self.window).is_empty());
+            items.shrink_to_fit();
+        }
+    }
+
+    /// Width and height of the planes.
+    pub(crate) fn size(&self) -> [u32; 2] {
+        self.window.size()
+    }
+
+    /// The tiles of the window.
     pub(crate) fn grid(&self) -> Grid {
-        self.exec.grid(self.camera.width, self.camera.height)
+        self.exec.grid_of(self.window)
     }
 
     /// The tiles of the fast paths.
@@ -62,7 +84,7 @@ impl<'a> Job<'a> {
 
     /// All pixels of the picture.
     pub(crate) fn picture(&self) -> Rect {
-        Rect { x0: 0, y0: 0, x1: self.camera.width, y1: self.camera.height }
+        Rect::of_size(self.camera.size())
     }
 
     /// The conditions that decide which planes a frame of the scene has.
@@ -70,9 +92,10 @@ impl<'a> Job<'a> {
         Conditions::new(self.scene, keep)
     }
 
-    /// Planes of the picture as a frame.
+    /// Planes of the window as a frame.
     pub(crate) fn frame<R>(&self, planes: Vec<NamedPlane<R>>) -> Frame<R> {
-        Frame { width: self.camera.width, height: self.camera.height, planes }
+        let [width, height] = self.size();
+        Frame { width, height, planes }
     }
 }
 
@@ -103,6 +126,10 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
     const BLENDS: bool = false;
     /// Whether the method needs the surfels from back to front.
     const BACK_TO_FRONT: bool = false;
+
+    /// Why the method cannot draw a part of a picture alone; none: each pixel depends on nothing but
+    /// its own fragments.
+    const NEEDS_WHOLE_PICTURE: Option<&'static str> = None;
 
     /// An upper estimate of the bytes that the fast path takes for a pixel, the picture included;
     /// none: there is no fast path.

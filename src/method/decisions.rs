@@ -152,9 +152,8 @@ impl Place {
     /// # Errors
     /// [`crate::Error::Usage`] if the pixel is outside the picture.
     pub(crate) fn new(job: &Job<'_>, (x, y): (u32, u32)) -> Result<Self> {
-        let Job { camera, exec, .. } = *job;
-        camera.check_pixel(x, y)?;
-        let (tile, _) = exec.grid(camera.width, camera.height).place(x, y);
+        job.camera.check_pixel(x, y)?;
+        let (tile, _) = job.grid().place(x, y);
         Ok(Self { tile, rect: Rect::pixel((x, y)) })
     }
 

@@ -24,7 +24,7 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
     /// # Errors
     /// [`Error::Invalid`] if the frame does not have the size of the job's picture.
     pub(crate) fn new(frame: &'a Frame<R>, job: &'a Job<'a>) -> Result<Self> {
-        let (found, picture) = ([frame.width, frame.height], job.camera.size());
+        let (found, picture) = ([frame.width, frame.height], job.size());
         if found == picture {
             return Ok(Self { frame, job });
         }
@@ -174,12 +174,18 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
         number: usize,
         empty: T,
     ) -> Result<Tiled<T>> {
-        let [width, height] = self.job.camera.size();
+        let [width, height] = self.job.size();
         let records = self.records(fields, number, Plane::filled(width, height, empty))?;
-        Ok(self.tiled(|x, y| *records.at(x, y)))
+        Ok(self.tiled(|x, y| *self.at(&records, x, y)))
     }
 
-    /// Makes a record for each pixel from the values of planes at that pixel.
+    /// The value of a plane at a column and row of the picture.
+    pub(crate) fn at<'p, T>(&self, plane: &'p Plane<T>, x: u32, y: u32) -> &'p T {
+        plane.at(x - self.job.window.x0, y - self.job.window.y0)
+    }
+
+    /// Makes a record for each pixel, counted in the picture, from the values of planes at that
+    /// pixel.
     pub(crate) fn tiled<T: Send>(&self, record: impl Fn(u32, u32) -> T + Sync + Send) -> Tiled<T> {
         Tiled::new(self.job, |_, rect| pixels(rect).map(|(x, y)| record(x, y)).collect())
     }
@@ -191,7 +197,7 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
     }
 
     fn sized<T>(&self, row: &PlaneRow, number: usize, plane: &'a Plane<T>) -> Result<&'a Plane<T>> {
-        let (found, picture) = ([plane.width(), plane.height()], self.job.camera.size());
+        let (found, picture) = ([plane.width(), plane.height()], self.job.size());
         if found == picture {
             return Ok(plane);
         }

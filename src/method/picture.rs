@@ -3,10 +3,9 @@
 use super::algorithm::Job;
 use super::surface::{ALPHA, DEPTH, ID, NORMAL, SHADED, WEIGHT};
 use crate::composite::over::Blend;
-use crate::frame::{Exec, Frame, Framebuffer, NamedPlane, Plane, Pool, Wanted};
+use crate::frame::{Frame, Framebuffer, NamedPlane, Plane, Pool, Rect, Wanted};
 use crate::index::seen::Seen;
 use crate::number::{Exact, MapInline, Real, Truth};
-use crate::scene::{Camera, Scene};
 use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
 use std::time::{Duration, Instant};
@@ -58,28 +57,27 @@ pub(crate) fn shaded<R: Exact>(
     weight: &Plane<R>,
     color: Option<Plane<[R; 3]>>,
 ) -> (Plane<[R; 3]>, Plane<R>) {
-    let Job { scene, camera, exec, .. } = *job;
+    let Job { scene, camera, exec, window, .. } = *job;
     let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
+    let shader = shader.from_pixel([window.x0, window.y0]);
     let color = shader.shade(depth, normal, None, color, exec);
     let alpha = weight.map(|&w| if w > R::ZERO { R::ONE } else { R::ZERO });
-    before_environment(scene, camera, color, alpha, exec)
+    before_environment(job, color, alpha)
 }
 
 /// Lays colours multiplied by their opacity over the environment of the scene, if it has one.
 pub(crate) fn before_environment<R: Exact>(
-    scene: &Scene,
-    camera: &Camera,
+    job: &Job<'_>,
     mut color: Plane<[R; 3]>,
     mut alpha: Plane<R>,
-    exec: &Exec,
 ) -> (Plane<[R; 3]>, Plane<R>) {
-    let Some(environment) = &scene.environment else { return (color, alpha) };
-    let view = View::new(camera);
+    let Some(environment) = &job.scene.environment else { return (color, alpha) };
+    let (view, Rect { x0, y0, .. }) = (View::new(job.camera), job.window);
     let rows = color.rows_mut().zip(alpha.rows_mut());
-    exec.ordered((0..).zip(rows).collect(), |(y, (colors, alphas)): (u32, _)| {
+    job.exec.ordered((y0..).zip(rows).collect(), |(y, (colors, alphas)): (u32, _)| {
         let colors: &mut [[R; 3]] = colors;
         let alphas: &mut [R] = alphas;
-        for (x, (color, alpha)) in (0..).zip(colors.iter_mut().zip(alphas)) {
+        for (x, (color, alpha)) in (x0..).zip(colors.iter_mut().zip(alphas)) {
             let layers = Blend { color: *color, alpha: *alpha };
             let whole = before_light(layers, || environment.radiance(view.ray(x, y)));
             (*color, *alpha) = (whole.color, whole.alpha);
@@ -99,12 +97,12 @@ pub(crate) fn before_light<R: Real>(layers: Blend<R>, light: impl FnOnce() -> [R
     Blend { color, alpha: R::select(open, whole.alpha, layers.alpha) }
 }
 
-/// A framebuffer for a camera's picture, in reused memory: it may hold any values.
-pub(crate) fn framebuffer(camera: &Camera, wanted: Wanted, pool: &mut Pool) -> Framebuffer<f32> {
-    let size = camera.size();
+/// A framebuffer for the planes of a job, in reused memory: it may hold any values.
+pub(crate) fn framebuffer(job: &Job<'_>, wanted: Wanted, pool: &mut Pool) -> Framebuffer<f32> {
+    let size = job.size();
     Framebuffer {
-        width: camera.width,
-        height: camera.height,
+        width: size[0],
+        height: size[1],
         depth: pool.scalar(size),
         id: pool.index(size),
         weight: pool.scalar(size),

@@ -76,6 +76,7 @@ impl<R: Real, S: Send> Prepared<R, S> {
         let results = job.exec.ordered(batches, |batch| {
             let mut splats = Vec::new();
             let tally = project(&projector, batch, &mut splats);
+            job.keep_touching(&mut splats, &bounds);
             let mut bins = Bins::new(grid, splats.len(), |i| bounds(&splats[i]));
             ((arrange(splats, &mut bins), bins), tally)
         });

@@ -7,7 +7,7 @@
 
 use super::projection::SampleKind;
 use super::stage::{Conditions, Holds, PlaneRow, When};
-use crate::frame::{NO_ID, NamedPlane, Plane};
+use crate::frame::{NO_ID, NamedPlane, Plane, Rect};
 use crate::number::{Real, Vector3};
 
 /// A plane of records `T` with numbers `R`.
@@ -103,39 +103,41 @@ macro_rules! joined {
 }
 pub(crate) use joined;
 
-/// Makes planes from the records of a picture of this size, for the rows that are there. `number`
-/// stands for the rows' `#`.
+/// Makes planes from the records of these pixels of a picture, for the rows that are there.
+/// `number` stands for the rows' `#`.
 pub(crate) fn planes<T, R: Real>(
     fields: &[Field<T, R>],
     number: usize,
-    (size, record): ([u32; 2], &dyn Fn(u32, u32) -> T),
+    (window, record): (Rect, &dyn Fn(u32, u32) -> T),
     there: &Conditions,
 ) -> Vec<NamedPlane<R>> {
     let plane = |Field { row, part }: &Field<T, R>| match part {
-        Part::Number(part) => row.scalar(number, values(size, &|x, y| *part(&mut record(x, y)))),
-        Part::Triple(part) => row.triple(number, values(size, &|x, y| *part(&mut record(x, y)))),
+        Part::Number(part) => row.scalar(number, values(window, &|x, y| *part(&mut record(x, y)))),
+        Part::Triple(part) => row.triple(number, values(window, &|x, y| *part(&mut record(x, y)))),
         Part::Direction(part) => {
             let components = |x, y| {
                 let Vector3 { x, y, z } = *part(&mut record(x, y));
                 [x, y, z]
             };
-            row.triple(number, values(size, &components))
+            row.triple(number, values(window, &components))
         }
-        Part::Id(part) => row.index(number, values(size, &|x, y| *part(&mut record(x, y)))),
+        Part::Id(part) => row.index(number, values(window, &|x, y| *part(&mut record(x, y)))),
         Part::LowId(part) => {
-            row.index(number, values(size, &|x, y| *part(&mut record(x, y)) as u32))
+            row.index(number, values(window, &|x, y| *part(&mut record(x, y)) as u32))
         }
         Part::HighId(part) => {
-            row.count(number, values(size, &|x, y| high(*part(&mut record(x, y)))))
+            row.count(number, values(window, &|x, y| high(*part(&mut record(x, y)))))
         }
-        Part::Count(part) => row.count(number, values(size, &|x, y| *part(&mut record(x, y)))),
-        Part::Kind(part) => row.count(number, values(size, &|x, y| *part(&mut record(x, y)) as u8)),
+        Part::Count(part) => row.count(number, values(window, &|x, y| *part(&mut record(x, y)))),
+        Part::Kind(part) => {
+            row.count(number, values(window, &|x, y| *part(&mut record(x, y)) as u8))
+        }
     };
     fields.iter().filter(|field| there.hold(&field.row)).map(plane).collect()
 }
 
-fn values<V>(size: [u32; 2], value: &dyn Fn(u32, u32) -> V) -> Plane<V> {
-    Plane::from_pixels(size, value)
+fn values<V>(window: Rect, value: &dyn Fn(u32, u32) -> V) -> Plane<V> {
+    Plane::of_window(window, value)
 }
 
 /// The bits of an id above the lowest 32; 0 for no id.

@@ -11,7 +11,7 @@ use super::algorithm::Job;
 use super::table::Memory;
 use super::{Method, Picture};
 use crate::error::Result;
-use crate::frame::{Exec, Frame, Pool};
+use crate::frame::{Exec, Frame, Pool, Rect};
 use crate::index::Index;
 use crate::index::grouping::{Extended, Grouping, GroupingReport};
 use crate::index::members::Members;
@@ -49,6 +49,8 @@ pub struct Session<'a> {
     index: Index,
     memory: Memory,
     pool: Pool,
+    /// The part of the picture that is drawn; none: all of it.
+    region: Option<Rect>,
     /// The last picture of [`Session::render`].
     picture: Option<Picture<f32>>,
 }
@@ -122,7 +124,7 @@ impl<'a> Session<'a> {
             index.members = Some(Members::new(&scene.surfels, groups, order, exec)?);
         }
         let (memory, pool) = (method.memory(), Pool::default());
-        Ok(Self { scene, method, exec, index, memory, pool, picture: None })
+        Ok(Self { scene, method, exec, index, memory, pool, region: None, picture: None })
     }
 
     /// The same method, groups and state with another scene of as many surfels.
@@ -130,6 +132,7 @@ impl<'a> Session<'a> {
         let groups = self.index.groups.clone();
         let mut session = Session::with_groups(scene, self.method, groups, self.exec)?;
         session.index.seen.clone_from(&self.index.seen);
+        session.region = self.region;
         Ok(session)
     }
 
@@ -165,6 +168,51 @@ impl<'a> Session<'a> {
         self.index.seen = seen;
     }
 
+    /// Draws only these pixels of every following picture, the ends excluded, until you set another
+    /// region; with none, the whole picture. Planes have the size of the region, and every bit is that
+    /// of the whole picture. Memory for pixels grows with the region, but every surfel is projected.
+    ///
+    /// ```
+    /// use splatref::frame::{Exec, Rect};
+    /// use splatref::method::{Method, Session};
+    /// use splatref::scene::{Camera, Scene};
+    /// use splatref::source::Shape;
+    ///
+    /// let shape = Shape::Torus;
+    /// let scene = Scene::lit("torus", shape.surfels(2_000, 0)?);
+    /// let exec = Exec::sequential();
+    /// let camera = Camera::new(64, 48, shape.default_pose(), shape.default_lens())?;
+    /// let mut session = Session::new(&scene, Method::by_name("ewa")?, &exec)?;
+    /// let whole = session.render(&camera)?.frame.clone();
+    ///
+    /// session.set_region(Some(Rect { x0: 20, y0: 8, x1: 50, y1: 40 }))?;
+    /// let part = &session.render(&camera)?.frame;
+    /// assert_eq!((part.width, part.height), (30, 32));
+    /// assert_eq!(part.scalar("Z")?.at(3, 5), whole.scalar("Z")?.at(20 + 3, 8 + 5));
+    /// # Ok::<(), splatref::Error>(())
+    /// ```
+    ///
+    /// # Errors
+    /// As [`Method::check_region`]. The call that draws a picture checks the region as
+    /// [`Camera::check_region`].
+    pub fn set_region(&mut self, region: Option<Rect>) -> Result<()> {
+        if region.is_some() {
+            self.method.check_region()?;
+        }
+        self.region = region;
+        Ok(())
+    }
+
+    /// The pixels that are drawn of a camera's picture.
+    ///
+    /// # Errors
+    /// As [`Camera::check_region`], for the region that was set.
+    pub fn window(&self, camera: &Camera) -> Result<Rect> {
+        let Some(region) = self.region else { return Ok(Rect::of_size(camera.size())) };
+        camera.check_region(&region)?;
+        Ok(region)
+    }
+
     /// Renders the picture in `f32`, by the fast path where there is one, in the memory of the last
     /// picture. Each call renders the next frame of a method with temporal state.
     /// [`Session::define`] renders that next frame too, but does not advance the state.
@@ -177,14 +225,15 @@ impl<'a> Session<'a> {
         let last = self.picture.take();
         let size = |picture: &Picture<f32>| [picture.frame.width, picture.frame.height];
         // A last picture of this size has already got the memory.
-        if last.as_ref().map(size) != Some(camera.size()) {
-            self.ask(camera, Making::Render)?;
+        let window = self.window(camera)?;
+        if last.as_ref().map(size) != Some(window.size()) {
+            self.ask(&self.job(camera)?, Making::Render)?;
         }
         if let Some(last) = last {
             self.pool.recycle(last.frame);
         }
         let Self { scene, exec, index, .. } = self;
-        let job = Job::new(scene, index, camera, exec);
+        let job = Job { window, ..Job::new(scene, index, camera, exec) };
         let picture = self.method.draw(&job, &mut self.memory, &mut self.pool)?;
         self.pool.clear();
         self.index.seen.clone_from(&picture.seen);
@@ -216,9 +265,18 @@ impl<'a> Session<'a> {
         self.defined(&self.job(camera)?, stages)
     }
 
+    /// As [`Session::define`], for the whole picture, whatever region was set.
+    pub(crate) fn define_whole<R: Exact>(
+        &self,
+        camera: &Camera,
+        stages: bool,
+    ) -> Result<Picture<R>> {
+        self.defined(&self.whole_job(camera)?, stages)
+    }
+
     /// Renders a job by the definition.
     fn defined<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
-        self.ask(job.camera, Making::Define { number: size_of::<R>() as u64, stages })?;
+        self.ask(job, Making::Define { number: size_of::<R>() as u64, stages })?;
         let mut picture = self.method.define(job, stages)?;
         if let Some(names) = self.names() {
             names.name(&mut picture.frame);
@@ -269,7 +327,7 @@ impl<'a> Session<'a> {
     /// # Errors
     /// [`crate::Error::Usage`] if the pixel is outside the picture; else as [`Session::render`].
     pub fn explain<R: Exact>(&self, camera: &Camera, pixel: (u32, u32)) -> Result<String> {
-        let job = self.job(camera)?;
+        let job = self.whole_job(camera)?;
         camera.check_pixel(pixel.0, pixel.1)?;
         self.method.explain::<R>(&job, pixel)
     }
@@ -280,7 +338,7 @@ impl<'a> Session<'a> {
     /// # Errors
     /// As [`Session::explain`].
     pub fn weights(&self, camera: &Camera, pixel: (u32, u32)) -> Result<Vec<(u32, f64)>> {
-        let job = self.job(camera)?;
+        let job = self.whole_job(camera)?;
         camera.check_pixel(pixel.0, pixel.1)?;
         let mut weights = self.method.weights(&job, pixel)?;
         let names = self.names();
@@ -295,10 +353,15 @@ impl<'a> Session<'a> {
         test(&self.job(camera).expect("a camera that has been checked"))
     }
 
-    pub(crate) fn job<'j>(&'j self, camera: &'j Camera) -> Result<Job<'j>> {
+    /// The job of the whole picture, whatever region was set.
+    pub(crate) fn whole_job<'j>(&'j self, camera: &'j Camera) -> Result<Job<'j>> {
         camera.check()?;
         let Self { scene, index, exec, .. } = self;
         Ok(Job::new(scene, index, camera, exec))
+    }
+
+    pub(crate) fn job<'j>(&'j self, camera: &'j Camera) -> Result<Job<'j>> {
+        Ok(Job { window: self.window(camera)?, ..self.whole_job(camera)? })
     }
 }
 

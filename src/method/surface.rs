@@ -112,9 +112,10 @@ pub(crate) fn framebuffer<R: Exact>(
     pixels: &Tiled<SurfacePixel<R>>,
     wanted: Wanted,
 ) -> Framebuffer<R> {
+    let [width, height] = job.size();
     Framebuffer {
-        width: job.camera.width,
-        height: job.camera.height,
+        width,
+        height,
         depth: pixels.plane(|pixel| pixel.depth),
         id: pixels.plane(|pixel| pixel.id),
         weight: pixels.plane(|pixel| pixel.weight),

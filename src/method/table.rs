@@ -124,6 +124,13 @@ macro_rules! methods {
                 match self { $(Self::$method(_) => <$settings>::BACK_TO_FRONT,)* }
             }
 
+            /// Why the method cannot draw a part of a picture alone, with the bits of the whole; none:
+            /// it can. [`super::Session::set_region`] refuses such a method.
+            #[must_use]
+            pub fn needs_whole_picture(&self) -> Option<&'static str> {
+                match self { $(Self::$method(_) => <$settings>::NEEDS_WHOLE_PICTURE,)* }
+            }
+
             pub(crate) fn fast_bytes_a_pixel(&self) -> Option<u64> {
                 match self { $(Self::$method(_) => <$settings>::FAST_BYTES_A_PIXEL,)* }
             }
@@ -243,6 +250,22 @@ impl Method {
             let names: Vec<_> = Self::all().iter().map(Self::name).collect();
             Error::Usage(format!("method `{name}`; give one of {}", names.join(", ")))
         })
+    }
+
+    /// Checks that the method can draw a part of a picture alone.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] with the reason why it cannot.
+    pub fn check_region(&self) -> Result<()> {
+        let Some(why) = self.needs_whole_picture() else { return Ok(()) };
+        let able = Self::all().into_iter().filter(|method| method.needs_whole_picture().is_none());
+        let able: Vec<_> = able.map(|method| method.name()).collect();
+        Err(Error::Usage(format!(
+            "the method {} cannot draw a region alone, because {why}; draw the whole picture, or choose \
+             one of {}",
+            self.name(),
+            able.join(", ")
+        )))
     }
 
     /// Checks that the method can draw everything in a scene.

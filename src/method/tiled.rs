@@ -90,12 +90,12 @@ impl<T> Tiled<T> {
     where
         T: Copy,
     {
-        record::planes(fields, number, (self.grid.size(), &|x, y| *self.at(x, y)), there)
+        record::planes(fields, number, (self.grid.window(), &|x, y| *self.at(x, y)), there)
     }
 
     /// Makes a plane from one value of each record.
     pub(crate) fn plane<V>(&self, value: impl Fn(&T) -> V) -> Plane<V> {
-        Plane::from_pixels(self.grid.size(), |x, y| value(self.at(x, y)))
+        Plane::of_window(self.grid.window(), |x, y| value(self.at(x, y)))
     }
 }
 

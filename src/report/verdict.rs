@@ -8,6 +8,7 @@ pub use json::{JsonShift, JsonStage, fields};
 
 use super::short;
 use crate::error::{Error, Result};
+use crate::frame::Rect;
 use crate::method::Session;
 use crate::scene::Camera;
 use crate::setting::Word;
@@ -22,6 +23,8 @@ pub struct VerdictReport<'a> {
     client: &'a Client,
     method: &'static str,
     likely: Option<String>,
+    /// The pixels that were judged, if not all of them were.
+    region: Option<Rect>,
     /// The surfels with the largest weights at the worst pixel.
     heaviest: Vec<(u32, f64)>,
     /// The command that explains a pixel.
@@ -54,7 +57,9 @@ impl<'a> VerdictReport<'a> {
             Some(worst) => session.weights(camera, worst.pixel)?,
             None => Vec::new(),
         };
-        Ok(Self { verdict, client, method: session.method().name(), likely, heaviest, replay })
+        let (window, method) = (session.window(camera)?, session.method().name());
+        let region = (window != Rect::of_size(camera.size())).then_some(window);
+        Ok(Self { verdict, client, method, likely, region, heaviest, replay })
     }
 
     /// The lines of the report.
@@ -67,10 +72,16 @@ impl<'a> VerdictReport<'a> {
 
     /// Labels and texts: the report without its last line.
     fn facts(&self) -> Vec<(String, String)> {
-        let Self { verdict, client, method, likely, heaviest, replay } = self;
+        let Self { verdict, client, method, likely, region, heaviest, replay } = self;
         let mut lines = vec![labelled("client", planes(client, method))];
         let promise = format!("{}, {}", client.rounding.word(), client.rounding.promise());
         lines.push(labelled("promise", promise));
+        if let Some(Rect { x0, y0, x1, y1 }) = region {
+            lines.push(labelled(
+                "region",
+                format!("{x0},{y0},{x1},{y1}; the other pixels are not judged"),
+            ));
+        }
         lines.extend(verdict.stages.iter().map(|stage| labelled(stage.stage, judged(stage))));
         if let Some((stage, worst)) =
             verdict.first_wrong().and_then(|stage| Some((stage, stage.worst.as_ref()?)))
@@ -136,11 +147,12 @@ impl<'a> VerdictReport<'a> {
     /// # Errors
     /// [`Error::Invalid`] if the numbers cannot be written as JSON.
     pub fn json(&self) -> Result<String> {
-        let Self { verdict, client, method, likely, heaviest, replay } = self;
+        let Self { verdict, client, method, likely, region, heaviest, replay } = self;
         let json = Json {
             outcome: verdict.outcome().word(),
             method,
             promise: client.rounding.word(),
+            region: region.map(|Rect { x0, y0, x1, y1 }| [x0, y0, x1, y1]),
             covered: verdict.covered,
             undecided: verdict.undecided,
             budget: verdict.budget,

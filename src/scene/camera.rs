@@ -40,6 +40,7 @@ pub mod motion;
 pub mod turntable;
 
 use crate::error::{Error, Result};
+use crate::frame::Rect;
 pub use convention::{Convention, PoseMatrix};
 use glam::{DMat3, DMat4, DVec3, Mat4};
 pub use intrinsics::Intrinsics;
@@ -262,6 +263,14 @@ impl Camera {
         } else {
             Err(Error::Usage(format!("pixel {x} {y} is outside the picture of {w} x {h}")))
         }
+    }
+
+    /// Checks that a region has pixels, all of them in the picture.
+    ///
+    /// # Errors
+    /// As [`Rect::check_inside`].
+    pub fn check_region(&self, region: &Rect) -> Result<()> {
+        region.check_inside(self.size())
     }
 
     /// Checks that these numbers can make a picture; for cameras whose fields were filled in by

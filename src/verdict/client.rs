@@ -334,12 +334,13 @@ impl Client {
 
     /// The job of the projection: with the scene and the camera that are assumed for it.
     pub(crate) fn projection<'j>(&'j self, job: &Job<'j>) -> Job<'j> {
-        match self.drawn.as_deref() {
-            Some((scene, camera)) => {
-                Job { part: job.part, ..Job::new(scene, job.index, camera, job.exec) }
-            }
-            None => Job { part: job.part, ..Job::new(job.scene, job.index, job.camera, job.exec) },
-        }
+        let (scene, camera) = match self.drawn.as_deref() {
+            Some((scene, camera)) => (scene, camera),
+            None => (job.scene, job.camera),
+        };
+        // Another camera has a picture of the same size.
+        let (part, window) = (job.part, job.window);
+        Job { part, window, ..Job::new(scene, job.index, camera, job.exec) }
     }
 
     /// The planes, for changing them.

@@ -15,6 +15,9 @@ impl Session<'_> {
     /// picture cannot be judged if the sums of more than the fraction `budget` of its pixels are
     /// undecided, see [`Verdict::BUDGET`].
     ///
+    /// After [`Session::set_region`], judges the pixels of the region alone. The client's planes still
+    /// have the size of the picture; the other pixels are not looked at.
+    ///
     /// # Errors
     /// [`Error::Invalid`] if no plane belongs to the method, if the picture has another size than
     /// the camera's, or if there are records for another method than `ewa`; else as
@@ -38,7 +41,7 @@ impl Session<'_> {
         let part = client.part.as_deref().map(|pieces| Part { pieces, spread });
         let job = Job { part, ..self.job(camera)? };
         self.check_client(camera, client)?;
-        self.ask(camera, Making::Verdict)?;
+        self.ask(&self.whole_job(camera)?, Making::Verdict)?;
         let names = self.numbers();
         let client = &*numbered(names.as_ref(), self.method(), client)?;
         let verdict = match client.rounding {
@@ -77,9 +80,9 @@ impl Session<'_> {
         client: &Client,
         pixel: (u32, u32),
     ) -> Result<Vec<Check>> {
-        let job = self.job(camera)?;
+        let job = self.whole_job(camera)?;
         self.check_client(camera, client)?;
-        self.ask(camera, Making::Verdict)?;
+        self.ask(&job, Making::Verdict)?;
         let names = self.numbers();
         let client = &*numbered(names.as_ref(), self.method(), client)?;
         let mut checks = match client.rounding {

@@ -37,6 +37,7 @@ pages! {
     goldens: "docs/goldens.md";
     image_space: "docs/image-space.md";
     plan: "docs/plan.md";
+    regions: "docs/regions.md";
     speed: "docs/speed.md";
     zp06: "docs/zp06.md";
     index: "docs/guide/README.md";

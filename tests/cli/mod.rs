@@ -24,6 +24,7 @@ mod progress;
 mod project;
 mod quality;
 mod refusals;
+mod regions;
 mod reports;
 mod sequence;
 mod study;

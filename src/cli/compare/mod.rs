@@ -2,10 +2,10 @@
 
 mod page;
 
-use super::{Ended, Ending, output, report, say};
+use super::{Ended, Ending, output, region, report, say};
 use splatref::compare::metrics;
 use splatref::compare::{Criteria, Tolerance, Verdict, compare};
-use splatref::frame::{Exec, Image};
+use splatref::frame::{Exec, Image, Rect};
 use splatref::io::replace::Pending;
 use splatref::io::{exr, extension, npy, npz, png};
 use splatref::number::srgb;
@@ -37,6 +37,7 @@ Examples:
   splatref compare truth.exr gpu.exr --planes Z,id,normal --tolerance Z:ulp=4,pixels=3
       --tolerance id:pixels=20
   splatref compare truth.exr Z.npy
+  splatref compare whole.exr part.exr --region 0,0,512,256
   splatref compare truth.exr screen.png --max-abs 0.004 --report out/differences.html
 
 Exit codes: 0 equal or within the tolerance, 1 different or failed, 2 wrong usage.")]
@@ -48,6 +49,9 @@ pub(super) struct Args {
     /// Compare only these planes
     #[arg(long, value_name = "NAMES", value_delimiter = ',')]
     planes: Option<Vec<String>>,
+    /// Compare only the columns from X0 up to X1 and the rows from Y0 up to Y1, X1 and Y1 excluded
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = region::region, allow_hyphen_values = true)]
+    region: Option<Rect>,
     /// Accept floats at most N representable numbers apart
     #[arg(long, value_name = "N")]
     max_ulp: Option<u32>,
@@ -80,7 +84,10 @@ pub(super) fn run(args: &Args) -> Ended {
     let mut pair = [read(&args.first)?, read(&args.second)?];
     args.rename(&mut pair)?;
     let stored = pair.iter().any(|file| matches!(file, PictureFile::Png(_)));
-    let (first, second) = alike(pair)?;
+    let (mut first, mut second) = alike(pair)?;
+    if let Some(region) = &args.region {
+        (first, second) = (first.region(region)?, second.region(region)?);
+    }
     let criteria = args.criteria();
     let found = compare(&first, &second, &criteria)?;
     let lines = found.lines();

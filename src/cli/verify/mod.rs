@@ -2,12 +2,12 @@
 
 use super::options::{ExecOptions, SceneOptions};
 use super::words::quoted;
-use super::{Ended, Ending, draw, output, progress, say};
-use splatref::frame::{Exec, Frame, Samples};
+use super::{Ended, Ending, draw, output, progress, region, say};
+use splatref::frame::{Exec, Frame, Rect, Samples};
 use splatref::io::client::Description;
 use splatref::io::exr;
 use splatref::io::replace::Pending;
-use splatref::io::scene_file::{FileKind, Number, OutputSettings, SceneFile};
+use splatref::io::scene_file::{FileKind, Number, OutputSettings, Ready, SceneFile};
 use splatref::method::Session;
 use splatref::report::VerdictReport;
 use splatref::report::page::{self, Report};
@@ -30,6 +30,7 @@ computed in f64 and stored f32, add --number f64: the verdict then allows for th
 Examples:
   splatref render sphere --stages -o out/mine.exr && splatref verify sphere out/mine.exr
   splatref verify scene.toml gpu.exr --promise ieee -o out/errors.exr --json out/verdict.json
+  splatref verify scene.toml part.exr --region 0,0,512,256
   splatref verify scene.toml gpu.toml --report out/verdict.html
   splatref verify scene.toml blender.exr --channels RGB=ViewLayer.Combined
 
@@ -46,6 +47,9 @@ pub(super) struct Args {
     /// Take a plane from channels of another name, such as RGB=ViewLayer.Combined; repeatable
     #[arg(long, value_name = "PLANE=CHANNEL", value_parser = super::compare::channels)]
     channels: Vec<(String, String)>,
+    /// Judge only the columns from X0 up to X1 and the rows from Y0 up to Y1, X1 and Y1 excluded
+    #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = region::region, allow_hyphen_values = true)]
+    region: Option<Rect>,
     /// Set how precise the client's operations are: gpu, as shading languages guarantee; precise,
     /// sums and products round once, in the written order; ieee, each operation rounds once
     /// [default: from the .toml, else gpu]
@@ -87,8 +91,10 @@ fn judge(args: &Args) -> Ended {
     let described = Description::open(&args.client)?.with_channels(&args.channels);
     check(args, &file, &described)?;
     let ready = draw::ready(&file, &exec)?;
-    let (session, _) = draw::session(&ready, &args.options, &exec)?;
     let camera = &ready.camera;
+    args.check_region(&ready)?;
+    let (mut session, _) = draw::session(&ready, &args.options, &exec)?;
+    session.set_region(args.region)?;
     let number = file.output.number;
     let client = progress::during("reading", || {
         read((&described, args.promise), (number, camera), &session, &exec)
@@ -195,13 +201,36 @@ pub(super) fn share(text: &str) -> std::result::Result<f64, String> {
 }
 
 impl Args {
+    /// Checks the region. Without one, warns of a file that holds a part of the picture.
+    fn check_region(&self, Ready { camera, method, .. }: &Ready) -> Result<()> {
+        if let Some(region) = &self.region {
+            method.check_region()?;
+            return camera.check_region(region);
+        }
+        if !matches!(FileKind::from_extension(&self.client), Ok(FileKind::Exr)) {
+            return Ok(());
+        }
+        let header = exr::read_header(&self.client)?;
+        if let Some(data) = header.data.filter(|data| *data != Rect::of_size(camera.size()))
+            && [header.width, header.height] == camera.size()
+        {
+            let (place, part) = (self.client.display(), region::words(data));
+            super::warn(&[format!(
+                "{place}: holds only the pixels of --region {part}, and the others are judged as empty; \
+                 give --region {part} to judge these alone"
+            )]);
+        }
+        Ok(())
+    }
+
     /// The command that explains a pixel, with all options of this command that `explain` takes.
     fn replay(&self, (x, y): (u32, u32)) -> String {
         let mut words = vec!["splatref explain".to_owned(), quoted(self.scene.as_os_str())];
         words.extend([x.to_string(), y.to_string()]);
         words.extend(["--client".to_owned(), quoted(self.client.as_os_str())]);
         let flags = ["--strict", "--no-cause"];
-        let own = ["-o", "--output", "--json", "--report", "--budget", flags[0], flags[1]];
+        let files = ["-o", "--output", "--json", "--report"];
+        let own = [&files[..], &["--budget", "--region"], &flags].concat();
         let mut paths = vec![self.scene.as_os_str(), self.client.as_os_str()];
         let mut given = std::env::args_os().skip(1).skip_while(|word| word != "verify").skip(1);
         while let Some(word) = given.next() {

@@ -10,17 +10,23 @@
 //!   [`Exec`](crate::frame::Exec).
 
 mod batch;
+mod parts;
 mod read;
+mod region;
 #[cfg(test)]
 mod tests;
 mod window;
 mod write;
 mod zip;
 
+use crate::error::{Error, Result};
+use crate::frame::{Frame, Rect};
 use crate::setting::Words;
 
+pub use parts::{Assembled, assemble};
 pub use read::{read, read_header, read_with};
-pub use write::{pending, write};
+pub use region::{Region, read_region};
+pub use write::{pending, pending_part, write};
 
 /// The name of the one text attribute in files of this crate.
 pub const ATTRIBUTE: &str = "splatref";
@@ -32,12 +38,47 @@ pub struct PictureHeader {
     pub width: u32,
     /// Height in pixels, at least 1.
     pub height: u32,
+    /// The pixels of the picture that the file holds, its data window; none if its parts have
+    /// different data windows, or if they are not inside the picture.
+    pub data: Option<Rect>,
     /// The channels and their types, sorted by name, no name twice.
     pub channels: Vec<(String, ChannelType)>,
     /// The compression of each part of the file, in words.
     pub compressions: Vec<String>,
     /// The text attribute [`ATTRIBUTE`].
     pub text: Option<String>,
+}
+
+/// The place of a frame in a picture, which an EXR holds as its data window and its display window.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Window {
+    /// The pixels of the frame.
+    pub region: Rect,
+    /// Width and height of the picture.
+    pub picture: [u32; 2],
+}
+
+impl Window {
+    /// The window of a frame that is the whole picture.
+    #[must_use]
+    pub fn whole(frame: &Frame<f32>) -> Self {
+        let picture = [frame.width, frame.height];
+        Self { region: Rect::of_size(picture), picture }
+    }
+
+    /// Checks that a frame of this size is the region, and that the region is inside the picture.
+    fn check(&self, size: [u32; 2]) -> Result<()> {
+        let Self { region, picture } = *self;
+        let inside = region.intersection(&Rect::of_size(picture)) == region;
+        if !region.is_empty() && inside && region.size() == size {
+            return Ok(());
+        }
+        let (Rect { x0, y0, x1, y1 }, [w, h]) = (region, picture);
+        Err(Error::Invalid(format!(
+            "a frame of {} x {} pixels is not the region {x0},{y0},{x1},{y1} of a picture of {w} x {h} pixels",
+            size[0], size[1]
+        )))
+    }
 }
 
 /// How the blocks of a written file are compressed; every way is lossless.

@@ -55,7 +55,9 @@ pub fn read(path: &Path) -> Result<Image> {
 pub fn read_with(path: &Path, exec: &Exec) -> Result<Image> {
     let (file, length) = open(path)?;
     let bytes = input::rest(file, length).map_err(|source| Error::io(path, source))?;
-    guarded(|| decode(&bytes, exec)).flatten().map_err(|what| Error::format(path, what))
+    guarded(|| decode(&bytes, exec, Fit::Picture))
+        .flatten()
+        .map_err(|what| Error::format(path, what))
 }
 
 /// Reads the header of the EXR file at `path`, and no pixel.
@@ -70,7 +72,7 @@ pub fn read_header(path: &Path) -> Result<PictureHeader> {
 }
 
 /// Opens a file that begins as an EXR does; returns it, rewound, and its length.
-fn open(path: &Path) -> Result<(File, u64)> {
+pub(super) fn open(path: &Path) -> Result<(File, u64)> {
     let start = || -> std::io::Result<(File, u64, [u8; 4])> {
         let (mut file, length) = input::open(path)?;
         let mut magic = [0; 4];
@@ -95,7 +97,7 @@ fn open(path: &Path) -> Result<(File, u64)> {
 }
 
 /// Parses the header, and checks that a file of `length` bytes can hold what the header promises.
-fn metadata(read: impl Read, length: u64) -> Reason<MetaData> {
+pub(super) fn metadata(read: impl Read, length: u64) -> Reason<MetaData> {
     let meta = MetaData::read_from_buffered(read, true).map_err(|e| reason("header", e))?;
     MetaData::validate(&meta.headers, true).map_err(|e| reason("header", e))?;
     let mut blocks: u64 = 0;
@@ -147,6 +149,7 @@ fn summary(meta: &MetaData) -> PictureHeader {
         // Both are less than 2^31, because the exr crate has checked the windows.
         width: size.width() as u32,
         height: size.height() as u32,
+        data: window::region(&meta.headers),
         channels,
         compressions: meta.headers.iter().map(|part| part.compression.to_string()).collect(),
         text: text(first),
@@ -185,17 +188,33 @@ fn reason(place: &str, error: exr::error::Error) -> String {
     }
 }
 
+/// The pixels of a decoded image.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Fit {
+    /// The display window; pixels without data are empty.
+    Picture,
+    /// The data window, which all parts share.
+    Data,
+}
+
 /// Decodes a whole file.
-pub(super) fn decode(bytes: &[u8], exec: &Exec) -> Reason<Image> {
+pub(super) fn decode(bytes: &[u8], exec: &Exec, fit: Fit) -> Reason<Image> {
     let mut rest = bytes;
     let meta = metadata(&mut rest, bytes.len() as u64)?;
-    let PictureHeader { width, height, text, .. } = summary(&meta);
+    let PictureHeader { mut width, mut height, text, .. } = summary(&meta);
+    if fit == Fit::Picture {
+        window::check_emptiness(&meta.headers)?;
+    } else {
+        let Vec2(columns, rows) = meta.headers[0].layer_size;
+        (width, height) = (columns as u32, rows as u32);
+    }
     let planes = meta.headers.iter().map(|part| part.channels.list.len() as u64).sum::<u64>();
     let batches = meta.headers.iter().map(|part| batch::most_bytes(part, exec)).max();
     // A part that is not the whole picture is in memory twice while it is put in its place.
     let of_part =
         |part: &PartHeader| 4 * (part.channels.list.len() * part.layer_size.area()) as u64;
-    let cropped = meta.headers.iter().filter(|part| !window::is_whole(part));
+    let is_fit = |part: &PartHeader| fit == Fit::Data || window::is_whole(part);
+    let cropped = meta.headers.iter().filter(|part| !is_fit(part));
     let cropped = cropped.map(of_part).max().unwrap_or(0);
     let needed = planes * 4 * u64::from(width) * u64::from(height) + cropped;
     memory::try_ask(needed.saturating_add(batches.unwrap_or(0)), || {
@@ -204,7 +223,7 @@ pub(super) fn decode(bytes: &[u8], exec: &Exec) -> Reason<Image> {
     let mut channels = Vec::new();
     for (part, header) in meta.headers.iter().enumerate() {
         let mut planes = decode_part(bytes, &mut rest, &meta, part, exec)?;
-        if !window::is_whole(header) {
+        if !is_fit(header) {
             planes = window::fit(planes, header);
         }
         let names = header.channels.list.iter().map(|c| full_name(&meta, header, &c.name));

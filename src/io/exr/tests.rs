@@ -382,7 +382,7 @@ fn mutated_files_never_panic_and_never_give_more_than_they_hold() {
                     break;
                 }
             }
-            match read::decode(&bytes, &exec) {
+            match read::decode(&bytes, &exec, read::Fit::Picture) {
                 Ok(image) => {
                     good += 1;
                     let pixels = u64::from(image.width) * u64::from(image.height);

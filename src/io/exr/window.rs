@@ -4,8 +4,8 @@
 //! outside the data window are empty: +inf in depths and margins, `0xFFFF_FFFF` in ids, and 0 in all
 //! other channels. A depth is a channel `Z` or `voronoi` without channels `X` and `Y` beside it.
 
-use crate::frame::NO_ID;
 use crate::frame::image::Values;
+use crate::frame::{NO_ID, Rect};
 use crate::io::Reason;
 use exr::meta::header::Header as PartHeader;
 use exr::prelude::Vec2;
@@ -22,18 +22,46 @@ pub(super) fn is_whole(part: &PartHeader) -> bool {
     part.data_window() == part.shared_attributes.display_window
 }
 
-/// Checks that all parts have one display window, and that it is no larger than a picture may be.
+/// The data window that all parts share, as pixels of the picture, if it is inside the picture.
+pub(super) fn region(parts: &[PartHeader]) -> Option<Rect> {
+    let (data, display) = (parts[0].data_window(), parts[0].shared_attributes.display_window);
+    if parts.iter().any(|part| part.data_window() != data) {
+        return None;
+    }
+    let axis = |data: (i32, usize), display: (i32, usize)| {
+        let start = u32::try_from(i64::from(data.0) - i64::from(display.0)).ok()?;
+        let end = start.checked_add(u32::try_from(data.1).ok()?)?;
+        (end as usize <= display.1).then_some([start, end])
+    };
+    let [x0, x1] =
+        axis((data.position.x(), data.size.width()), (display.position.x(), display.size.width()))?;
+    let [y0, y1] = axis(
+        (data.position.y(), data.size.height()),
+        (display.position.y(), display.size.height()),
+    )?;
+    Some(Rect { x0, y0, x1, y1 })
+}
+
+/// Checks that all parts have one display window, and that it has pixels.
 pub(super) fn check(parts: &[PartHeader]) -> Reason<()> {
     let window = parts[0].shared_attributes.display_window;
     if parts.iter().any(|part| part.shared_attributes.display_window != window) {
         return Err("header: the parts have different display windows; save them alike".into());
     }
-    let Vec2(width, height) = window.size;
+    match window.size.area() {
+        0 => Err("header: a display window without pixels; save it again".into()),
+        _ => Ok(()),
+    }
+}
+
+/// Checks that a display window that is to be filled is no larger than a picture may be.
+pub(super) fn check_emptiness(parts: &[PartHeader]) -> Reason<()> {
+    let Vec2(width, height) = parts[0].shared_attributes.display_window.size;
     let channels: usize = parts.iter().map(|part| part.channels.list.len()).sum();
     let pixels = (width as u64).saturating_mul(height as u64);
     let bytes = pixels.saturating_mul(4 * channels as u64);
     let data = parts.iter().map(|part| part.layer_size.area() as u64).max().unwrap_or(0);
-    if pixels == 0 || bytes > SMALL && pixels > data.saturating_mul(MOST_EMPTY) {
+    if bytes > SMALL && pixels > data.saturating_mul(MOST_EMPTY) {
         let Vec2(columns, rows) = parts[0].layer_size;
         return Err(format!(
             "header: a display window of {width} x {height} pixels around data of {columns} x {rows}; \

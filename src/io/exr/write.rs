@@ -1,6 +1,6 @@
 //! Write a frame to an EXR file.
 
-use super::{ATTRIBUTE, Compression, batch, zip};
+use super::{ATTRIBUTE, Compression, Window, batch, zip};
 use crate::error::{Error, Result};
 use crate::frame::named::LONGEST_NAME;
 use crate::frame::{Channel, ChannelData, Exec, Frame};
@@ -15,7 +15,7 @@ use exr::meta::attribute::{
 };
 use exr::meta::header::{Header, LayerAttributes};
 use exr::meta::{BlockDescription, Headers, MetaData};
-use exr::prelude::Compression as Codec;
+use exr::prelude::{Compression as Codec, IntegerBounds, Vec2};
 use std::io::{self, Seek, Write};
 use std::path::Path;
 
@@ -48,9 +48,26 @@ pub fn pending(
     compression: Compression,
     exec: &Exec,
 ) -> Result<Pending> {
+    pending_part(path, (frame, Window::whole(frame)), text, compression, exec)
+}
+
+/// As [`pending()`], for a frame that holds a part of a picture: the part is the data window of the
+/// file, the picture its display window.
+///
+/// # Errors
+/// As [`write()`], and [`Error::Invalid`] if the frame does not have the size of its part, or if the
+/// part is not inside the picture.
+pub fn pending_part(
+    path: &Path,
+    (frame, window): (&Frame<f32>, Window),
+    text: &str,
+    compression: Compression,
+    exec: &Exec,
+) -> Result<Pending> {
     let channels = frame.channels();
     check(frame, &channels)?;
-    let header = header(frame, &channels, text, compression);
+    window.check([frame.width, frame.height])?;
+    let header = header(&window, &channels, text, compression);
     let headers: Headers = std::iter::once(header).collect();
     MetaData::validate(&headers, true).map_err(|e| Error::Invalid(format!("no EXR: {e}")))?;
     Pending::write(path, |file| {
@@ -94,7 +111,7 @@ fn check(frame: &Frame<f32>, channels: &[Channel<'_>]) -> Result<()> {
 
 /// The header of the only part.
 fn header(
-    frame: &Frame<f32>,
+    Window { region, picture }: &Window,
     channels: &[Channel<'_>],
     text: &str,
     compression: Compression,
@@ -106,11 +123,14 @@ fn header(
         };
         ChannelDescription::named(bytes(&channel.name), sample_type)
     });
-    let size = (frame.width as usize, frame.height as usize);
+    let pixels = |[width, height]: [u32; 2]| (width as usize, height as usize);
+    // A picture has at most 2^31 columns and rows, as its frame has been checked.
+    let position = Vec2(region.x0 as i32, region.y0 as i32);
     // Only one custom attribute, because the exr crate keeps them in a HashMap, whose order is
     // random.
     let attributes = LayerAttributes {
         other: std::iter::once((bytes(ATTRIBUTE), AttributeValue::Text(bytes(text)))).collect(),
+        layer_position: position,
         ..LayerAttributes::default()
     };
     let codec = match compression {
@@ -119,7 +139,8 @@ fn header(
         Compression::Piz => Codec::PIZ,
         Compression::None => Codec::Uncompressed,
     };
-    Header::new(bytes(""), size, described.collect())
+    Header::new(bytes(""), pixels(region.size()), described.collect())
+        .with_display_window(IntegerBounds::new((0, 0), pixels(*picture)))
         .with_encoding(codec, BlockDescription::ScanLines, LineOrder::Increasing)
         .with_attributes(attributes)
 }
@@ -168,7 +189,7 @@ fn compress(
         let list = &meta.headers[0].channels;
         let block = UncompressedBlock::from_lines(list, place, |line| fill(line, channels));
         let chunk = match meta.headers[0].compression {
-            Codec::ZIP16 => zip_chunk(block)?,
+            Codec::ZIP16 => zip_chunk(block, meta.headers[0].own_attributes.layer_position.y())?,
             _ => block.compress_to_chunk(&meta.headers)?,
         };
         Ok((index, chunk))
@@ -176,11 +197,15 @@ fn compress(
     compressed.into_iter().collect()
 }
 
-/// Makes the same chunk as the exr crate, except for the level of compression.
-fn zip_chunk(UncompressedBlock { index, data }: UncompressedBlock) -> exr::error::Result<Chunk> {
+/// Makes the same chunk as the exr crate, except for the level of compression; `top` is the first
+/// line of the data window.
+fn zip_chunk(
+    UncompressedBlock { index, data }: UncompressedBlock,
+    top: i32,
+) -> exr::error::Result<Chunk> {
     let lines = CompressedScanLineBlock {
-        // The data window begins at 0.
         y_coordinate: i32::try_from(index.pixel_position.y())
+            .map(|line| top + line)
             .map_err(|_| exr::error::Error::Invalid("the picture has too many lines".into()))?,
         compressed_pixels_le: zip::compress(data),
     };
@@ -191,7 +216,7 @@ fn zip_chunk(UncompressedBlock { index, data }: UncompressedBlock) -> exr::error
 /// necessary.
 fn fill(line: LineRefMut<'_>, channels: &[Channel<'_>]) {
     let place = line.location;
-    // The blocks are as wide as the picture: the line starts at x = 0.
+    // The blocks are as wide as the data window: the line starts at its first column.
     let first = place.position.y() * place.sample_count;
     let bytes = line.value.as_chunks_mut::<4>().0;
     match channels[place.channel].data {

@@ -51,7 +51,7 @@ pub(super) fn stage<R: Exact>(
 /// The fast path for `f32`.
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
     let mut clock = Clock::default();
-    let mut target = framebuffer(job.camera, wanted(job, false), pool);
+    let mut target = framebuffer(job, wanted(job, false), pool);
     let tally = fast::render(job, settings, &mut target);
     if let Some(polygons) = Polygons::draw(job, settings)? {
         polygons.over(&mut target, job);

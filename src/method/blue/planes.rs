@@ -1,7 +1,7 @@
 //! List the planes that each stage leaves.
 
 use super::discs::Kept;
-use crate::frame::{Framebuffer, NamedPlane, Plane};
+use crate::frame::{Framebuffer, NamedPlane, Plane, Rect};
 use crate::method::Job;
 use crate::method::stage::Holds::Scalar;
 use crate::method::stage::{PlaneRow, Stage};
@@ -45,13 +45,14 @@ pub(super) fn stages<R: Exact>(
     target: &Framebuffer<R>,
 ) -> Vec<NamedPlane<R>> {
     let surfels = job.scene.surfels.len();
+    let Rect { x0, y0, .. } = job.window;
     let offset = |x, y| {
-        let triangle = *target.id.at(x, y) as usize >= surfels;
+        let triangle = *target.id.at(x - x0, y - y0) as usize >= surfels;
         if triangle { R::ZERO } else { kept.at(x, y).offset }
     };
     let color = target.color.clone().map(|plane| COLOR.triple(0, plane));
-    let size = [target.width, target.height];
-    color.into_iter().chain([OFFSET.scalar(0, Plane::from_pixels(size, offset))]).collect()
+    let offset = OFFSET.scalar(0, Plane::of_window(job.window, offset));
+    color.into_iter().chain([offset]).collect()
 }
 
 /// The planes of the discs that every picture has.

@@ -168,6 +168,7 @@ impl<R: Exact> Squares<R> {
         let results = job.exec.ordered(ranges.collect(), |range: Range<usize>| {
             let mut squares = Vec::with_capacity(range.len());
             let tally = project(range, &mut squares);
+            job.keep_touching(&mut squares, |square| square.bounds);
             let bins = Bins::new(grid, squares.len(), |i| squares[i].bounds);
             ((squares, bins), tally)
         });

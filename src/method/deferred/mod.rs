@@ -122,6 +122,8 @@ impl Algorithm for Settings {
     const DRAWS_OBJECTS: bool = true;
     const DRAWS_POLYGONS: bool = true;
     const FAST_BYTES_A_PIXEL: Option<u64> = Some(256);
+    const NEEDS_WHOLE_PICTURE: Option<&'static str> =
+        Some("the pixels of the whole picture select the surfels that it draws");
     type Memory = ();
 
     fn splats(&self) -> Option<&SplatSettings> {

@@ -87,7 +87,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
         color: Whole::new(job.scene).has_colors(),
         observed: false,
     };
-    let mut target = framebuffer(job.camera, wanted, pool);
+    let mut target = framebuffer(job, wanted, pool);
     let (now, tally, laps) = fast::render(job, settings, &mut target)?;
     Ok(Picture {
         seen: Some(now),

@@ -34,7 +34,8 @@ struct Batch<R> {
 
 impl<R: Exact> Batch<R> {
     /// The splats of a run of items, and what became of all of them.
-    fn new(source: &Source<'_, R>, range: Range<usize>, own: bool) -> (Self, Tally) {
+    fn new(job: &Job<'_>, source: &Source<'_, R>, range: Range<usize>) -> (Self, Tally) {
+        let own = source.settings.order == Order::Pixel;
         let (mut splats, mut tally) = (Vec::with_capacity(range.len()), Tally::default());
         for i in range {
             let (splat, fate) = source.splat(i);
@@ -42,6 +43,9 @@ impl<R: Exact> Batch<R> {
             if fate == Fate::Visible {
                 splats.push(splat);
             }
+        }
+        if source.settings.order != Order::Steps {
+            job.keep_touching(&mut splats, |splat| splat.bounds);
         }
         let solid = |splat: &GaussianSplat<R>| source.solid(splat.index as usize);
         let solids = if own { splats.iter().map(solid).collect() } else { Vec::new() };
@@ -57,11 +61,14 @@ impl<R: Exact> Splats<R> {
         let size = 1 << shift;
         let own = source.settings.order == Order::Pixel;
         let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
-        let batches = exec.ordered(ranges.collect(), |range| Batch::new(source, range, own));
+        let batches = exec.ordered(ranges.collect(), |range| Batch::new(job, source, range));
         let (mut batches, tallies): (Vec<_>, Vec<_>) = batches.into_iter().unzip();
         let tally = tallies.into_iter().fold(Tally::default(), |sum, tally| sum.plus(&tally));
         if source.settings.order == Order::Steps {
+            // The steps are between the least and the greatest key of the picture.
             steps(&mut batches);
+            let bounds = |splat: &GaussianSplat<R>| splat.bounds;
+            batches.iter_mut().for_each(|batch| job.keep_touching(&mut batch.splats, bounds));
         }
         let order = ordered(&batches, shift, own, exec);
         let mut all = Self { tally, batches, shift, order, bins: Vec::new() };

@@ -6,7 +6,7 @@ use super::order::Splats;
 use super::planes::STAGES;
 use super::splats::{Source, in_space};
 use crate::error::Result;
-use crate::frame::{NamedPlane, Plane};
+use crate::frame::{NamedPlane, Plane, Rect};
 use crate::method::Job;
 use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture};
@@ -53,11 +53,12 @@ pub(super) fn display<R: Exact>(
 ) -> [NamedPlane<R>; 2] {
     let mut shown = color.clone();
     // A power a number is enough work to run in parallel.
-    job.exec.ordered((0..).zip(shown.rows_mut()).collect(), |(y, row): (u32, &mut [[R; 3]])| {
+    let Rect { x0, y0, .. } = job.window;
+    job.exec.ordered((y0..).zip(shown.rows_mut()).collect(), |(y, row): (u32, &mut [[R; 3]])| {
         if let Some(environment) = &job.scene.environment {
-            for (x, pixel) in (0..).zip(&mut *row) {
+            for (x, pixel) in (x0..).zip(&mut *row) {
                 let light = environment.radiance(source.projector.view.ray(x, y));
-                *pixel = before(source, *pixel, *through.at(x, y), light);
+                *pixel = before(source, *pixel, *through.at(x - x0, y - y0), light);
             }
         }
         if source.space == Encoding::Srgb {

@@ -20,5 +20,5 @@ pub(super) fn shown<R: Exact>(
 ) -> (Plane<[R; 3]>, Plane<R>) {
     let color = blended.plane(|blend| blend.color);
     let alpha = blended.plane(|blend| blend.alpha.at_most(R::ONE));
-    before_environment(job.scene, job.camera, color, alpha, job.exec)
+    before_environment(job, color, alpha)
 }

@@ -93,7 +93,7 @@ pub(super) fn given_limits<R: Exact>(
     epsilon: R,
 ) -> Result<Tiled<R>> {
     let depth = given.scalar(&PeeledLayer::<R>::DEPTH.row, number)?;
-    Ok(given.tiled(|x, y| decide::limit(*depth.at(x, y), epsilon)))
+    Ok(given.tiled(|x, y| decide::limit(*given.at(depth, x, y), epsilon)))
 }
 
 /// Blends a client's layers, as many as any pixel has.

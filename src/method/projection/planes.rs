@@ -58,6 +58,6 @@ impl<R: Real> Projected<R> {
     pub(crate) fn planes(&self, job: &Job<'_>) -> Vec<NamedPlane<R>> {
         let at = |x, y| *self.samples.at(x, y);
         let there = job.there(Keep::Stages);
-        record::planes(&PixelSample::PLANES, 0, (job.camera.size(), &at), &there)
+        record::planes(&PixelSample::PLANES, 0, (job.picture(), &at), &there)
     }
 }

@@ -46,8 +46,7 @@ pub(crate) fn beside<R: Exact>(job: &Job<'_>, cull: bool, snap: Snap) -> Result<
 
 /// Projects everything whose id is `first` or higher.
 fn from<R: Exact>(job: &Job<'_>, (cull, snap): (bool, Snap), first: usize) -> Result<Projected<R>> {
-    let Job { scene, camera, .. } = *job;
-    let (width, height) = (camera.width, camera.height);
+    let (Job { scene, camera, .. }, [width, height]) = (*job, job.size());
     let samples = Plane::filled(width, height, PixelSample::empty());
     let mut projected = Projected { samples, tally: Tally::default() };
     let count = scene.surfels.len() + scene.primitives.len();
@@ -81,6 +80,7 @@ fn draw<R: Exact>(
                 primitives::pieces(projector, id, |piece| drawn.push(DrawnItem::Piece(piece)));
             }
         }
+        job.keep_touching(&mut drawn, DrawnItem::bounds);
         let bins = Bins::new(&grid, drawn.len(), |i| drawn[i].bounds());
         ((drawn, bins), tally)
     });

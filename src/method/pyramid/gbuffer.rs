@@ -70,7 +70,7 @@ impl<R: Exact> GBuffer<R> {
         let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
         let (normal, tangent) = (self.normal.as_ref(), self.tangent.as_ref());
         shader.shade_over(&self.depth, normal, tangent, (&mut self.color, self.colored), exec);
-        let (color, alpha) = before_environment(scene, camera, self.color, self.alpha, exec);
+        let (color, alpha) = before_environment(job, self.color, self.alpha);
         Self { color, alpha, ..self }
     }
 }

@@ -79,6 +79,8 @@ impl Algorithm for Settings {
         },
     ];
     const DRAWS_PRIMITIVES: bool = true;
+    const NEEDS_WHOLE_PICTURE: Option<&'static str> =
+        Some("its coarse levels average pixels from everywhere");
     const FAST_BYTES_A_PIXEL: Option<u64> = Some(224);
     type Memory = fast::CellLevels;
 

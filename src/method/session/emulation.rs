@@ -45,7 +45,8 @@ impl Session<'_> {
         if self.stores_itself() {
             return Ok(self.defined(&self.storing(camera, formats)?.0, false)?.frame);
         }
-        let mut frame = Frame::new(camera.width, camera.height);
+        let [width, height] = self.window(camera)?.size();
+        let mut frame = Frame::new(width, height);
         self.store_stages(camera, formats, false, &mut frame)?;
         Ok(frame)
     }
@@ -96,8 +97,9 @@ impl Session<'_> {
         camera: &Camera,
         mut store: impl FnMut(&Stage, &mut Frame<R>),
     ) -> Result<Frame<R>> {
-        let mut frame = Frame { width: camera.width, height: camera.height, planes: Vec::new() };
-        self.run_all(&self.job(camera)?, &mut frame, |stage, left| store(stage, left))?;
+        let job = self.job(camera)?;
+        let mut frame = job.frame(Vec::new());
+        self.run_all(&job, &mut frame, |stage, left| store(stage, left))?;
         Ok(frame)
     }
 
@@ -108,7 +110,7 @@ impl Session<'_> {
         frame: &mut Frame<R>,
         mut store: impl FnMut(&Stage, &mut Frame<R>),
     ) -> Result<()> {
-        self.ask(job.camera, Making::Define { number: size_of::<R>() as u64, stages: true })?;
+        self.ask(job, Making::Define { number: size_of::<R>() as u64, stages: true })?;
         for stage in self.method.stages().iter().filter(|stage| !stage.leaves.is_empty()) {
             let levels = self.method.levels(job, stage.name);
             let parts =

@@ -3,9 +3,9 @@
 
 use super::Session;
 use crate::error::Result;
-use crate::frame::pyramid;
+use crate::frame::{Rect, pyramid};
 use crate::memory;
-use crate::method::{Holds, PlaneRow, When, gaussians, peeling};
+use crate::method::{Holds, Job, PlaneRow, When, gaussians, peeling};
 use crate::scene::{Camera, Objects};
 
 /// The call that makes a picture.
@@ -29,7 +29,12 @@ impl Session<'_> {
     /// About the most bytes that a picture needs beside the session, with the picture itself.
     #[must_use]
     pub fn needs(&self, camera: &Camera, making: Making) -> u64 {
-        let pixels = u64::from(camera.width) * u64::from(camera.height);
+        self.needs_of(self.window(camera).unwrap_or(Rect::of_size(camera.size())), camera, making)
+    }
+
+    /// As [`Session::needs`], for these pixels of the picture.
+    fn needs_of(&self, window: Rect, camera: &Camera, making: Making) -> u64 {
+        let pixels = window.pixels() as u64;
         if making == Making::Verdict {
             let cells = if self.has_levels() { OF_JUDGED_CELLS } else { 0 };
             let a_pixel = OF_A_JUDGED_PIXEL + cells + self.planes(camera, 8);
@@ -109,9 +114,9 @@ impl Session<'_> {
     }
 
     /// Checks that the process may hold one more picture.
-    pub(crate) fn ask(&self, camera: &Camera, making: Making) -> Result<()> {
-        let (width, height) = (camera.width, camera.height);
-        memory::ask(self.needs(camera, making), || {
+    pub(crate) fn ask(&self, job: &Job<'_>, making: Making) -> Result<()> {
+        let [width, height] = job.size();
+        memory::ask(self.needs_of(job.window, job.camera, making), || {
             format!("a picture of {width} x {height} pixels by {}", self.method.name())
         })
     }

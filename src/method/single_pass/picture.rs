@@ -119,7 +119,7 @@ pub(super) fn stage<R: Exact>(
 
 /// The fast path for `f32`.
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
-    let mut target = framebuffer(job.camera, wanted(job.scene, false), pool);
+    let mut target = framebuffer(job, wanted(job.scene, false), pool);
     let (tally, laps) = fast::render(job, settings, &mut target)?;
     Ok(finish(target, Vec::new(), tally, Clock::from_laps(laps), job))
 }

@@ -74,6 +74,8 @@ impl Algorithm for Settings {
         },
     ];
     const FAST_BYTES_A_PIXEL: Option<u64> = Some(224);
+    const NEEDS_WHOLE_PICTURE: Option<&'static str> =
+        Some("a pixel gathers splats of other pixels, level by level");
     type Memory = fast::CenterLevels;
 
     fn check(&self) -> Result<()> {

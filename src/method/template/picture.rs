@@ -58,7 +58,7 @@ pub(super) fn draw(
     let Job { scene, camera, exec, .. } = *job;
     let color = Has::in_scene(scene).color;
     let wanted = Wanted { normal: !scene.lights.is_empty(), color, observed: false };
-    let mut target = framebuffer(camera, wanted, pool);
+    let mut target = framebuffer(job, wanted, pool);
     let (tally, laps) = levels.draw(scene, camera, settings, exec, &mut target);
     Ok(finish(target, Vec::new(), tally, Clock::from_laps(laps), job))
 }

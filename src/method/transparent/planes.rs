@@ -139,7 +139,7 @@ pub(crate) fn before<R: Exact>(
     color: Plane<[R; 3]>,
     alpha: Plane<R>,
 ) -> [NamedPlane<R>; 2] {
-    let (color, alpha) = before_environment(job.scene, job.camera, color, alpha, job.exec);
+    let (color, alpha) = before_environment(job, color, alpha);
     [SHADED.triple(0, color), ALPHA.scalar(0, alpha)]
 }
 

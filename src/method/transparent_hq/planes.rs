@@ -98,8 +98,8 @@ pub(super) fn given_nearest<R: Exact>(given: &InputPlanes<'_, R>) -> Result<Tile
     let near = given.pixels(&FrontLayer::STAGES, 0, empty)?;
     let (depth, normal) = (given.scalar(&DEPTH, 0)?, given.triple(&NORMAL, 0)?);
     Ok(given.tiled(|x, y| FrontLayer {
-        depth: *depth.at(x, y),
-        normal: *normal.at(x, y),
+        depth: *given.at(depth, x, y),
+        normal: *given.at(normal, x, y),
         ..*near.at(x, y)
     }))
 }

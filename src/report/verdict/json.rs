@@ -23,6 +23,9 @@ pub(super) struct Json<'a> {
     pub(super) outcome: &'static str,
     pub(super) method: &'static str,
     pub(super) promise: &'static str,
+    /// x0, y0, x1, y1 of the pixels that were judged, the ends excluded, if not all of them were.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub(super) region: Option<[u32; 4]>,
     pub(super) covered: u64,
     pub(super) undecided: u64,
     pub(super) budget: f64,

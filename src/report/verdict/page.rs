@@ -42,8 +42,8 @@ impl VerdictReport<'_> {
     ) -> Result<Report> {
         let verdict = self.verdict;
         let reference = match number {
-            Number::F32 => session.define::<f32>(camera, true)?.frame,
-            Number::F64 => session.define::<f64>(camera, true)?.frame.to_f32(),
+            Number::F32 => session.define_whole::<f32>(camera, true)?.frame,
+            Number::F64 => session.define_whole::<f64>(camera, true)?.frame.to_f32(),
         };
         let client = self.client.frame().to_f32();
         let stages = session.method().stages();

@@ -12,8 +12,8 @@ use crate::number::{Ball, Exact, MapInline, Real, Vector3};
 
 /// One row of the picture.
 pub(super) struct ShadedRow<'a, R> {
-    /// The row's number.
-    pub(super) y: usize,
+    /// Column and row of the first pixel.
+    pub(super) at: (usize, usize),
     /// t, +inf where a pixel is empty.
     pub(super) depth: &'a [R],
     /// World space.
@@ -42,7 +42,7 @@ vectorized!(
         for (x, pixel) in (whole..).zip(rest) {
             let form = (one(row.normal, x), one(row.tangent, x));
             let surface = row.own.unwrap_or(*pixel);
-            *pixel = shader.pixel((x, row.y), row.depth[x], form, surface);
+            *pixel = shader.pixel((row.at.0 + x, row.at.1), row.depth[x], form, surface);
         }
     }
 );
@@ -69,7 +69,7 @@ fn group<R: Exact>(
     if !shader.lights.is_empty() {
         let mut points = [[R::ZERO; LANES]; 3];
         for (i, &t) in depth.iter().enumerate() {
-            put_vector(&mut points, i, shader.position(first + i, row.y, t));
+            put_vector(&mut points, i, shader.position(row.at.0 + first + i, row.at.1, t));
         }
         let normal = gather(row.normal, first).unwrap_or([[R::ZERO; LANES]; 3]);
         color = match gather(row.tangent, first) {

@@ -83,6 +83,8 @@ pub struct Shader<R> {
     view: View<R>,
     lights: Vec<(PlacedLight<R>, [R; 3])>,
     material: Phong,
+    /// Column and row, in the picture, of the first pixel of the planes that are shaded.
+    first: [u32; 2],
 }
 
 impl<R: Real> Shader<R> {
@@ -106,7 +108,13 @@ impl<R: Real> Shader<R> {
                 (PlacedLight::At(position), radiance(color))
             }
         };
-        Self { view, lights: lights.iter().map(place).collect(), material }
+        Self { view, lights: lights.iter().map(place).collect(), material, first: [0, 0] }
+    }
+
+    /// The same shader for planes that hold a part of the picture, from this column and row on.
+    #[must_use]
+    pub fn from_pixel(self, first: [u32; 2]) -> Self {
+        Self { first, ..self }
     }
 
     /// The colour of a point p in view space; `towards` gives n and n . l for a direction l.
@@ -185,7 +193,8 @@ impl<R: Real> Shader<R> {
             };
             (place, light.map_inline(&number))
         };
-        Shader { view, lights: self.lights.iter().map(light).collect(), material: self.material }
+        let lights = self.lights.iter().map(light).collect();
+        Shader { view, lights, material: self.material, first: self.first }
     }
 
     /// The colour of surfaces in a scene without colours.
@@ -244,14 +253,15 @@ impl<R: Exact> Shader<R> {
         exec: &Exec,
     ) {
         let own = (!colored).then(|| self.plain());
-        let row = depth.width() as usize;
+        let (row, [left, top]) = (depth.width() as usize, self.first.map_inline(|n| n as usize));
         exec.ordered(
             pixels.rows_mut().enumerate().collect(),
             |(y, pixels): (usize, &mut [[R; 3]])| {
                 let depth = &depth.values()[y * row..][..row];
                 let normal = normal.map(|plane| &plane.values()[y * row..][..row]);
                 let tangent = tangent.map(|plane| &plane.values()[y * row..][..row]);
-                lanes::shade(self, &lanes::ShadedRow { y, depth, normal, tangent, own }, pixels);
+                let at = (left, top + y);
+                lanes::shade(self, &lanes::ShadedRow { at, depth, normal, tangent, own }, pixels);
             },
         );
     }

@@ -66,7 +66,8 @@ impl<'a, P: Profile> Fragments<'a, P> {
         let ranges = (0..count).step_by(8192).map(|first| first..count.min(first + 8192));
         let surfels = job.exec.ordered(ranges.collect(), |range: Range<usize>| {
             let place = |i| Possible::new(&projector, i, job.camera.size());
-            let possible: Vec<_> = range.filter_map(place).collect();
+            let mut possible: Vec<_> = range.filter_map(place).collect();
+            job.keep_touching(&mut possible, |one| one.bounds);
             let bins = Bins::new(&grid, possible.len(), |i| possible[i].bounds);
             (possible, bins)
         });

@@ -110,7 +110,7 @@ pub(super) fn pairs(
     client: &Client,
 ) -> Option<Vec<(f64, f64)>> {
     let (name, _) = client.depth_of_visibility()?;
-    let picture = session.define::<f32>(camera, false).ok()?;
+    let picture = session.define_whole::<f32>(camera, false).ok()?;
     let (own, truth) = (client.frame().scalar(name).ok()?, picture.frame.scalar("Z").ok()?);
     let truth = truth.values().iter().map(|&t| f64::from(t));
     Some(own.values().iter().copied().zip(truth).collect())

@@ -188,7 +188,7 @@ pub(super) fn behind(
     let mut all = *session.method();
     all.set("epsilon", &Value::Text("inf".into())).ok()?;
     // Where there is no memory for another picture, this mistake is not tried.
-    let band = session.define::<f64>(camera, true).ok()?.frame;
+    let band = session.define_whole::<f64>(camera, true).ok()?.frame;
     let client = up_to_sums(client);
     let both = client.mapped(|name, samples| match band.plane(name) {
         Some(band) if is_sum(name) => sum(samples, band),

@@ -83,6 +83,7 @@ impl<P: Profile> PossibleSplats<P> {
         if source.settings.order == Order::Steps {
             steps(&mut all);
         }
+        job.keep_touching(&mut all, |splat| splat.splat.bounds);
         if supposed == Supposed::BackToFront {
             all.iter_mut().for_each(|splat| splat.splat.key = -splat.splat.key);
         }

@@ -78,6 +78,7 @@ impl<'a, P: Profile> AllPolygons<'a, P> {
         });
         let mut drawn: Vec<_> = found.into_iter().flatten().collect();
         drawn.retain(|one| !one.bounds.is_empty());
+        job.keep_touching(&mut drawn, |one| one.bounds);
         let bins = Bins::new(&job.grid(), drawn.len(), |i| drawn[i].bounds);
         Self { projector, drawn, bins }
     }

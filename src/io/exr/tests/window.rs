@@ -69,3 +69,34 @@ fn the_data_are_cropped_to_the_picture() {
     let whole = part([0, 0], [3, 2]);
     assert_eq!(floats(&whole, "Z"), [20.0, 21.0, 22.0, 23.0, 24.0, 25.0]);
 }
+
+#[test]
+fn a_part_keeps_its_place_and_its_bits() {
+    let folder = tempfile::tempdir().unwrap();
+    let (path, exec) = (folder.path().join("part.exr"), Exec::new(2, 32).unwrap());
+    let depth = Plane::from_pixels([5, 37], |x, y| (x * 100 + y) as f32);
+    let frame = Frame::new(5, 37).with("Z", Samples::Scalar(depth)).unwrap();
+    let window = Window { region: Rect { x0: 7, y0: 33, x1: 12, y1: 70 }, picture: [60_000, 70] };
+    for compression in [Compression::Rle, Compression::Zip, Compression::Piz, Compression::None] {
+        pending_part(&path, (&frame, window), "text", compression, &exec).unwrap().put().unwrap();
+        let read = read_region(&path, &exec).unwrap();
+        assert_eq!((read.window, read.compression), (window, Some(compression)));
+        assert_eq!(Image { text: None, ..read.image }, Image::from(&frame), "{compression:?}");
+        assert_eq!(read_header(&path).unwrap().data, Some(window.region));
+        let Some(Values::Float(whole)) = super::read(&path).unwrap().channels.pop().map(|c| c.1)
+        else {
+            panic!("no depth");
+        };
+        assert_eq!((whole[33 * 60_000 + 7], whole[69 * 60_000 + 11]), (0.0, 436.0));
+        assert_eq!(whole.iter().filter(|depth| depth.is_finite()).count(), 5 * 37);
+    }
+    for (region, picture) in [
+        (Rect { x1: 13, ..window.region }, window.picture),
+        (window.region, [11, 70]),
+        (Rect::default(), window.picture),
+    ] {
+        let other = (&frame, Window { region, picture });
+        let refused = pending_part(&path, other, "", Compression::Rle, &exec);
+        assert_eq!(refused.unwrap_err().exit_code(), 1);
+    }
+}

@@ -23,9 +23,9 @@ use tile::TileOfDiscs;
 /// surfels.
 ///
 /// # Panics
-/// If the framebuffer does not have the size of the camera's picture.
+/// If the framebuffer does not have the size of the job's window.
 pub(super) fn render(job: &Job<'_>, settings: &Settings, target: &mut Framebuffer<f32>) -> Tally {
-    assert_eq!([target.width, target.height], job.camera.size(), "framebuffer size");
+    assert_eq!([target.width, target.height], job.size(), "framebuffer size");
     let projector = SquareProjector::new(job, settings.cull);
     let strips = job.strips();
     let squares = Squares::projected_by((job, &strips), |range, squares| {

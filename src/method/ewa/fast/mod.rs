@@ -17,13 +17,13 @@ use crate::splat::Tally;
 /// stencil and margin are not written, because only the definition has them.
 ///
 /// # Panics
-/// If the framebuffer does not have the size of the camera's picture.
+/// If the framebuffer does not have the size of the job's window.
 pub(super) fn render(
     job: &Job<'_>,
     settings: &Settings,
     target: &mut Framebuffer<f32>,
 ) -> (Tally, Laps) {
-    assert_eq!([target.width, target.height], job.camera.size(), "framebuffer size");
+    assert_eq!([target.width, target.height], job.size(), "framebuffer size");
     let mut clock = Clock::default();
     let prepared = prepare(job, settings);
     clock.lap("projection");

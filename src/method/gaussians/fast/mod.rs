@@ -33,7 +33,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Pictu
     clock.lap(planes::STAGES[0].name);
     let rules = Rules::new(settings);
     let blending = Blending { source, splats: &splats, rules, buffers: Buffers::F32 };
-    let mut target = Target::new(job.camera.size(), pool);
+    let mut target = Target::new(job.size(), pool);
     let tiles = target.cut(&grid, job);
     job.exec.ordered(tiles, |mut tile| {
         let (index, rect) = (tile.depth.index, tile.depth.rect);

@@ -43,7 +43,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Pictu
     let mut clock = Clock::default();
     let peeling = FastPeeling::project(job, settings);
     clock.lap("projection");
-    let (size, grid) = (job.camera.size(), job.strips());
+    let (size, grid) = (job.size(), job.strips());
     let mut target = LayeredPlanes::new(size, pool.count(size), pool);
     let times = job.exec.ordered(target.cut(&grid, job.exec), |mut pixels| {
         let start = Instant::now();
@@ -55,7 +55,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Pictu
     });
     clock.shares(["layers"], &times);
     let LayeredPlanes { color, alpha, depth, id, layers } = target;
-    let shown = before_environment(job.scene, job.camera, color, alpha, job.exec);
+    let shown = before_environment(job, color, alpha);
     let mut left: Vec<_> = planes::shown(shown).into();
     left.extend(planes::pixel_planes(depth, id, layers));
     clock.lap("blending");

@@ -36,13 +36,13 @@ use images::GroupImages;
 /// groups for this number of surfels.
 ///
 /// # Panics
-/// If the framebuffer does not have the size of the camera's picture.
+/// If the framebuffer does not have the size of the job's window.
 pub(super) fn render(
     job: &Job<'_>,
     settings: &Settings,
     target: &mut Framebuffer<f32>,
 ) -> Result<(Tally, Laps)> {
-    assert_eq!([target.width, target.height], job.camera.size(), "framebuffer size");
+    assert_eq!([target.width, target.height], job.size(), "framebuffer size");
     let (surfels, groups) = (&job.scene.surfels, job.index.groups()?);
     groups.check(surfels)?;
     let mut clock = Clock::default();

@@ -41,7 +41,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     let mut clock = Clock::default();
     let blending = FastBlending::<Layer>::project(job, settings, Set::count_ones)?;
     clock.lap("projection");
-    let (size, grid) = (job.camera.size(), job.strips());
+    let (size, grid) = (job.size(), job.strips());
     let mut target = LayeredPlanes::new(size, pool.scalar(size), pool);
     let times = job.exec.ordered(target.cut(&grid, job.exec), |mut pixels| {
         let start = Instant::now();

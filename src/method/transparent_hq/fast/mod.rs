@@ -31,7 +31,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     let splats = Splats::project(job, settings)?;
     clock.lap("projection");
     let through = Through::new(job, settings, Environment::radiance);
-    let (size, grid) = (job.camera.size(), job.strips());
+    let (size, grid) = (job.size(), job.strips());
     let mut target = LayeredPlanes::new(size, pool.scalar(size), pool);
     let (mut normal, mut weight) = (pool.triple(size), pool.scalar(size));
     let normals = grid.cut(&mut normal, job.exec).into_iter();
