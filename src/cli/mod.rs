@@ -6,6 +6,7 @@
 
 mod assemble;
 mod atlas;
+mod bands;
 mod camera;
 mod claims;
 mod compare;

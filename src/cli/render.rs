@@ -4,7 +4,7 @@ use super::destination::{Depth, Destination, write};
 use super::options::{ExecOptions, SceneOptions};
 use super::rows::{OfFiles, RowOptions};
 use super::sequence::{self, Frames};
-use super::{Ended, Ending, draw, progress, region, report};
+use super::{Ended, Ending, bands, draw, progress, region, report};
 use splatref::frame::{Exec, Rect};
 use splatref::io::client::{DepthConvention, DepthFile};
 use splatref::io::provenance;
@@ -43,6 +43,11 @@ pub(super) struct Args {
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = region::region, allow_hyphen_values = true,
         conflicts_with = "write_depth")]
     region: Option<Rect>,
+    /// Draw the picture in about N bands of rows, one after the other, and write each as it is made: for
+    /// pictures larger than memory. No PNG is written
+    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..),
+        conflicts_with_all = ["region", "write_depth", "frames", "repeat", "keep_state"])]
+    bands: Option<u32>,
     #[command(flatten)]
     files: RowOptions<OfFiles>,
     /// Render N times; print the minimum and the median of each stage. For the method deferred these
@@ -91,7 +96,7 @@ impl Args {
 
     /// The files to write, and what part of the picture they hold.
     fn destination(&self, file: &SceneFile) -> Result<Destination<'_>> {
-        if self.region.is_some() {
+        if self.region.is_some() || self.bands.is_some() {
             file.method.method()?.check_region()?;
         }
         Ok(Destination {
@@ -125,6 +130,10 @@ pub(super) fn run(args: &Args) -> Ended {
     let exec = args.exec.exec()?;
     let destination = args.destination(&file)?;
     if let Some(frames) = args.sequence(&file) {
+        if args.bands.is_some() {
+            let what = "--bands draws one picture, but this is a sequence; give --frame";
+            return Err(Error::Usage(what.into()));
+        }
         file.check_frame(frames.end - 1)?;
         file.frame = frames.start;
         return sequence::render(&destination, &file, frames, &exec);
@@ -135,6 +144,10 @@ pub(super) fn run(args: &Args) -> Ended {
     destination.check_state(&ready, &file, std::slice::from_ref(&picture))?;
     destination.check_region(&ready.camera)?;
     let (mut session, made) = draw::session(&ready, &args.options, &exec)?;
+    if let Some(count) = args.bands {
+        let to = (&destination, picture.as_path());
+        return bands::render(&mut session, &ready, to, (file.output, count), &exec);
+    }
     let window = destination.limit(&mut session, &ready.camera)?;
     let loading = start.elapsed();
     let Ready { loaded, camera, method, .. } = &ready;

@@ -200,3 +200,39 @@ fn a_region_is_judged_and_compared_alone() {
         assert_eq!(output.status.code(), Some(code), "{region:?} {output:?}");
     }
 }
+
+#[test]
+fn bands_are_the_file_of_the_whole_picture() {
+    let at = TempDir::new().unwrap();
+    let scene = ["render", "torus", "--count", "300", "--size", "50x141"];
+    let draw = |more: &[&str]| splatref(at.path(), &[&scene, more].concat());
+    let read = |name: &str| fs::read(at.path().join(name)).unwrap();
+    for more in [
+        &["--stages", "--threads", "2"][..],
+        &["--compression", "zip", "--method", "gaussians"],
+        &["--compression", "piz", "--number", "f64"],
+        &["--compression", "none", "--method", "blue", "--tile", "64"],
+    ] {
+        assert!(draw(&[more, &["-o", "whole.exr"]].concat()).status.success());
+        for bands in ["1", "3", "99"] {
+            let output = draw(&[more, &["-o", "bands.exr", "--bands", bands]].concat());
+            assert!(output.status.success() && output.stderr.is_empty(), "{more:?}: {output:?}");
+            assert!(read("whole.exr") == read("bands.exr"), "{more:?} {bands}");
+        }
+        assert!(!at.path().join("bands.png").exists());
+    }
+    // The whole picture does not fit; 20 bands do.
+    let large = ["render", "torus", "--count", "300", "--size", "1000x1000", "--memory", "60M"];
+    let output = splatref(at.path(), &large);
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let output = splatref(at.path(), &[&large[..], &["--bands", "20", "-o", "large.exr"]].concat());
+    assert!(output.status.success(), "{output:?}");
+    for more in [
+        &["--bands", "0"][..],
+        &["--bands", "4", "--method", "pyramid"],
+        &["--bands", "4", "--turntable", "3"],
+        &["--bands", "4", "--region", "0,0,9,9"],
+    ] {
+        assert_eq!(draw(more).status.code(), Some(2), "{more:?}");
+    }
+}

@@ -3,7 +3,7 @@
 use super::{ATTRIBUTE, Compression, Window, batch, zip};
 use crate::error::{Error, Result};
 use crate::frame::named::LONGEST_NAME;
-use crate::frame::{Channel, ChannelData, Exec, Frame};
+use crate::frame::{Channel, ChannelData, Exec, Frame, Rect};
 use crate::io::replace::Pending;
 use exr::block::chunk::{Chunk, CompressedBlock, CompressedScanLineBlock};
 use exr::block::lines::LineRefMut;
@@ -17,6 +17,7 @@ use exr::meta::header::{Header, LayerAttributes};
 use exr::meta::{BlockDescription, Headers, MetaData};
 use exr::prelude::{Compression as Codec, IntegerBounds, Vec2};
 use std::io::{self, Seek, Write};
+use std::ops::Range;
 use std::path::Path;
 
 /// Writes all channels of `frame` to the file at `path`, and `text` as the attribute [`ATTRIBUTE`].
@@ -67,15 +68,91 @@ pub fn pending_part(
     let channels = frame.channels();
     check(frame, &channels)?;
     window.check([frame.width, frame.height])?;
-    let header = header(&window, &channels, text, compression);
-    let headers: Headers = std::iter::once(header).collect();
-    MetaData::validate(&headers, true).map_err(|e| Error::Invalid(format!("no EXR: {e}")))?;
+    let headers = headers(&window, &channels, text, compression)?;
+    let lines = 0..frame.height as usize;
     Pending::write(path, |file| {
-        encode(file, headers, &channels, exec).map_err(|error| match error {
-            exr::error::Error::Io(error) => error,
-            other => io::Error::other(other.to_string()),
-        })
+        encode(file, headers, exec, |put| put(&channels, lines)).map_err(of_io)
     })
+}
+
+/// The most lines of a block, over all compressions.
+const BLOCK_LINES: u32 = 32;
+
+/// As [`pending()`], for a picture of this width and height that is drawn in bands of about `rows`
+/// rows, from the top. `draw` returns the planes of a band; memory holds one band at a time.
+///
+/// # Errors
+/// As [`write()`]; those of `draw`; [`Error::Invalid`] if a band has other channels than the first, or
+/// does not have the size of its rectangle.
+pub fn pending_bands(
+    path: &Path,
+    (picture, rows): ([u32; 2], u32),
+    text: &str,
+    (compression, exec): (Compression, &Exec),
+    draw: &mut dyn FnMut(Rect) -> Result<Frame<f32>>,
+) -> Result<Pending> {
+    let [width, height] = picture;
+    // Each block is written at once, so no band may end within a block.
+    let rows = rows.clamp(1, height.max(1)).next_multiple_of(BLOCK_LINES);
+    let band = |y: u32| Rect { x0: 0, y0: y, x1: width, y1: height.min(y + rows) };
+    let mut checked = |rect: Rect| {
+        let frame = draw(rect)?;
+        check(&frame, &frame.channels())?;
+        Window { region: rect, picture }.check([frame.width, frame.height])?;
+        Ok(frame)
+    };
+    let first = checked(band(0))?;
+    let whole = Window { region: Rect::of_size(picture), picture };
+    let headers = headers(&whole, &first.channels(), text, compression)?;
+    let names = names(&first);
+    let (mut first, mut failed) = (Some(first), None);
+    let pending = Pending::write(path, |file| {
+        let bands = |put: &mut Put<'_>| {
+            for band in (0..height).step_by(rows as usize).map(band) {
+                let frame = first.take().map_or_else(|| checked(band), Ok).and_then(|frame| {
+                    let what = "the bands of a picture have different channels";
+                    let same = self::names(&frame) == names;
+                    if same { Ok(frame) } else { Err(Error::Invalid(what.into())) }
+                });
+                match frame {
+                    Ok(frame) => put(&frame.channels(), band.y0 as usize..band.y1 as usize)?,
+                    Err(error) => {
+                        failed = Some(error);
+                        return Err(exr::error::Error::Aborted);
+                    }
+                }
+            }
+            Ok(())
+        };
+        encode(file, headers, exec, bands).map_err(of_io)
+    });
+    failed.map_or(pending, Err)
+}
+
+/// The names of a frame's channels, and whether they hold floats.
+fn names(frame: &Frame<f32>) -> Vec<(String, bool)> {
+    let kind = |data: &ChannelData<'_>| matches!(data, ChannelData::Float { .. });
+    frame.channels().into_iter().map(|one| (one.name, kind(&one.data))).collect()
+}
+
+/// An error of the exr crate as one of a file.
+fn of_io(error: exr::error::Error) -> io::Error {
+    match error {
+        exr::error::Error::Io(error) => error,
+        other => io::Error::other(other.to_string()),
+    }
+}
+
+/// The headers of a file with one part.
+fn headers(
+    window: &Window,
+    channels: &[Channel<'_>],
+    text: &str,
+    compression: Compression,
+) -> Result<Headers> {
+    let headers: Headers = std::iter::once(header(window, channels, text, compression)).collect();
+    MetaData::validate(&headers, true).map_err(|e| Error::Invalid(format!("no EXR: {e}")))?;
+    Ok(headers)
 }
 
 /// Refuses frames that would make the exr crate panic, or write a file that other readers refuse.
@@ -150,44 +227,51 @@ fn bytes(text: &str) -> ExrText {
     ExrText::from_slice_unchecked(text.as_bytes())
 }
 
+/// Writes the blocks of these lines of the data window, from channels that hold these lines alone.
+type Put<'a> = dyn FnMut(&[Channel<'_>], Range<usize>) -> UnitResult + 'a;
+
 /// Writes header and blocks, in the order of lines: one batch is written while the next is
-/// compressed.
+/// compressed. `bands` puts all lines, band after band.
 fn encode(
     write: &mut (impl Write + Seek + Send),
     headers: Headers,
-    channels: &[Channel<'_>],
     exec: &Exec,
+    bands: impl FnOnce(&mut Put<'_>) -> UnitResult,
 ) -> UnitResult {
     block::write(write, headers, true, |meta, chunks| {
-        let mut places = meta.enumerate_ordered_header_block_indices();
+        let mut places = meta.enumerate_ordered_header_block_indices().peekable();
         let size = batch::blocks(&meta.headers[0], exec) as usize;
-        let mut compressed = Vec::new();
-        loop {
-            let batch: Vec<_> = places.by_ref().take(size).collect();
-            let is_last = batch.is_empty();
-            let (written, next) = exec.join(
-                || compressed.into_iter().try_for_each(|(index, c)| chunks.write_chunk(index, c)),
-                || compress(batch, &meta, channels, exec),
-            );
-            written?;
-            compressed = next?;
-            if is_last {
-                return Ok(());
+        bands(&mut |channels, lines| {
+            let mut compressed = Vec::new();
+            loop {
+                let is_in_band = |place: &BlockIndex| place.pixel_position.y() < lines.end;
+                let next = || places.next_if(|(_, place)| is_in_band(place));
+                let batch: Vec<_> = std::iter::from_fn(next).take(size).collect();
+                let is_last = batch.is_empty();
+                let (written, next) = exec.join(
+                    || compressed.into_iter().try_for_each(|(i, c)| chunks.write_chunk(i, c)),
+                    || compress(batch, &meta, (channels, lines.start), exec),
+                );
+                written?;
+                compressed = next?;
+                if is_last {
+                    return Ok(());
+                }
             }
-        }
+        })
     })
 }
 
-/// Compresses the blocks of a batch, each with its index.
+/// Compresses the blocks of a batch, each with its index. The channels begin at line `first`.
 fn compress(
     batch: Vec<(usize, BlockIndex)>,
     meta: &MetaData,
-    channels: &[Channel<'_>],
+    (channels, first): (&[Channel<'_>], usize),
     exec: &Exec,
 ) -> exr::error::Result<Vec<(usize, Chunk)>> {
     let compressed = exec.ordered(batch, |(index, place)| {
         let list = &meta.headers[0].channels;
-        let block = UncompressedBlock::from_lines(list, place, |line| fill(line, channels));
+        let block = UncompressedBlock::from_lines(list, place, |line| fill(line, channels, first));
         let chunk = match meta.headers[0].compression {
             Codec::ZIP16 => zip_chunk(block, meta.headers[0].own_attributes.layer_position.y())?,
             _ => block.compress_to_chunk(&meta.headers)?,
@@ -214,10 +298,10 @@ fn zip_chunk(
 
 /// Fills one line of one channel, in the byte order of this machine; the exr crate swaps bytes if
 /// necessary.
-fn fill(line: LineRefMut<'_>, channels: &[Channel<'_>]) {
+fn fill(line: LineRefMut<'_>, channels: &[Channel<'_>], first: usize) {
     let place = line.location;
     // The blocks are as wide as the data window: the line starts at its first column.
-    let first = place.position.y() * place.sample_count;
+    let first = (place.position.y() - first) * place.sample_count;
     let bytes = line.value.as_chunks_mut::<4>().0;
     match channels[place.channel].data {
         ChannelData::Float { values, stride, offset } => {

@@ -1,0 +1,52 @@
+//! `splatref render --bands`: draws a picture band by band, and writes each band as it is made.
+
+use super::destination::Destination;
+use super::{Ended, Ending, progress, report};
+use splatref::Error;
+use splatref::frame::{Exec, Rect};
+use splatref::io::scene_file::{OutputSettings, Ready};
+use splatref::io::{exr, provenance};
+use splatref::method::Session;
+use std::borrow::Cow;
+use std::path::Path;
+use std::time::Instant;
+
+/// Draws a picture in about `count` bands of rows into the file `picture`.
+pub(super) fn render(
+    session: &mut Session<'_>,
+    Ready { loaded, camera, method, .. }: &Ready,
+    (to, picture): (&Destination<'_>, &Path),
+    (output, count): (OutputSettings, u32),
+    exec: &Exec,
+) -> Ended {
+    let start = Instant::now();
+    to.make_folder()?;
+    let text = provenance::text(&loaded.scene, session.groups(), camera, method, output);
+    let steps = progress::Steps::new("rendering");
+    let mut bands = 0_u32;
+    let mut draw = |band: Rect| {
+        steps.show("bands", band.y0.into(), camera.height.into());
+        bands += 1;
+        session.set_region(Some(band))?;
+        let drawn = match output.draw(session, camera)? {
+            Cow::Owned(picture) => Some(picture),
+            // The session holds it, and is going to draw the next band in other memory.
+            Cow::Borrowed(_) => None,
+        };
+        let drawn = drawn.or_else(|| session.take_picture());
+        drawn.map(|drawn| drawn.frame).ok_or_else(|| Error::Invalid("no band was drawn".into()))
+    };
+    let rows = camera.height.div_ceil(count);
+    let how = (output.compression, exec);
+    exr::pending_bands(picture, (camera.size(), rows), &text, how, &mut draw)?.put()?;
+    drop(steps);
+    report::scene(loaded);
+    report::camera(camera);
+    report::picture(camera, output);
+    report::line("bands", bands);
+    report::method(method, &loaded.scene, camera);
+    report::line("time", report::threads(exec));
+    report::time("bands", vec![start.elapsed()]);
+    report::line("file", picture.display());
+    Ok(Ending::Good)
+}
