@@ -13,12 +13,13 @@ True
 - `verify`: whether your renderer's planes are right, and the likely mistake.
 - `compare`, `metrics`: equality of planes, and errors that rank methods.
 - `surfels`: orders of points. `laws`: compositing laws against your function.
+- `cluster`: pictures drawn by a Dask cluster.
 - `methods`: methods, settings and planes by name. `testing`: assertions and fixtures for pytest.
 """
 
 from __future__ import annotations
 
-from . import laws, methods, metrics, surfels, testing
+from . import cluster, laws, methods, metrics, surfels, testing
 from ._call import use
 from ._compare import Comparison, compare, sha256
 from ._picture import Picture, Planes, explain, read, render, truth
@@ -42,6 +43,7 @@ __all__ = [
     "Verdict",
     "Worst",
     "__version__",
+    "cluster",
     "compare",
     "explain",
     "laws",

@@ -113,6 +113,12 @@ class Picture(Planes):
         return dict(self._drawn.tally)
 
     @property
+    def region(self) -> tuple[int, int, int, int]:
+        """The columns and rows that the planes hold: x0, y0, x1, y1, the ends excluded."""
+        x0, y0, x1, y1 = self._drawn.window[0]
+        return x0, y0, x1, y1
+
+    @property
     def state(self) -> Optional[Any]:
         """What the frame saw, for `render(..., state=...)` of the next frame; only of deferred."""
         return self._drawn.state
@@ -136,7 +142,8 @@ class Picture(Planes):
             raise ValueError(f"{path}: a picture is written as an EXR; give a name that ends in .exr")
         with calling(False) as how:
             text = self._drawn.text(how)
-            _splatref.save_exr(how, path, listed(self), text, compression or self._drawn.compression)
+            kind = compression or self._drawn.compression
+            _splatref.save_exr(how, path, listed(self), text, kind, self._drawn.window)
 
 
 def listed(planes: Mapping[str, object]) -> list[tuple[str, Array]]:
@@ -153,7 +160,7 @@ def listed(planes: Mapping[str, object]) -> list[tuple[str, Array]]:
 def save_planes(path: Path, planes: Mapping[str, object]) -> None:
     """Writes planes that no picture has, without a text."""
     with calling(False) as how:
-        _splatref.save_exr(how, os.fspath(path), listed(planes), "", "zip")
+        _splatref.save_exr(how, os.fspath(path), listed(planes), "", "zip", None)
 
 
 def read(path: Path) -> Planes:
@@ -189,6 +196,7 @@ def render(
     method: Optional[str] = ...,
     frame: Optional[int] = ...,
     state: Optional[Any] = ...,
+    region: Optional[tuple[int, int, int, int]] = ...,
     progress: Optional[bool] = ...,
     **settings: object,
 ) -> Picture: ...
@@ -202,6 +210,7 @@ def render(
     method: Optional[str] = ...,
     frame: Optional[int] = ...,
     state: Optional[Any] = ...,
+    region: Optional[tuple[int, int, int, int]] = ...,
     progress: Optional[bool] = ...,
     **settings: object,
 ) -> list[Picture]: ...
@@ -214,6 +223,7 @@ def render(
     method: Optional[str] = None,
     frame: Optional[int] = None,
     state: Optional[Any] = None,
+    region: Optional[tuple[int, int, int, int]] = None,
     progress: Optional[bool] = None,
     **settings: object,
 ) -> Union[Picture, list[Picture]]:
@@ -224,6 +234,8 @@ def render(
     method: "ewa" and so on; the scene file's own, or "ewa", if absent. `methods()` lists them.
     frame: the frame of a sequence, from 0.
     state: the `state` of the picture before, for the method deferred.
+    region: (x0, y0, x1, y1) draws these columns and rows alone, x1 and y1 excluded, with the bits of the
+        whole picture. The planes have the size of the region, and so has the data window of the file.
     progress: False for no progress bar; shown in a terminal and in a notebook if tqdm is there.
     settings: the settings of the method, its groups and the picture, by the names of the command
         line with _ for -: `epsilon="1.5r"`, `cull=False`, `number="f64"`, `stages=True`. Their units,
@@ -239,10 +251,15 @@ def render(
     chosen = choices("render", method, settings, frame)
     with calling(progress) as how:
         found = _splatref.render(
-            how, _rust(scene), [choice_of(one) for one in cameras], chosen, state
+            how, _rust(scene), [choice_of(one) for one in cameras], chosen, state, region_of(region)
         )
     pictures = [Picture(dict(planes), drawn) for planes, drawn in found]
     return pictures if several else pictures[0]
+
+
+def render_one(how: Any, scene: Scene, camera: Optional[AnyCamera], chosen: Any, region: list[int]) -> Any:
+    """One region of a picture, as Rust returns it."""
+    return _splatref.render(how, _rust(scene), [choice_of(camera)], chosen, None, region)[0]
 
 
 def explain(
@@ -278,6 +295,19 @@ def truth(
     with calling(progress) as how:
         planes, _ = _splatref.truth(how, _rust(scene), choice_of(camera), chosen)
     return Planes(dict(planes))
+
+
+def region_of(region: Optional[tuple[int, int, int, int]]) -> Optional[list[int]]:
+    """A region as Rust takes it."""
+    if region is None:
+        return None
+    try:
+        x0, y0, x1, y1 = (int(one) for one in region)
+    except (TypeError, ValueError):
+        raise ValueError(f"region: {region!r}; give (x0, y0, x1, y1), x1 and y1 excluded") from None
+    if not (0 <= x0 < x1 < 1 << 32 and 0 <= y0 < y1 < 1 << 32):
+        raise ValueError(f"region: {region!r} has no pixel; give x1 above x0 and y1 above y0, from 0")
+    return [x0, y0, x1, y1]
 
 
 def pixel_of(pixel: tuple[int, int]) -> tuple[int, int]:

@@ -103,8 +103,15 @@ class Camera:
         """
         return [Camera(file=file, view=view, **more) for view in range(_splatref.views(os.fspath(file)))]
 
+    def __reduce__(self) -> tuple[Any, ...]:
+        return _camera_of, (self._given,)
+
     def __repr__(self) -> str:
         return f"Camera({', '.join(f'{name}={value!r}' for name, value in self._given.items())})"
+
+
+def _camera_of(given: dict[str, Any]) -> Camera:
+    return Camera(**given)
 
 
 def _intrinsics(K: object) -> dict[str, object]:

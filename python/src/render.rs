@@ -9,7 +9,7 @@ use crate::setup::Setup;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use splatref::frame::image::Values;
-use splatref::frame::{Frame, Plane};
+use splatref::frame::{Frame, Plane, Rect};
 use splatref::index::seen::Seen;
 use splatref::io::scene_file::{Number, OutputSettings, SceneFile};
 use splatref::io::{exr, extension, npy, npz, png as png_file, provenance};
@@ -32,6 +32,8 @@ pub(crate) struct State(Seen);
 pub(crate) struct Drawn {
     setup: Arc<Setup>,
     camera: Camera,
+    /// The pixels that the planes hold.
+    window: Rect,
     seen: Option<Seen>,
     tally: Tally,
     times: Vec<(&'static str, f64)>,
@@ -48,11 +50,11 @@ fn draw(
     session: &mut Session<'_>,
     camera: Camera,
 ) -> splatref::Result<(Numbers, Drawn)> {
-    let output = setup.output;
+    let (output, window) = (setup.output, session.window(&camera)?);
     if output.number == Number::F64 && output.formats.keep_all() {
         let picture = session.define::<f64>(&camera, output.stages)?;
         session.resume(picture.seen.clone());
-        let (frame, drawn) = parted(setup, camera, picture);
+        let (frame, drawn) = parted(setup, (camera, window), picture);
         return Ok((Numbers::Double(frame), drawn));
     }
     let own = match output.draw(session, &camera)? {
@@ -65,14 +67,18 @@ fn draw(
     }
     let picture = own.or_else(|| session.take_picture());
     let picture = picture.ok_or_else(|| splatref::Error::Invalid("no picture".into()))?;
-    let (frame, drawn) = parted(setup, camera, picture);
+    let (frame, drawn) = parted(setup, (camera, window), picture);
     Ok((Numbers::Single(frame), drawn))
 }
 
-fn parted<R>(setup: &Arc<Setup>, camera: Camera, picture: Picture<R>) -> (Frame<R>, Drawn) {
+fn parted<R>(
+    setup: &Arc<Setup>,
+    (camera, window): (Camera, Rect),
+    picture: Picture<R>,
+) -> (Frame<R>, Drawn) {
     let Picture { frame, tally, timings, seen } = picture;
     let times = timings.iter().map(|(stage, time)| (*stage, time.as_secs_f64())).collect();
-    (frame, Drawn { setup: setup.clone(), camera, seen, tally, times })
+    (frame, Drawn { setup: setup.clone(), camera, window, seen, tally, times })
 }
 
 /// Renders a scene from each camera: the planes, and what is known about them.
@@ -84,6 +90,7 @@ pub(crate) fn render<'py>(
     cameras: Vec<Option<Bound<'py, CameraChoice>>>,
     choices: Choices,
     state: Option<Bound<'py, State>>,
+    region: Option<[u32; 4]>,
 ) -> PyResult<Vec<(Planes<'py>, Drawn)>> {
     let cameras =
         cameras.iter().map(|one| choices.on(&scene.get().file, one.as_ref().map(Bound::get)));
@@ -96,6 +103,7 @@ pub(crate) fn render<'py>(
             let setup = Arc::new(Setup::new(scene, file, exec, show)?);
             show("rendering", done as u64, 0);
             let mut session = setup.session(exec)?;
+            session.set_region(region.map(|[x0, y0, x1, y1]| Rect { x0, y0, x1, y1 }))?;
             session.resume(seen.take());
             all.push(draw(&setup, &mut session, setup.camera)?);
             // Further cameras use the same session if they see the same scene.
@@ -211,6 +219,13 @@ impl Drawn {
         camera_numbers(py, &self.setup, &self.camera)
     }
 
+    /// The pixels that the planes hold, x0, y0, x1, y1, and the size of the picture.
+    #[getter]
+    fn window(&self) -> ([u32; 4], [u32; 2]) {
+        let Rect { x0, y0, x1, y1 } = self.window;
+        ([x0, y0, x1, y1], self.camera.size())
+    }
+
     /// The text that a file of the picture carries.
     fn text(&self, py: Python<'_>, how: How) -> PyResult<String> {
         let Self { setup, camera, .. } = self;
@@ -275,7 +290,7 @@ pub(crate) fn truth<'py>(
     Ok((arrays(py, truth.frame)?, truth.how.to_string()))
 }
 
-/// Writes planes into an EXR.
+/// Writes planes into an EXR, as a part of a picture if `window` says so.
 #[pyfunction]
 pub(crate) fn save_exr(
     py: Python<'_>,
@@ -284,6 +299,7 @@ pub(crate) fn save_exr(
     planes: Planes<'_>,
     text: String,
     compression: &str,
+    window: Option<([u32; 4], [u32; 2])>,
 ) -> PyResult<()> {
     let mut output = OutputSettings::default();
     let chosen =
@@ -293,7 +309,12 @@ pub(crate) fn save_exr(
         return Err(value("compression"));
     }
     let frame = frame(&planes)?;
-    call(py, &how, |exec, _| exr::pending(&path, &frame, &text, output.compression, exec)?.put())
+    let window = window.map_or_else(
+        || exr::Window::whole(&frame),
+        |([x0, y0, x1, y1], picture)| exr::Window { region: Rect { x0, y0, x1, y1 }, picture },
+    );
+    let (part, compression) = ((&frame, window), output.compression);
+    call(py, &how, |exec, _| exr::pending_part(&path, part, &text, compression, exec)?.put())
 }
 
 /// Writes the preview of planes into a PNG.

@@ -1,0 +1,83 @@
+"""Pictures of a Dask cluster have the bits of one process."""
+
+from __future__ import annotations
+
+import os
+import signal
+import time
+from pathlib import Path
+from typing import Any, Iterator
+
+import numpy as np
+import pytest
+
+import splatref as sr
+from splatref import cluster
+
+distributed = pytest.importorskip("distributed")
+CAMERA = sr.Camera(size=(60, 44), fov=40)
+
+
+@pytest.fixture(scope="module")
+def client() -> Iterator[Any]:
+    # Processes, as on several machines; no page, because nobody looks at it.
+    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as local:
+        with distributed.Client(local) as client:
+            yield client
+
+
+@pytest.mark.parametrize("method", ["ewa", "peeling", "blue"])
+@pytest.mark.parametrize("regions", [1, 7, 64])
+def test_every_division_has_the_bytes_of_the_whole(client: Any, method: str, regions: int, tmp_path: Path) -> None:
+    whole = sr.render(sr.Scene.open("torus", count=800), CAMERA, method=method, stages=True)
+    joined = cluster.render(
+        lambda: sr.Scene.open("torus", count=800), CAMERA, client=client, regions=regions, method=method, stages=True
+    )
+    for picture, name in ((whole, "whole"), (joined, "joined")):
+        picture.save(tmp_path / f"{name}.exr")
+    assert (tmp_path / "whole.exr").read_bytes() == (tmp_path / "joined.exr").read_bytes()
+    assert joined.tally["drawn"] > 0 and joined.settings == whole.settings
+
+
+def test_a_worker_that_dies_changes_nothing(client: Any) -> None:
+    def dying() -> sr.Scene:
+        # The first worker that loads the scene ends, as a machine does that fails.
+        mark = Path(flag)
+        if not mark.exists():
+            mark.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+        return sr.Scene.open("torus", count=800)
+
+    flag = str(Path(os.environ.get("TMPDIR", "/tmp")) / f"splatref-dies-{os.getpid()}-{time.monotonic_ns()}")
+    try:
+        picture = cluster.render(dying, CAMERA, client=client, regions=7)
+        assert Path(flag).exists()
+    finally:
+        Path(flag).unlink(missing_ok=True)
+    whole = sr.render(sr.Scene.open("torus", count=800), CAMERA)
+    assert all(np.array_equal(picture[name], whole[name], equal_nan=True) for name in whole)
+
+
+def test_what_cannot_be_drawn_is_said(client: Any, tmp_path: Path) -> None:
+    scene = sr.Scene.open("sphere", count=100)
+    with pytest.raises(TypeError, match="give a file"):
+        cluster.render(scene, client=client)  # type: ignore[arg-type]
+    with pytest.raises(OSError, match="missing.ply"):
+        cluster.render(tmp_path / "missing.ply", client=client)
+    with pytest.raises(ValueError, match="pyramid"):
+        cluster.render("sphere", CAMERA, client=client, method="pyramid")
+    with pytest.raises(ValueError, match="regions=0"):
+        cluster.render("sphere", CAMERA, client=client, regions=0)
+    job = cluster._Job("", "0.0.0", lambda: scene, None, None)
+    with pytest.raises(RuntimeError, match="install the same"):
+        cluster._scene(job)
+
+
+def test_a_region_is_a_crop_of_the_whole(tmp_path: Path) -> None:
+    scene = sr.Scene.open("torus", count=800)
+    whole, part = (sr.render(scene, CAMERA, region=region) for region in (None, (5, 7, 40, 31)))
+    assert part.region == (5, 7, 40, 31) and whole.region == (0, 0, 60, 44) and part.size == (35, 24)
+    assert all(np.array_equal(part[name], whole[name][7:31, 5:40], equal_nan=True) for name in whole)
+    for region, what in (((0, 0, 61, 44), "61"), ((5, 5, 5, 9), "no pixel"), ((1, 2, 3), "give")):
+        with pytest.raises(ValueError, match=what):
+            sr.render(scene, CAMERA, region=region)  # type: ignore[arg-type]
