@@ -13,7 +13,7 @@ True
 - `verify`: whether your renderer's planes are right, and the likely mistake.
 - `compare`, `metrics`: equality of planes, and errors that rank methods.
 - `surfels`: orders of points. `laws`: compositing laws against your function.
-- `cluster`: pictures drawn by a Dask cluster.
+- `cluster`: pictures and goldens on a Dask cluster.
 - `methods`: methods, settings and planes by name. `testing`: assertions and fixtures for pytest.
 """
 

@@ -257,9 +257,16 @@ def render(
     return pictures if several else pictures[0]
 
 
-def render_one(how: Any, scene: Scene, camera: Optional[AnyCamera], chosen: Any, region: list[int]) -> Any:
-    """One region of a picture, as Rust returns it."""
-    return _splatref.render(how, _rust(scene), [choice_of(camera)], chosen, None, region)[0]
+def render_one(
+    how: Any,
+    scene: Scene,
+    camera: Optional[AnyCamera],
+    chosen: Any,
+    region: Optional[list[int]] = None,
+    state: Optional[Any] = None,
+) -> Any:
+    """A picture or a region of it, as Rust returns it."""
+    return _splatref.render(how, _rust(scene), [choice_of(camera)], chosen, state, region)[0]
 
 
 def explain(

@@ -1,4 +1,4 @@
-"""Draw a picture on the workers of a Dask cluster, with the bits of one machine.
+"""Draw a picture, or test a folder of goldens, on the workers of a Dask cluster, with the bits of one machine.
 
     from dask.distributed import Client
     client = Client()                                   # or the address of a scheduler
@@ -20,7 +20,8 @@ from typing import Any, Callable, Iterator, Optional, Union
 import numpy as np
 
 from ._call import How
-from ._picture import Picture, render_one
+from ._compare import compare
+from ._picture import Picture, read, render_one
 from ._scene import AnyCamera, Path, Scene
 from ._splatref import __version__
 from ._text import choices
@@ -63,11 +64,15 @@ _lock = threading.Lock()
 _loaded: Optional[tuple[str, Scene]] = None
 
 
+def _check(version: str) -> None:
+    if version != __version__:
+        raise RuntimeError(f"a worker has splatref {__version__}, and the client {version}; install the same")
+
+
 def _scene(job: _Job) -> Scene:
     """The scene, loaded once in this process for each call of `render`."""
     global _loaded
-    if job.version != __version__:
-        raise RuntimeError(f"a worker has splatref {__version__}, and the client {job.version}; install the same")
+    _check(job.version)
     with _lock:
         if _loaded is None or _loaded[0] != job.token:
             _loaded = (job.token, job.source())
@@ -148,4 +153,37 @@ def _joined(size: tuple[int, int], parts: list[_Part]) -> Picture:
     return Picture(whole, joined)
 
 
-__all__ = ["render"]
+def golden(folder: Path, *, client: Any) -> dict[str, Optional[str]]:
+    """Renders every scene of a folder on a Dask cluster, and compares each with its stored picture.
+
+    As the command `golden`: NAME.toml belongs to NAME.exr; of a sequence the last frame counts. Returns by
+    name `None` if every bit is equal, else what differs, in words. Raises `ValueError` if there is no scene.
+
+    client: a `dask.distributed.Client`, whose workers see the folder under this name.
+    """
+    folder = os.path.abspath(os.fspath(folder))
+    stems = {os.path.splitext(name)[0] for name in os.listdir(folder) if name.endswith((".toml", ".exr"))}
+    names = sorted(stems)
+    if not names:
+        raise ValueError(f"{folder}: no scene; give a folder that holds NAME.toml and NAME.exr")
+    futures = client.map(_compared, [os.path.join(folder, name) for name in names], version=__version__, pure=False)
+    try:
+        return dict(zip(names, client.gather(futures)))
+    finally:
+        client.cancel(futures)
+
+
+def _compared(stem: str, version: str) -> Optional[str]:
+    _check(version)
+    for kind in (".toml", ".exr"):
+        if not os.path.exists(stem + kind):
+            return f"{stem}{kind} is missing"
+    scene, how, state = Scene.open(stem + ".toml"), How(1, 32, None), None
+    for frame in range(scene.frames):
+        planes, drawn = render_one(how, scene, None, choices("render", None, {}, frame), state=state)
+        state = drawn.state
+    comparison = compare(read(stem + ".exr"), dict(planes))
+    return None if comparison.equal else str(comparison)
+
+
+__all__ = ["golden", "render"]

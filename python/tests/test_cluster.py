@@ -14,6 +14,8 @@ import pytest
 import splatref as sr
 from splatref import cluster
 
+from conftest import ROOT
+
 distributed = pytest.importorskip("distributed")
 CAMERA = sr.Camera(size=(60, 44), fov=40)
 
@@ -56,6 +58,22 @@ def test_a_worker_that_dies_changes_nothing(client: Any) -> None:
         Path(flag).unlink(missing_ok=True)
     whole = sr.render(sr.Scene.open("torus", count=800), CAMERA)
     assert all(np.array_equal(picture[name], whole[name], equal_nan=True) for name in whole)
+
+
+def test_goldens_are_compared_and_damage_is_named(client: Any, tmp_path: Path) -> None:
+    names = [path.stem for path in sorted((ROOT / "golden").glob("*.toml"))[:3]]
+    for path in (ROOT / "golden").iterdir():
+        if path.suffix not in (".toml", ".exr") or path.stem in names:
+            (tmp_path / path.name).symlink_to(path)
+    assert cluster.golden(tmp_path, client=client) == dict.fromkeys(names)
+    (tmp_path / f"{names[0]}.exr").unlink()
+    (tmp_path / f"{names[1]}.exr").unlink()
+    (tmp_path / f"{names[1]}.exr").symlink_to(ROOT / "golden" / f"{names[2]}.exr")
+    said = cluster.golden(tmp_path, client=client)
+    assert said[names[2]] is None and "missing" in str(said[names[0]]) and said[names[1]]
+    (tmp_path / "empty").mkdir()
+    with pytest.raises(ValueError, match="no scene"):
+        cluster.golden(tmp_path / "empty", client=client)
 
 
 def test_what_cannot_be_drawn_is_said(client: Any, tmp_path: Path) -> None:
