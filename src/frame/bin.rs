@@ -223,13 +223,16 @@ mod tests {
             corners in prop::collection::vec((0_u32..140, 0_u32..70, 1_u32..60, 1_u32..60), 0..80),
             tile in prop::sample::select(vec![8_u32, 16, 32, 64]),
             strips: bool,
+            part: bool,
         ) {
             let (width, height) = (150, 80);
-            let tiles_of = Exec::new(1, tile).unwrap().grid(width, height);
+            let window = if part { Rect { x0: 13, y0: 21, x1: 97, y1: 60 } } else { Rect::of_size([width, height]) };
+            let tiles_of = Exec::new(1, tile).unwrap().grid_of(window);
             let grid = if strips { tiles_of.strips() } else { tiles_of };
             let bounds: Vec<_> = corners
                 .iter()
                 .map(|&(x0, y0, w, h)| Rect { x0, y0, x1: width.min(x0 + w), y1: height.min(y0 + h) })
+                .filter(|bounds| !bounds.intersection(&window).is_empty())
                 .collect();
             let bins = Bins::new(&grid, bounds.len(), |i| bounds[i]);
             let mut met = vec![0; bounds.len()];

@@ -47,6 +47,22 @@ fn joined_parts_are_the_file_of_the_whole_picture() {
             assert!(whole == joined, "{more:?} {kind}");
         }
     }
+    // Triangles beside discs, before an environment.
+    let mesh = "v -1 -1 0\nv 1 -1 0.5\nv 0 1 0\nf 1 2 3\n";
+    fs::write(at.path().join("mesh.obj"), mesh).unwrap();
+    let scene = "[[model]]\nfile = \"mesh.obj\"\ndraw = \"polygons\"\n[[model]]\nshape = \"torus\"\n\
+                 count = 300\n[camera]\nsize = [40, 31]\n";
+    fs::write(at.path().join("mesh.toml"), scene).unwrap();
+    let draw = |more: &[&str]| {
+        let all = ["render", "mesh.toml", "--method", "blue", "--stages", "--environment", "sky"];
+        succeeds(at.path(), &[&all, more].concat());
+    };
+    draw(&["-o", "whole.exr"]);
+    draw(&["--region", "0,0,17,31", "-o", "a.exr"]);
+    draw(&["--region", "17,0,40,31", "-o", "b.exr"]);
+    assert!(assemble(at.path(), &["a.exr", "b.exr"]).status.success());
+    let [whole, joined] = ["whole.exr", "joined.exr"].map(|name| fs::read(at.path().join(name)));
+    assert!(whole.unwrap() == joined.unwrap());
     let said = succeeds(at.path(), &["info", "23-9-60-24.exr"]);
     assert!(said.contains("60 x 41 pixels") && said.contains("23,9,60,24"), "{said}");
     // A frame of a sequence, parts that overlap, and a whole picture as the only part.

@@ -70,7 +70,9 @@ impl Window {
     fn check(&self, size: [u32; 2]) -> Result<()> {
         let Self { region, picture } = *self;
         let inside = region.intersection(&Rect::of_size(picture)) == region;
-        if !region.is_empty() && inside && region.size() == size {
+        // Headers hold coordinates in 31 bits.
+        let small = picture.iter().all(|&side| side <= i32::MAX as u32);
+        if !region.is_empty() && inside && small && region.size() == size {
             return Ok(());
         }
         let (Rect { x0, y0, x1, y1 }, [w, h]) = (region, picture);

@@ -152,7 +152,8 @@ type Channels = Vec<(String, Values)>;
 /// Copies the pixels of all parts to their places.
 fn join(parts: &[Part<'_>], picture: Rect, exec: &Exec) -> Result<(Channels, Compression)> {
     let (header, pixels) = (&parts[0].header, picture.pixels());
-    memory::ask(4 * (pixels * header.channels.len()) as u64, || {
+    // The colour is there twice while its channels are put together.
+    memory::ask(4 * (pixels * (header.channels.len() + 3)) as u64, || {
         format!("a picture of {} x {} pixels", header.width, header.height)
     })?;
     let empty = |kind| match kind {

@@ -201,7 +201,7 @@ fn header(
         ChannelDescription::named(bytes(&channel.name), sample_type)
     });
     let pixels = |[width, height]: [u32; 2]| (width as usize, height as usize);
-    // A picture has at most 2^31 columns and rows, as its frame has been checked.
+    // In 31 bits, as the window has been checked.
     let position = Vec2(region.x0 as i32, region.y0 as i32);
     // Only one custom attribute, because the exr crate keeps them in a HashMap, whose order is
     // random.

@@ -26,7 +26,8 @@ pub enum Making {
 }
 
 impl Session<'_> {
-    /// About the most bytes that a picture needs beside the session, with the picture itself.
+    /// About the most bytes that a picture needs beside the session, with the picture itself; of a
+    /// region, if [`Session::set_region`] set one.
     #[must_use]
     pub fn needs(&self, camera: &Camera, making: Making) -> u64 {
         self.needs_of(self.window(camera).unwrap_or(Rect::of_size(camera.size())), camera, making)
