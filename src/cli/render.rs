@@ -110,8 +110,8 @@ impl Args {
     }
 
     /// The frames to render as a sequence; `None` for one picture.
-    fn sequence(&self, file: &SceneFile) -> Option<Range<u32>> {
-        match &self.frames {
+    fn sequence(&self, file: &SceneFile) -> Result<Option<Range<u32>>> {
+        let frames = match &self.frames {
             Some(Frames::Some(frames)) => Some(frames.clone()),
             Some(Frames::All) => Some(0..file.frame_count()),
             // A camera that goes round, and the cameras of a file, are there to be drawn.
@@ -119,7 +119,12 @@ impl Args {
                 let one = self.options.names_frame() || self.repeat > 1;
                 (file.camera.is_sequence() && !one).then(|| 0..file.frame_count())
             }
+        };
+        if frames.is_some() && self.bands.is_some() {
+            let what = "--bands draws one picture, but this is a sequence; give --frame";
+            return Err(Error::Usage(what.into()));
         }
+        Ok(frames)
     }
 }
 
@@ -129,11 +134,7 @@ pub(super) fn run(args: &Args) -> Ended {
     file.output = args.files.chosen.on(file.output, "the output")?;
     let exec = args.exec.exec()?;
     let destination = args.destination(&file)?;
-    if let Some(frames) = args.sequence(&file) {
-        if args.bands.is_some() {
-            let what = "--bands draws one picture, but this is a sequence; give --frame";
-            return Err(Error::Usage(what.into()));
-        }
+    if let Some(frames) = args.sequence(&file)? {
         file.check_frame(frames.end - 1)?;
         file.frame = frames.start;
         return sequence::render(&destination, &file, frames, &exec);
