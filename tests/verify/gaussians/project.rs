@@ -198,10 +198,11 @@ impl Shared<'_> {
         let det0 = self.difference(a, c, b, b);
         let ratio = match self.settings.kernel.compensation {
             Compensation::None => return 1.0,
-            Compensation::Ratio => (det0 / det).max(0.0),
-            Compensation::Floor => (det0 / det).max(0.000_025),
+            Compensation::Ratio if det0 / det > 0.0 => det0 / det,
+            Compensation::Floor if det0 / det > 0.000_025 => det0 / det,
+            Compensation::Floor => 0.000_025,
             Compensation::Mip if det0 > 1e-6 && det > 1e-6 => det0 / (det + 1e-6) + 1e-6,
-            Compensation::Mip => 0.0,
+            Compensation::Ratio | Compensation::Mip => 0.0,
         };
         if self.how.habit == Habit::InverseSqrt && ratio > 0.0 {
             return ratio * (1.0 / ratio.sqrt());
