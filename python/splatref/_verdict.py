@@ -43,6 +43,7 @@ class Stage:
 
     planes: the planes that were judged; empty if none of this stage was given.
     missing: planes that would let the verdict judge more.
+    unjudged: planes that were given but not judged, because planes that they follow from are missing.
     wrong: the number of wrong pixels.
     error: float32 (height, width), the error in bounds; a pixel is right up to 1.
     doubts: uint8 (height, width), the undecided decisions as bits of `DOUBTS`.
@@ -53,6 +54,7 @@ class Stage:
     name: str
     planes: tuple[str, ...]
     missing: tuple[str, ...]
+    unjudged: tuple[str, ...]
     wrong: int
     error: Array = field(repr=False)
     doubts: Array = field(repr=False)
@@ -179,6 +181,7 @@ def _stage(found: Mapping[str, Any]) -> Stage:
         found["name"],
         tuple(found["planes"]),
         tuple(found["missing"]),
+        tuple(found["unjudged"]),
         found["wrong"],
         found["errors"],
         found["doubts"],

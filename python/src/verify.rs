@@ -188,6 +188,7 @@ fn described<'py>(py: Python<'py>, stage: &StageVerdict) -> PyResult<Bound<'py, 
     let names = stage.planes.iter().map(|name| if name.is_empty() { "RGB" } else { name });
     one.set_item("planes", names.collect::<Vec<_>>())?;
     one.set_item("missing", stage.missing.clone())?;
+    one.set_item("unjudged", stage.unjudged.clone())?;
     one.set_item("wrong", stage.wrong)?;
     one.set_item("errors", scalar(py, stage.errors.clone())?)?;
     one.set_item("doubts", scalar(py, stage.doubts.clone())?)?;

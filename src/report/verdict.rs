@@ -132,6 +132,11 @@ impl<'a> VerdictReport<'a> {
             Outcome::Undecidable if !self.verdict.judges() => {
                 "undecidable: no plane was judged; `render --stages` shows what to hand in".into()
             }
+            Outcome::Undecidable if !self.verdict.unjudged().is_empty() => format!(
+                "undecidable: nothing is wrong, but not judged are {}, because planes that they \
+                 follow from were not handed in",
+                abridged(&self.verdict.unjudged())
+            ),
             Outcome::Undecidable => format!(
                 "undecidable: {} % of the covered pixels have undecided sums, {} % have numbers \
                  without bounds; the budget is {} %",
@@ -186,8 +191,11 @@ fn planes(client: &Client, method: &str) -> String {
 
 /// A stage in words.
 fn judged(stage: &StageVerdict) -> String {
-    if stage.planes.is_empty() {
-        return "not judged: none of its planes was handed in".into();
+    let unjudged = stage.unjudged.join(", ");
+    match (stage.planes.is_empty(), unjudged.as_str()) {
+        (true, "") => return "not judged: none of its planes was handed in".into(),
+        (true, unjudged) => return format!("not judged ({unjudged}){}", missing(stage)),
+        _ => {}
     }
     let names: Vec<&str> =
         stage.planes.iter().map(|name| if name.is_empty() { "RGB" } else { name }).collect();
@@ -210,11 +218,24 @@ fn judged(stage: &StageVerdict) -> String {
         [] => String::new(),
         doubts => format!("; undecided: {}", doubts.join(", ")),
     };
-    let missing = match stage.missing.as_slice() {
+    let unjudged = if unjudged.is_empty() { unjudged } else { format!("; not judged: {unjudged}") };
+    format!("{what} ({}){doubts}{unjudged}{}", names.join(", "), missing(stage))
+}
+
+/// The planes that were not handed in, in words.
+fn missing(stage: &StageVerdict) -> String {
+    match stage.missing.as_slice() {
         [] => String::new(),
         missing => format!("; not handed in: {}", missing.join(", ")),
-    };
-    format!("{what} ({}){doubts}{missing}", names.join(", "))
+    }
+}
+
+/// The first names of a list, and how many there are more.
+fn abridged(names: &[&str]) -> String {
+    match names.len().saturating_sub(NAMED) {
+        0 => names.join(", "),
+        more => format!("{} and {more} more", names[..NAMED].join(", ")),
+    }
 }
 
 /// The bias of the undecided decisions at a threshold, in words.
@@ -237,11 +258,7 @@ fn next(verdict: &Verdict) -> Option<String> {
     let StageVerdict { stage, missing, .. } = verdict.stages.iter().find(lacks)?;
     Some(match missing.as_slice() {
         [] => format!("hand in the planes of the stage {stage}; render --stages shows them"),
-        [first, ..] => {
-            format!(
-                "hand in {first} of the stage {stage}; planes that follow from it are not judged"
-            )
-        }
+        [first, ..] => format!("hand in {first} of the stage {stage}"),
     })
 }
 

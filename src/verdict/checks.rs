@@ -4,40 +4,19 @@ use crate::composite::over::Blend;
 use crate::frame::named::{COLOR, VECTOR, component};
 use crate::method::Job;
 use crate::method::picture::before_light;
-use crate::method::stage::{Conditions, Holds, PlaneRow};
+use crate::method::stage::Holds;
 use crate::number::ball::Profile;
 use crate::number::{Ball, MapInline, Real, Vector3};
 use crate::scene::Environment;
 use crate::shade::phong::Shader;
 use crate::splat::View;
 use crate::verdict::Fault;
-use crate::verdict::client::{Client, Storage, StoredPlane};
+use crate::verdict::client::{Storage, StoredPlane};
 use crate::verdict::supposed::Supposed;
-use std::ops::Range;
 
 /// Receives a check: the index of its stage among the stages that are judged together, the error in
 /// bounds (NaN if there are none), and the fault if the error is above 1.
 pub(crate) type Report<'a> = dyn FnMut(usize, f64, &dyn Fn() -> Fault) + 'a;
-
-/// Lists the planes that a client lacks in these levels of a stage, if it has any plane of them. A
-/// level without any plane is listed as a whole, else each missing plane by its name.
-pub(crate) fn missing(
-    client: &Client,
-    rows: &[PlaneRow],
-    levels: Range<usize>,
-    there: &Conditions,
-) -> Vec<String> {
-    let mut any = false;
-    let mut missing = Vec::new();
-    for level in levels {
-        let names = rows.iter().filter(|row| there.hold(row)).map(|row| row.numbered(level));
-        let (there, not): (Vec<_>, Vec<_>) =
-            names.partition(|name| client.frame().plane(name).is_some());
-        any |= !there.is_empty();
-        missing.extend(if there.is_empty() { vec![format!("level {level}")] } else { not });
-    }
-    if any { missing } else { Vec::new() }
-}
 
 /// A ball of any number, NaN included.
 pub(crate) fn anything<P: Profile>() -> Ball<P> {

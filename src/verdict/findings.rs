@@ -117,9 +117,12 @@ pub struct StageVerdict {
     pub stage: &'static str,
     /// The client's planes that were judged; empty if the client has none of this stage.
     pub planes: Vec<&'static str>,
-    /// Whole levels or planes that the client lacks, in a stage with levels where it has others.
-    /// Anything that follows from a missing one is not judged.
+    /// The planes that the client does not hand in, where it hands in others of this stage. A
+    /// level, a layer or a group without any plane is listed as a whole.
     pub missing: Vec<String>,
+    /// The planes that the client hands in and that are not judged, because planes that they follow
+    /// from are missing. A level or a layer is listed as a whole.
+    pub unjudged: Vec<String>,
     /// The error of each pixel in bounds. A pixel with an error up to 1 is right.
     pub errors: Plane<f32>,
     /// The [`Doubt`]s at each pixel.
@@ -150,8 +153,8 @@ pub enum Outcome {
     Unlike,
     /// No correct implementation leaves these planes.
     Wrong,
-    /// Nothing is proved, because too many sums may be either way or have no bounds, or because no
-    /// plane is judged.
+    /// Nothing is wrong, but not everything is judged: too many sums may be either way or have no
+    /// bounds, or a plane that the client hands in follows from planes that it does not hand in.
     Undecidable,
 }
 
@@ -228,7 +231,11 @@ impl Verdict {
     pub fn outcome(&self) -> Outcome {
         if self.first_wrong().is_some() {
             Outcome::Wrong
-        } else if !(self.judges() && self.within(self.undecided) && self.within(self.unbounded)) {
+        } else if !(self.judges()
+            && self.unjudged().is_empty()
+            && self.within(self.undecided)
+            && self.within(self.unbounded))
+        {
             Outcome::Undecidable
         } else if !self.unlike.is_empty() {
             Outcome::Unlike
@@ -246,6 +253,12 @@ impl Verdict {
     #[must_use]
     pub fn judges(&self) -> bool {
         self.stages.iter().any(|stage| !stage.planes.is_empty())
+    }
+
+    /// The planes that the client hands in and that are not judged, over all stages.
+    #[must_use]
+    pub fn unjudged(&self) -> Vec<&str> {
+        self.stages.iter().flat_map(|stage| &stage.unjudged).map(String::as_str).collect()
     }
 
     /// The first stage with a wrong pixel.
@@ -274,6 +287,7 @@ mod tests {
             stage: "stage",
             planes: vec!["plane"],
             missing: Vec::new(),
+            unjudged: Vec::new(),
             errors: Plane::filled(3, 1, 0.0),
             doubts: Plane::from_values(3, 1, doubts.to_vec()),
             wrong: 0,

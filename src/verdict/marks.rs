@@ -197,6 +197,7 @@ fn whole(
         stage,
         planes,
         missing: Vec::new(),
+        unjudged: Vec::new(),
         errors: Plane::filled(width, height, 0.0),
         doubts: Plane::filled(width, height, 0),
         wrong: 0,

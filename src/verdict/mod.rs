@@ -32,6 +32,7 @@ mod doubt;
 pub mod ewa;
 mod fault;
 mod findings;
+mod gaps;
 pub mod gaussians;
 mod marks;
 mod outcomes;

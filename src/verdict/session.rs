@@ -1,7 +1,7 @@
 //! Verify the pictures of a session.
 
 use super::client::{Client, Rounding};
-use super::{Check, Verdict, ewa, table, unlike};
+use super::{Check, Verdict, ewa, gaps, table, unlike};
 use crate::error::{Error, Result};
 use crate::method::part::Part;
 use crate::method::session::{Making, Names, named};
@@ -24,6 +24,7 @@ impl Session<'_> {
     /// [`Session::render`].
     pub fn verify(&self, camera: &Camera, client: &Client, budget: f64) -> Result<Verdict> {
         let mut verdict = self.verify_as(self.method(), camera, client, budget)?;
+        gaps::list(&mut verdict, self.method().stages(), &self.job(camera)?, client.frame());
         verdict.unlike = unlike::found(client, self.scene().surfels.len(), &verdict.stages);
         Ok(verdict)
     }

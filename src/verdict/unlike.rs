@@ -157,6 +157,7 @@ mod tests {
             stage,
             planes: vec![""],
             missing: Vec::new(),
+            unjudged: Vec::new(),
             errors: Plane::from_values(20, 10, (0..200).map(error).collect()),
             doubts: Plane::filled(20, 10, 0),
             wrong: 0,

@@ -13,6 +13,7 @@
 //! - [`own_pictures`]: no verdict accuses the crate, whatever the settings are.
 //! - [`shares`]: no share of pixels is above 100 %.
 //! - [`suite`]: a slightly wrong limit that leans decisions to one side, over several scenes.
+//! - [`unjudged`]: no verdict passes a value that it did not judge.
 //! - [`gaussians`]: the same tests for the method `gaussians`.
 //! - [`groups`]: the same tests for the method `single-pass`.
 //! - [`image_space`]: the same tests for the methods `template` and `pyramid`.
@@ -35,4 +36,5 @@ mod nodes;
 mod own_pictures;
 mod shares;
 mod suite;
+mod unjudged;
 mod verdicts;

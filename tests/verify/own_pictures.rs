@@ -124,7 +124,10 @@ fn accusations(session: &Session<'_>, camera: &Camera) -> Option<Vec<String>> {
                 format!("{} pixels of {}: {}", stage.wrong, stage.stage, fault.unwrap_or_default())
             });
             let unlike = verdict.unlike.iter().map(ToString::to_string);
-            let said = wrong.into_iter().chain(unlike);
+            let unjudged =
+                verdict.stages.iter().flat_map(|own| own.missing.iter().chain(&own.unjudged));
+            let unjudged = unjudged.map(|name| format!("not judged: {name}"));
+            let said = wrong.into_iter().chain(unlike).chain(unjudged);
             found.extend(said.map(|said| format!("{number} {rounding:?}: {said}")));
             if verdict.outcome() == Outcome::Undecidable && rounding == Rounding::Ieee {
                 println!("{number} {rounding:?} is undecidable: {}", verdict.undecided);

@@ -36,9 +36,9 @@ Examples:
 
 The documentation of splatref::io::client describes the TOML file.
 
-Exit codes: 0 right, 1 wrong, 2 could not be judged, 3 undecidable: no plane was judged, or too many
-sums are undecided, 4 right in each pixel, but the errors together are unlike those of any right
-renderer that was tried; with --strict that is 1.")]
+Exit codes: 0 right, 1 wrong, 2 could not be judged, 3 undecidable: too many sums are undecided, or a
+plane was handed in without the planes that it follows from, 4 right in each pixel, but the errors
+together are unlike those of any right renderer that was tried; with --strict that is 1.")]
 pub(super) struct Args {
     /// The scene, as for render
     scene: PathBuf,

@@ -78,6 +78,9 @@ impl Judged {
         match self.verdict.outcome() {
             Outcome::Right | Outcome::Wrong => {}
             Outcome::Undecidable if !self.verdict.judges() => return "no plane was judged".into(),
+            Outcome::Undecidable if !self.verdict.unjudged().is_empty() => {
+                return format!("not judged: {}", self.verdict.unjudged().join(", "));
+            }
             Outcome::Undecidable => {
                 return format!("{undecided} of {covered} covered pixels have undecided sums");
             }

@@ -42,9 +42,13 @@ use crate::error::Result;
 use crate::frame::Rect;
 use crate::method::Job;
 use crate::method::peeling::Settings;
+use crate::method::peeling::layers::PeeledLayer;
+use crate::method::record::rows;
+use crate::method::stage::Keep;
 use crate::number::ball::Profile;
 use crate::verdict::checks::Backdrop;
 use crate::verdict::client::Client;
+use crate::verdict::gaps::missing;
 use crate::verdict::marks::{self, Counts, Marks, counted};
 use crate::verdict::single_pass::fragments::GroupFragments;
 use crate::verdict::{Check, Verdict};
@@ -60,7 +64,13 @@ pub(super) fn verify<P: Profile>(
 ) -> Verdict {
     let client_planes = PeelingPlanes::new(client, settings);
     let judge = Judge::<P>::new(job, settings, &client_planes);
-    marks::verdict(job, client_planes.stages(), budget, |tile, marks| judge.judge(tile, marks))
+    let stages = client_planes.stages();
+    let mut verdict = marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks));
+    let (rows, there) = (rows(&PeeledLayer::<f32>::PLANES), job.there(Keep::Stages));
+    let layers = 1..client_planes.layers.len() + 1;
+    verdict.stages[0].missing = missing(client, ("layer", &rows), layers, &there);
+    verdict.stages[0].unjudged = client_planes.unjudged();
+    verdict
 }
 
 /// Every check at one pixel.

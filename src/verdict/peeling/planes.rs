@@ -70,6 +70,17 @@ impl<'a> PeelingPlanes<'a> {
         (0..self.layers.len()).take_while(|&layer| self.depth_of(layer).is_some()).count()
     }
 
+    /// The layers that are not judged although the client hands in planes of them: those behind a
+    /// layer without a depth.
+    pub(super) fn unjudged(&self) -> Vec<String> {
+        let behind = (1..).zip(&self.layers).skip(self.known());
+        let handed_in = behind.filter(|(_, layer)| {
+            let LayerPlanes { color, alpha, depth, count } = layer;
+            color.is_some() || alpha.is_some() || depth.is_some() || count.is_some()
+        });
+        handed_in.map(|(number, _): (usize, _)| format!("layer {number}")).collect()
+    }
+
     /// Whether the layers can be blended.
     pub(super) fn blends(&self) -> bool {
         self.layers.iter().all(|layer| layer.color.is_some() && layer.alpha.is_some())

@@ -60,6 +60,20 @@ impl<'a, P: Profile> Levels<'a, P> {
         self.pushed.first().and_then(Option::as_ref)
     }
 
+    /// The levels of the pull and of the push that are not judged although the client hands in
+    /// planes of them.
+    pub(super) fn unjudged(&self) -> [Vec<String>; 2] {
+        let there = |phase: usize, at: usize| !self.planes[phase][at].names().is_empty();
+        let [pulls, pushes] = self.planes.map_inline(<[_]>::len);
+        let pull =
+            (1..=pulls).filter(|level| there(0, level - 1) && self.pulled[level - 1].is_none());
+        let push = (0..pushes).filter(|&level| {
+            there(1, level) && (self.pulled[level].is_none() || self.pushed[level + 1].is_none())
+        });
+        let name = |level| format!("level {level}");
+        [pull.map(name).collect(), push.map(name).collect()]
+    }
+
     /// Judges each level of the pull whose finer level is there.
     pub(super) fn pull(&self, watch: Watch) -> StageMarks {
         let mut found = Phase::new(self.job, watch);

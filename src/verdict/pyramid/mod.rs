@@ -38,8 +38,8 @@ use crate::method::record::rows;
 use crate::method::stage::Keep;
 use crate::number::MapInline;
 use crate::number::ball::Profile;
-use crate::verdict::checks::missing;
 use crate::verdict::client::Client;
+use crate::verdict::gaps::missing;
 use crate::verdict::marks::{MethodMarks, Watch, counted};
 use crate::verdict::planes::RecordPlanes;
 use crate::verdict::projection::{self as samples, SamplePlanes};
@@ -56,12 +56,14 @@ pub(super) fn verify<P: Profile>(
     client: &Client,
     budget: f64,
 ) -> Verdict {
-    let (found, covered) = judge::<P>(job, settings, client, Watch::All);
+    let (found, unjudged, covered) = judge::<P>(job, settings, client, Watch::All);
     let mut stages = found.stage_verdicts(job);
     let last = pyramid::sizes(job.camera.width, job.camera.height).len() - 1;
     let there = job.there(Keep::Stages);
-    stages[1].missing = missing(client, &rows(&Cell::<f32>::PULL), 1..last + 1, &there);
-    stages[2].missing = missing(client, &rows(&Cell::<f32>::PUSH), 0..last, &there);
+    let [pull, push] = [rows(&Cell::<f32>::PULL), rows(&Cell::<f32>::PUSH)];
+    stages[1].missing = missing(client, ("level", &pull), 1..last + 1, &there);
+    stages[2].missing = missing(client, ("level", &push), 0..last, &there);
+    [stages[1].unjudged, stages[2].unjudged] = unjudged;
     let [pulled, pushed] = [1, 2].map_inline(|i: usize| stages[i].doubts.values());
     // Any doubt in a level may move the averages. A pixel with doubts in both stages is one pixel.
     let undecided =
@@ -79,13 +81,14 @@ pub(super) fn checks<P: Profile>(
     Ok(judge::<P>(job, settings, client, Watch::one(job, pixel)?).0.checks())
 }
 
-/// The findings about all stages, and the number of pixels that may be covered.
+/// The findings about all stages, the levels of the pull and of the push that are not judged, and the
+/// number of pixels that may be covered.
 fn judge<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
     client: &Client,
     watch: Watch,
-) -> (MethodMarks<1>, u64) {
+) -> (MethodMarks<1>, [Vec<String>; 2], u64) {
     // The settings were checked before, so there is a grid with this many digits.
     let snap = Snap::new(settings.subpixel_bits).unwrap_or_default();
     let sizes = pyramid::sizes(job.camera.width, job.camera.height);
@@ -109,5 +112,6 @@ fn judge<P: Profile>(
     });
     let covered = found.iter().map(|(_, covered)| covered).sum();
     let tiles = found.into_iter().map(|(marks, _)| marks).collect();
-    (MethodMarks { levels: before, stages: [("shading", judge.names())], tiles }, covered)
+    let stages = [("shading", judge.names())];
+    (MethodMarks { levels: before, stages, tiles }, levels.unjudged(), covered)
 }

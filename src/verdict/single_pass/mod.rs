@@ -59,6 +59,7 @@ use crate::method::PlaneRow;
 use crate::method::record::rows;
 use crate::method::single_pass::Settings;
 use crate::method::single_pass::geometry::ImagePixel;
+use crate::method::stage::Keep;
 use crate::number::Ball;
 use crate::number::MapInline;
 use crate::number::ball::Profile;
@@ -69,7 +70,7 @@ use crate::verdict::ewa::client_planes::ClientPlanes;
 use crate::verdict::ewa::pixel::PixelJudge;
 use crate::verdict::ewa::sums::Continuations;
 use crate::verdict::marks::{self, Counts, Marks, counted};
-use crate::verdict::{Check, Verdict};
+use crate::verdict::{Check, Verdict, gaps};
 use client_planes::ImagePlanes;
 pub(crate) use client_planes::sum_rows;
 use compositing::Compositing;
@@ -112,7 +113,9 @@ pub(super) fn verify<P: Profile>(
     let [first, second, third] = STAGES;
     let [geometry, compositing, shading] = judge.names();
     let stages = [(first, geometry), (second, compositing), (third, shading)];
-    Ok(marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks)))
+    let mut verdict = marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks));
+    verdict.stages[0].missing = judge.missing(job);
+    Ok(verdict)
 }
 
 /// Every check at one pixel.
@@ -176,6 +179,12 @@ impl<'a, P: Profile> Judge<'a, P> {
         let [(_, nearest), (_, sums), (_, averages), (_, shading)] = self.of.client_planes.stages();
         let compositing = [sums, averages, nearest].concat();
         [client_planes::names(&self.images), compositing, shading]
+    }
+
+    /// The planes of groups that the client lacks.
+    pub(crate) fn missing(&self, job: &Job<'_>) -> Vec<String> {
+        let (groups, there) = (0..self.images.len(), job.there(Keep::Stages));
+        gaps::missing(self.of.client, ("group", &self.of.images), groups, &there)
     }
 
     /// Opacity and colour of a pixel as the next pass reads them.

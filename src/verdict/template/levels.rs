@@ -47,6 +47,15 @@ impl<'a, P: Profile> Levels<'a, P> {
         self.levels.into_iter().collect()
     }
 
+    /// The levels that are not judged although the client hands in planes of them.
+    pub(super) fn unjudged(&self) -> Vec<String> {
+        let levels = (1..).zip(self.planes);
+        let unjudged = levels.filter(|(level, planes)| {
+            !planes.names().is_empty() && self.levels[level - 1].is_none()
+        });
+        unjudged.map(|(level, _): (usize, _)| format!("level {level}")).collect()
+    }
+
     /// Judges each level whose finer level is there.
     pub(super) fn judge(&self, watch: Watch) -> StageMarks {
         let (mut marks, mut names) = (watch.picture(self.job), Vec::new());

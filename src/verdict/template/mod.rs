@@ -38,8 +38,8 @@ use crate::method::stage::Keep;
 use crate::method::template::{Center, Settings, propagation};
 use crate::number::MapInline;
 use crate::number::ball::Profile;
-use crate::verdict::checks::missing;
 use crate::verdict::client::Client;
+use crate::verdict::gaps::missing;
 use crate::verdict::marks::{MethodMarks, Watch, counted};
 use crate::verdict::planes::RecordPlanes;
 use crate::verdict::projection::{self as samples, SamplePlanes};
@@ -59,10 +59,11 @@ pub(super) fn verify<P: Profile>(
     client: &Client,
     budget: f64,
 ) -> Verdict {
-    let (found, covered) = judge::<P>(job, settings, client, Watch::All);
+    let (found, unjudged, covered) = judge::<P>(job, settings, client, Watch::All);
     let mut stages = found.stage_verdicts(job);
     let (levels, there) = (1..levels(job, settings).len(), job.there(Keep::Stages));
-    stages[1].missing = missing(client, &rows(&Center::<f32>::PLANES), levels, &there);
+    stages[1].missing = missing(client, ("level", &rows(&Center::<f32>::PLANES)), levels, &there);
+    stages[1].unjudged = unjudged;
     let undecided = stages[2].doubtful(ANY);
     Verdict::new(stages, [covered, undecided], budget, Shifts::default())
 }
@@ -84,13 +85,14 @@ fn levels(job: &Job<'_>, settings: &Settings) -> Vec<[u32; 2]> {
     sizes
 }
 
-/// The findings about all stages, and the number of pixels that may be covered.
+/// The findings about all stages, the levels that are not judged, and the number of pixels that may
+/// be covered.
 fn judge<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
     client: &Client,
     watch: Watch,
-) -> (MethodMarks<3>, u64) {
+) -> (MethodMarks<3>, Vec<String>, u64) {
     let sizes = levels(job, settings);
     let finest = SamplePlanes::new(client, job.scene);
     let coarser = |level| RecordPlanes::new(client, &Center::<f32>::PLANES, level);
@@ -98,7 +100,7 @@ fn judge<P: Profile>(
     let drawn = client.projection(job);
     let projection = samples::judge::<P>(&drawn, settings.cull, Snap::default(), &finest, watch);
     let levels = Levels::<P>::new(job, settings, &sizes, &finest, &coarser);
-    let propagation = levels.judge(watch);
+    let (propagation, unjudged) = (levels.judge(watch), levels.unjudged());
     let client_planes = PicturePlanes::new(client);
     let judge = PixelJudge::new(job, settings, levels.all(), &client_planes);
     let found = job.exec.ordered(watch.parts(&job.grid()), |(_, rect)| {
@@ -109,5 +111,5 @@ fn judge<P: Profile>(
     let covered = found.iter().map(|(_, covered)| covered).sum();
     let tiles = found.into_iter().map(|(marks, _)| marks).collect();
     let stages = client_planes.stages(judge.gathers());
-    (MethodMarks { levels: vec![projection, propagation], stages, tiles }, covered)
+    (MethodMarks { levels: vec![projection, propagation], stages, tiles }, unjudged, covered)
 }

@@ -6,13 +6,15 @@ use super::replay::replay;
 use crate::error::Result;
 use crate::frame::Rect;
 use crate::method::Job;
+use crate::method::record::rows;
+use crate::method::stage::Keep;
 use crate::method::transparent::Settings;
 use crate::method::transparent::blending::GroupLayers;
 use crate::number::Ball;
 use crate::number::ball::{Profile, Three};
 use crate::verdict::client::Client;
 use crate::verdict::marks::PixelMarks;
-use crate::verdict::planes;
+use crate::verdict::{gaps, planes};
 
 /// The judge of a client's geometry pass.
 pub(crate) struct LayersJudge<'a, P: Profile> {
@@ -39,6 +41,12 @@ impl<'a, P: Profile> LayersJudge<'a, P> {
     pub(crate) fn names(&self) -> Vec<&'static str> {
         let groups = self.planes.iter().map(|group| &group.planes);
         planes::names(&GroupLayers::<f32>::PLANES, groups)
+    }
+
+    /// The planes of groups that a client lacks.
+    pub(crate) fn missing(&self, job: &Job<'_>, client: &Client) -> Vec<String> {
+        let (rows, there) = (rows(&GroupLayers::<f32>::PLANES), job.there(Keep::Stages));
+        gaps::missing(client, ("group", &rows), 0..self.planes.len(), &there)
     }
 
     /// The fragments of a row of pixels in a tile.

@@ -69,7 +69,9 @@ pub(super) fn verify<P: Profile>(
     let [first, second] = STAGES;
     let averaging = [judge.averages.names(), judge.shown.names()].concat();
     let stages = [(first, judge.layers.names()), (second, averaging)];
-    Ok(marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks)))
+    let mut verdict = marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks));
+    verdict.stages[0].missing = judge.layers.missing(job, client);
+    Ok(verdict)
 }
 
 /// Every check at one pixel.

@@ -85,7 +85,10 @@ pub(super) fn verify<P: Profile>(
     ];
     let mut names = names.into_iter();
     let stages = STAGES.map_inline(|stage| (stage, names.next().unwrap_or_default()));
-    Ok(marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks)))
+    let mut verdict = marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks));
+    verdict.stages[0].missing = judge.nearest.missing(job);
+    verdict.stages[2].missing = judge.others.missing(job, client);
+    Ok(verdict)
 }
 
 /// Every check at one pixel.
