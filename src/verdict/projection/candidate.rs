@@ -2,9 +2,9 @@
 
 use super::primitives::PossiblePiece;
 use crate::frame::{Grid, Rect};
-use crate::method::projection::SampleKind;
 use crate::method::projection::primitives::PiecePixel;
 use crate::method::projection::surfels::{PlacedPoint, PointProjector};
+use crate::method::projection::{PixelSample, SampleKind};
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Pixel, Real, Truth, Vector3};
 use crate::scene::Surfels;
@@ -26,6 +26,8 @@ pub(super) enum Candidate<'a, P: Profile> {
     /// A surfel, and whether it passes the depth test there.
     Surfel(&'a Possible<P>, Three),
     Piece(&'a PossiblePiece<P>, PiecePixel<Ball<P>>),
+    /// The sample of a triangle that is cut, and whether it certainly lies there.
+    Cut(Box<PixelSample<Ball<P>>>, bool),
 }
 
 impl<P: Profile> Candidate<'_, P> {
@@ -33,6 +35,7 @@ impl<P: Profile> Candidate<'_, P> {
         match self {
             Self::Surfel(one, _) => one.surfel,
             Self::Piece(one, _) => one.piece.id,
+            Self::Cut(sample, _) => sample.id,
         }
     }
 
@@ -40,6 +43,7 @@ impl<P: Profile> Candidate<'_, P> {
         match self {
             Self::Surfel(..) => SampleKind::Surface,
             Self::Piece(one, _) => one.piece.kind,
+            Self::Cut(sample, _) => sample.kind,
         }
     }
 
@@ -47,6 +51,7 @@ impl<P: Profile> Candidate<'_, P> {
         match self {
             Self::Surfel(one, _) => one.placed.t,
             Self::Piece(_, at) => -at.p.z,
+            Self::Cut(sample, _) => sample.depth,
         }
     }
 
@@ -55,6 +60,7 @@ impl<P: Profile> Candidate<'_, P> {
         match self {
             Self::Surfel(one, _) => one.drawn,
             Self::Piece(one, _) => one.drawn,
+            Self::Cut(_, lies) => *lies,
         }
     }
 
@@ -68,6 +74,7 @@ impl<P: Profile> Candidate<'_, P> {
         match self {
             Self::Surfel(one, _) => one.bounds.pixels() == 1,
             Self::Piece(one, _) => one.drawn,
+            Self::Cut(_, lies) => *lies,
         }
     }
 
@@ -75,7 +82,7 @@ impl<P: Profile> Candidate<'_, P> {
     pub(super) fn passes(&self) -> Three {
         match self {
             Self::Surfel(_, passes) => *passes,
-            Self::Piece(..) => true.into(),
+            Self::Piece(..) | Self::Cut(..) => true.into(),
         }
     }
 }

@@ -84,7 +84,10 @@ impl<P: Profile> Claim<P> {
             pixel.found(error, fault);
         };
         match (&self.best, self.says) {
-            (_, PixelContent::Unjudged(kind)) => planes.check_kind(at, kind, &mut report),
+            (_, PixelContent::Unjudged(kind)) => {
+                planes.check_kind(at, kind, &mut report);
+                pixel.doubt(Doubt::Unbounded, true);
+            }
             (Some((_, sample)), _) => planes.check(at, sample, &mut report),
             (None, PixelContent::Id(surfel)) => {
                 report(0, f64::INFINITY, &|| Fault::Absent { surfel });

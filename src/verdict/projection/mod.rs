@@ -24,15 +24,16 @@
 //! Where a pass tests depths against limits, a candidate may lie in a pixel only if it possibly
 //! passes there. It lies there only if it certainly passes.
 //!
-//! **Triangles beside splats**, in [`deferred`](crate::method::deferred), have no limit on the ways
-//! to snap. The corners of a triangle are intervals on the grid of fixed point; a triangle that
+//! **Triangles that are cut** by the near plane or the guard band, or may be, and triangles with more
+//! ways to snap, are judged like **triangles beside splats**, in
+//! [`deferred`](crate::method::deferred), which have no limit on the ways to snap. The corners of a triangle are intervals on the grid of fixed point; a triangle that
 //! certainly is cut has the corners of its pieces. Where each interval is one place, coverage is
 //! exact. Else a piece may lie in a pixel if no edge function certainly is negative, over all
 //! places of its corners. It lies there if all edge functions certainly are positive.
 //!
-//! **Not judged**: a primitive that is cut by the near plane or the guard band, or may be, and a
-//! primitive with more ways to snap. Pixels with its id are judged only by rule 3 and by their
-//! kind. Without ids, every pixel that is neither empty nor a surfel counts as such a pixel.
+//! **Not judged**: a ribbon or a tube that is cut, or may be, or that has more ways to snap. Pixels
+//! with its id are judged only by rule 3 and by their kind, and count as pixels without bounds.
+//! Without ids, every pixel that is neither empty nor a surfel counts as such a pixel.
 
 mod candidate;
 mod claim;
@@ -68,6 +69,8 @@ pub(crate) struct AllPossible<'a, P: Profile> {
     surfels: Vec<(Vec<Possible<P>>, Bins)>,
     pieces: Pieces<P>,
     bins: Bins,
+    /// The triangles that are cut.
+    cut: AllPolygons<'a, P>,
 }
 
 /// Judges the planes of the projection. `snap` is for triangles and lines.
@@ -115,9 +118,11 @@ impl<'a, P: Profile> AllPossible<'a, P> {
             let bins = Bins::new(&grid, possible.len(), |i| possible[i].bounds);
             (possible, bins)
         });
-        let pieces = Pieces::new(&projector);
+        let mut pieces = Pieces::new(&projector);
         let bins = Bins::new(&grid, pieces.all.len(), |i| pieces.all[i].piece.bounds);
-        Self { projector, limits, surfels, pieces, bins }
+        let own = SceneProjector::new(scene, job.camera, cull, snap);
+        let cut = AllPolygons::found(own, std::mem::take(&mut pieces.cut), &grid);
+        Self { projector, limits, surfels, pieces, bins, cut }
     }
 
     /// Marks the wrong pixels of the planes.
@@ -178,6 +183,9 @@ impl<'a, P: Profile> AllPossible<'a, P> {
             let one = &self.pieces.all[i as usize];
             one.piece.for_each(rect, |at| visit(count(at.x, at.y), Candidate::Piece(one, at)));
         });
+        self.cut.each((tile, rect), |(x, y), _, sample, lies| {
+            visit(count(x, y), Candidate::Cut(Box::new(sample), lies));
+        });
     }
 
     /// Whether a surfel passes the depth test at a pixel.
@@ -208,6 +216,7 @@ impl<'a, P: Profile> AllPossible<'a, P> {
                 }
             }
             Candidate::Piece(one, at) => visit(one.piece.sample(&self.projector, at)),
+            Candidate::Cut(sample, _) => visit(**sample),
         }
     }
 

@@ -15,14 +15,14 @@
 use super::intervals::{Depths, Intervals, ROUNDINGS};
 use super::primitives::fixed;
 use crate::frame::raster::{GUARD_BAND, Snap, Triangle};
-use crate::frame::{Bins, Rect};
+use crate::frame::{Bins, Grid, Rect};
 use crate::method::Job;
 use crate::method::projection::primitives::{
     Piece, PiecePixel, corners, triangle_piece, triangle_within,
 };
-use crate::method::projection::{PixelSample, SceneProjector};
+use crate::method::projection::{PixelSample, SampleKind, SceneProjector};
 use crate::number::ball::Profile;
-use crate::number::{Ball, MapInline, Real, Vector3};
+use crate::number::{Ball, MapInline, Real, Vector2, Vector3};
 use crate::scene::Scene;
 use crate::splat::clip::Clipped;
 use crate::verdict::checks::anything;
@@ -36,7 +36,7 @@ pub(crate) struct AllPolygons<'a, P: Profile> {
 }
 
 /// A piece of a triangle that may be drawn.
-struct PossiblePolygon<P: Profile> {
+pub(super) struct PossiblePolygon<P: Profile> {
     /// The index of the triangle in its list.
     index: u32,
     bounds: Rect,
@@ -83,66 +83,96 @@ impl<'a, P: Profile> AllPolygons<'a, P> {
         Self { projector, drawn, bins }
     }
 
+    /// Triangles of a projector's scene that are found already.
+    pub(super) fn found(
+        projector: SceneProjector<'a, Ball<P>>,
+        mut drawn: Vec<PossiblePolygon<P>>,
+        grid: &Grid,
+    ) -> Self {
+        drawn.retain(|one| !one.bounds.is_empty());
+        let bins = Bins::new(grid, drawn.len(), |i| drawn[i].bounds);
+        Self { projector, drawn, bins }
+    }
+
     /// The fragments that may lie in each pixel of a tile.
     pub(crate) fn fragments(&self, (tile, rect): (usize, &Rect)) -> Vec<Vec<PossibleFragment<P>>> {
         let mut found: Vec<_> = counted(*rect).map(|_| Vec::new()).collect();
         let place =
             |x: u32, y: u32| (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize;
+        self.each((tile, rect), |(x, y), index, sample, lies| {
+            let PixelSample { depth, normal, color, .. } = sample;
+            found[place(x, y)].push(PossibleFragment { index, depth, normal, color, lies });
+        });
+        found
+    }
+
+    /// Calls `visit` for every fragment that may lie in a pixel of a tile: with the index of its
+    /// triangle, its sample, and whether it certainly lies there.
+    pub(super) fn each(
+        &self,
+        (tile, rect): (usize, &Rect),
+        mut visit: impl FnMut((u32, u32), u32, PixelSample<Ball<P>>, bool),
+    ) {
         self.bins.for_each(tile, |i| {
             let one = &self.drawn[i as usize];
             let inner = one.bounds.intersection(rect);
             match &one.form {
                 _ if inner.is_empty() => {}
                 Form::Exact(piece) => piece.for_each(&inner, |at| {
-                    found[place(at.x, at.y)].push(self.fragment(one, piece, &at, true));
+                    visit((at.x, at.y), one.index, self.sample(one, piece, &at), true);
                 }),
                 Form::Between(between) => {
                     let (piece, depths) = &**between;
                     for (_, (x, y)) in counted(inner) {
                         if let Some((weights, lies)) = depths.weights((x, y)) {
                             let at = piece.with(x, y, weights);
-                            found[place(x, y)].push(self.fragment(one, piece, &at, lies));
+                            visit((x, y), one.index, self.sample(one, piece, &at), lies);
                         }
                     }
                 }
                 Form::OpenDecision(intervals) => {
-                    let any = anything();
-                    let normal = Vector3::new(any, any, any);
-                    for (_, (x, y)) in counted(inner) {
-                        if intervals.as_ref().is_none_or(|all| all.may_reach((x, y))) {
-                            let (depth, color, lies) = (one.depths, [any; 3], false);
-                            found[place(x, y)].push(PossibleFragment {
-                                index: one.index,
-                                depth,
-                                normal,
-                                color,
-                                lies,
-                            });
+                    let open = self.open(one);
+                    for (_, at) in counted(inner) {
+                        if intervals.as_ref().is_none_or(|all| all.may_reach(at)) {
+                            visit(at, one.index, open, false);
                         }
                     }
                 }
             }
         });
-        found
     }
 
-    fn fragment(
+    /// The sample of a triangle of which only its depths are known.
+    fn open(&self, one: &PossiblePolygon<P>) -> PixelSample<Ball<P>> {
+        let any = anything();
+        let vector = Vector3::new(any, any, any);
+        PixelSample {
+            kind: SampleKind::Polygon,
+            id: self.projector.scene.surfels.len() as u32 + one.index,
+            depth: one.depths,
+            radius: any,
+            extent: any,
+            center: Vector2::new(any, any),
+            normal: vector,
+            tangent: Vector3::ZERO,
+            color: [any; 3],
+        }
+    }
+
+    fn sample(
         &self,
         one: &PossiblePolygon<P>,
         piece: &Piece<Ball<P>>,
         at: &PiecePixel<Ball<P>>,
-        lies: bool,
-    ) -> PossibleFragment<P> {
+    ) -> PixelSample<Ball<P>> {
         let sample = piece.sample(&self.projector, at);
         let bounded = sample.depth.radius.is_finite();
-        let depth = if bounded { sample.depth } else { one.depths };
-        let PixelSample { normal, color, .. } = sample;
-        PossibleFragment { index: one.index, depth, normal, color, lies }
+        PixelSample { depth: if bounded { sample.depth } else { one.depths }, ..sample }
     }
 }
 
 /// The pieces that a triangle may be drawn as.
-fn triangle<P: Profile>(
+pub(super) fn triangle<P: Profile>(
     projector: &SceneProjector<'_, Ball<P>>,
     index: usize,
     drawn: &mut Vec<PossiblePolygon<P>>,
@@ -176,11 +206,12 @@ fn piece<P: Profile>(
     let least = std::array::from_fn(|k| (places[k].map_inline(|[least, _]| least), placed[k].m));
     let weights = fan.map_inline(|corner| corner.weights);
     let depths = depths(projector, &fan.map_inline(|corner| corner.position), p);
-    let id = (index as u32, index);
+    let id = ((projector.scene.surfels.len() + index) as u32, index);
+    let index = index as u32;
     if places.iter().flatten().all(|[least, greatest]| least == greatest) {
         let piece = triangle_piece(projector, id, least, weights, *p)?;
         return Some(PossiblePolygon {
-            index: id.0,
+            index,
             bounds: piece.bounds,
             depths,
             form: Form::Exact(Box::new(piece)),
@@ -191,13 +222,13 @@ fn piece<P: Profile>(
     // Where the sense of the corners is undecided, so is the visible side.
     if !intervals.is_turned() {
         let form = Form::OpenDecision(Some(intervals));
-        return Some(PossiblePolygon { index: id.0, bounds, depths, form });
+        return Some(PossiblePolygon { index, bounds, depths, form });
     }
     let raster = Triangle::new(snap, least.map_inline(|(place, _)| place))?;
     let piece = triangle_within(projector, id, (raster, bounds), least, weights, *p)?;
     let between = Depths::new(intervals, placed.map_inline(|at| at.m), &weights);
     let form = Form::Between(Box::new((piece, between)));
-    Some(PossiblePolygon { index: id.0, bounds, depths, form })
+    Some(PossiblePolygon { index, bounds, depths, form })
 }
 
 /// The range of depths of a piece with these corners of a triangle.
@@ -265,7 +296,7 @@ mod tests {
     use super::*;
     use crate::frame::Exec;
     use crate::index::Index;
-    use crate::method::projection::{SampleKind, project};
+    use crate::method::projection::project;
     use crate::number::Exact;
     use crate::number::ball::{Gpu, Ieee};
     use crate::number::random::unit;

@@ -1,6 +1,7 @@
 //! Triangles, ribbons and tubes that may be drawn.
 
 use super::planes::kind_of;
+use super::polygons::{self, PossiblePolygon};
 use crate::frame::raster::{GUARD_BAND, Snap};
 use crate::method::projection::primitives::{Piece, corners, line_piece, triangle_piece};
 use crate::method::projection::{SampleKind, SceneProjector};
@@ -19,7 +20,9 @@ pub(super) struct PossiblePiece<P: Profile> {
 /// The possible pieces of all primitives of a scene.
 pub(super) struct Pieces<P: Profile> {
     pub(super) all: Vec<PossiblePiece<P>>,
-    /// The primitives that are not judged, ascending.
+    /// The pieces of triangles that are cut, or whose corners have many places.
+    pub(super) cut: Vec<PossiblePolygon<P>>,
+    /// The ribbons and tubes that are not judged, ascending.
     pub(super) unclear: Vec<u32>,
 }
 
@@ -29,7 +32,8 @@ const MOST: usize = 16;
 impl<P: Profile> Pieces<P> {
     /// Finds the pieces of all primitives that may be drawn.
     pub(super) fn new(projector: &SceneProjector<'_, Ball<P>>) -> Self {
-        let (mut found, of) = (Self { all: Vec::new(), unclear: Vec::new() }, projector.scene);
+        let mut found = Self { all: Vec::new(), cut: Vec::new(), unclear: Vec::new() };
+        let of = projector.scene;
         let first = of.surfels.len();
         let primitives = &of.primitives;
         for id in first..first + primitives.len() {
@@ -37,7 +41,10 @@ impl<P: Profile> Pieces<P> {
             let (triangles, ribbons) = (primitives.triangles.len(), primitives.ribbons.len());
             let index = id - first;
             let place = match kind {
-                SampleKind::Polygon => found.triangle(projector, (id as u32, index)),
+                SampleKind::Polygon => {
+                    found.triangle(projector, (id as u32, index));
+                    Some(())
+                }
                 SampleKind::Ribbon => {
                     let index = index - triangles;
                     found.line(&primitives.ribbons, projector, kind, (id as u32, index))
@@ -54,18 +61,16 @@ impl<P: Profile> Pieces<P> {
         found
     }
 
-    /// Adds the pieces of a triangle. None if they are not known.
-    fn triangle(
-        &mut self,
-        projector: &SceneProjector<'_, Ball<P>>,
-        (id, index): (u32, usize),
-    ) -> Option<()> {
+    /// Adds the pieces of a triangle.
+    fn triangle(&mut self, projector: &SceneProjector<'_, Ball<P>>, (id, index): (u32, usize)) {
         let p = corners(&projector.scene.primitives.triangles, &projector.points, index);
         let weights = whole(p).map_inline(|corner: Clipped<_, 3>| corner.weights);
-        self.add(Ends::new(projector, p).ways()?, |ends| {
-            triangle_piece(projector, (id, index), ends, weights, p)
-        });
-        Some(())
+        match Ends::new(projector, p).ways() {
+            Some(ways) => {
+                self.add(ways, |ends| triangle_piece(projector, (id, index), ends, weights, p));
+            }
+            None => polygons::triangle(projector, index, &mut self.cut),
+        }
     }
 
     /// Adds the pieces of a line. None if they are not known.

@@ -4,8 +4,8 @@
 //! Each stage is judged from the client's planes of the stage before. Floats are inputs as they are
 //! stored, so they are exact. The formulas are the crate's, in balls of a [`Profile`].
 //!
-//! **Projection**: see [`mod@crate::verdict::projection`], which says which triangles, ribbons and
-//! tubes are not judged. The later stages are judged whatever their inputs are.
+//! **Projection**: see [`mod@crate::verdict::projection`], which says which ribbons and tubes
+//! are not judged. The later stages are judged whatever their inputs are.
 //!
 //! **Pull and push**, level by level from the client's own levels. The pull reads the client's
 //! finer level. The push reads the client's coarser level and the same level after the pull. Level

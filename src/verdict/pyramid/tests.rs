@@ -8,10 +8,12 @@ use crate::method::{Method, Session};
 use crate::scene::indexed::{Indexed, Vertices};
 use crate::scene::{Camera, Lens, Primitives, Scene};
 use crate::source::Shape;
-use crate::verdict::client::Client;
+use crate::verdict::client::{Client, Rounding};
 use crate::verdict::tests::{
     Slip, assert_found, assert_found_where, assert_right, assert_right_in_halves,
 };
+use crate::verdict::{Doubt, Outcome};
+use glam::Vec3;
 
 fn camera(shape: Shape, size: [u32; 2], lens: Option<Lens>) -> Camera {
     let lens = lens.unwrap_or(shape.default_lens());
@@ -184,4 +186,70 @@ fn levels_that_are_not_handed_in_are_said() {
     assert_eq!(found, all(none(), vec!["level 0".into()]));
     // A phase without any plane is not judged.
     assert_eq!(missing(&|name| name.starts_with("pull")), all(none(), none()));
+}
+
+/// A plane from before the camera to behind it, so that the near plane cuts its triangles, and two
+/// ribbons beside it.
+fn across(ribbons: bool) -> Scene {
+    let vertices = |places: &[[f32; 3]]| Vertices {
+        position: places.iter().map(|at| (*at).into()).collect(),
+        direction: vec![Vec3::new(0.6, 0.8, 0.0); places.len()],
+        radius: vec![0.1; places.len()],
+        color: Some((0..places.len()).map(|i| Vec3::new(0.2 * i as f32, 0.7, 0.4)).collect()),
+        ..Vertices::default()
+    };
+    let floor =
+        vertices(&[[-3.0, -1.0, -4.0], [3.0, -1.0, -4.0], [3.0, -0.6, 9.0], [-3.0, -1.2, 9.0]]);
+    let triangles = Indexed::new(floor, vec![[0, 1, 2], [0, 2, 3]]).unwrap().0;
+    let lines = vertices(&[[0.1, 0.2, -3.0], [0.2, 0.6, 9.0], [-0.8, 0.1, -2.0], [-0.4, 0.9, 9.0]]);
+    let lines = Indexed::new(lines, vec![[0, 1], [2, 3]]).unwrap().0;
+    let ribbons = if ribbons { lines } else { Indexed::default() };
+    let primitives = Primitives { triangles, ribbons, ..Primitives::default() };
+    lit(Scene { primitives, ..scene(surfels(60, 0.1, true, 7)) })
+}
+
+#[test]
+fn triangles_that_the_near_plane_cuts_are_judged() {
+    let (scene, camera) = (across(false), camera(Shape::Sphere, [37, 29], None));
+    let method = Method::Pyramid(rare());
+    let exec = Exec::sequential();
+    let session = Session::new(&scene, method, &exec).unwrap();
+    let frame = session.define::<f32>(&camera, true).unwrap().frame;
+    let kinds = frame.count("projection.kind").unwrap().values();
+    let polygons = kinds.iter().filter(|kind| **kind == SampleKind::Polygon as u8).count();
+    assert!(polygons > 300, "{polygons}");
+    for rounding in [Rounding::Ieee, Rounding::Gpu] {
+        let client = Client { rounding, ..Client::from(&frame) };
+        // Coarse levels of a floor have many near ties.
+        let verdict = session.verify(&camera, &client, 1.0).unwrap();
+        assert_eq!(verdict.outcome(), Outcome::Right, "{rounding:?}");
+        assert_eq!(verdict.stages[0].doubtful(Doubt::Unbounded as u8), 0, "{rounding:?}");
+    }
+    let slips = [
+        ("projection.Z", Slip::Off(1e-3), "projection"),
+        ("projection.id", Slip::More, "projection"),
+        ("projection.id", Slip::Dropped, "projection"),
+        ("projection", Slip::Off(1e-2), "projection"),
+        ("projection.normal", Slip::NotANumber, "projection"),
+    ];
+    assert_found_where(&scene, &camera, method, &slips, |frame, place| {
+        frame.count("projection.kind").unwrap().values()[place] == SampleKind::Polygon as u8
+    });
+}
+
+/// A ribbon that is cut is not judged, and its pixels say so.
+#[test]
+fn pixels_of_a_ribbon_that_is_cut_have_no_bounds() {
+    let (scene, camera) = (across(true), camera(Shape::Sphere, [37, 29], None));
+    let exec = Exec::sequential();
+    let session = Session::new(&scene, Method::Pyramid(rare()), &exec).unwrap();
+    let frame = session.define::<f32>(&camera, true).unwrap().frame;
+    let verdict = session.verify(&camera, &Client::from(&frame), 0.0).unwrap();
+    let kinds = frame.count("projection.kind").unwrap().values();
+    let ribbons = kinds.iter().map(|kind| *kind == SampleKind::Ribbon as u8);
+    let open = verdict.stages[0].doubts.values().iter();
+    let open = open.map(|doubts| doubts & Doubt::Unbounded as u8 != 0);
+    assert!(open.eq(ribbons), "{}", verdict.unbounded);
+    assert!(verdict.unbounded > 10, "{}", verdict.unbounded);
+    assert_eq!(verdict.outcome(), Outcome::Undecidable);
 }

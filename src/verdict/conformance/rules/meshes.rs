@@ -70,8 +70,7 @@ pub(super) const ROWS: &[Row] = &[
     Row {
         name: "triangles-across-the-near-plane",
         tests: "Triangles are cut by the near plane.",
-        // The verdict on pyramids does not judge triangles that are cut.
-        of: Of::Only(&["deferred", "blue"]),
+        of: Of::Only(POLYGONS),
         draw: |s| {
             s.near = Some(6.0);
             square(s, [[-1.7, -1.2, 3.5], [1.3, -1.0, -1.5], [1.6, 1.1, -1.4], [-1.4, 1.3, 3.6]]);
