@@ -219,3 +219,36 @@ fn enclosed(scene: &Scene, camera: &Camera) -> [u32; 3] {
     }
     [narrowed, wide, of]
 }
+
+/// 2,000 splats whose depths differ only by roundings, so that every order of them is open. Each pixel
+/// asks how much all others of a splat leave: what grows with the square of their number takes minutes.
+#[test]
+fn many_splats_of_one_depth_are_judged() {
+    let eye = DVec3::new(3.0, 4.0, 5.0);
+    let [across, along] = [DVec3::new(4.0, -3.0, 0.0), eye.cross(DVec3::new(4.0, -3.0, 0.0))];
+    let [across, along] = [across.normalize(), along.normalize()];
+    let random = |i: u64, k: u64| f64::from(2.0 * unit(9, 2 * i + k) - 1.0);
+    let count = 2000;
+    let arrays = GaussianArrays {
+        position: (0..count)
+            .map(|i| (across * random(i, 0) + along * random(i, 1)).as_vec3())
+            .collect(),
+        scale: vec![Vec3::splat(0.5); count as usize],
+        rotation: vec![[0.0, 0.0, 0.0, 1.0]; count as usize],
+        opacity: vec![0.01; count as usize],
+        degree: 0,
+        harmonics: (0..count).map(|i| Vec3::splat(unit(10, i))).collect(),
+        encoding: Encoding::Srgb,
+    };
+    let scene = Scene::of_gaussians("one depth", Gaussians::new(arrays).unwrap().0);
+    let pose = Pose { eye, target: DVec3::ZERO, up: DVec3::Z };
+    let camera = Camera::new(12, 10, pose, Lens::FieldOfView(20.0)).unwrap();
+    let settings = Settings { least_alpha: 0.0, ..Settings::default() };
+    let exec = Exec::sequential();
+    let session = Session::new(&scene, Method::Gaussians(settings), &exec).unwrap();
+    let frame = session.define::<f32>(&camera, true).unwrap().frame;
+    let verdict = session.verify(&camera, &Client::from(&frame), 1.0).unwrap();
+    assert!(verdict.first_wrong().is_none(), "{:?}", verdict.stages[0].worst);
+    assert_eq!(verdict.stages[0].doubtful(Doubt::Nearer as u8), 120);
+    assert!(frame.count("count").unwrap().values().iter().all(|count| *count == 255));
+}
