@@ -7,6 +7,7 @@ use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::png::encode_frame;
 use splatref::io::scene_file::Number;
+use splatref::report::page::PALETTE;
 use splatref::report::{VerdictReport, page};
 use splatref::study::chart::escaped;
 use splatref::study::report::page::{filled, inline};
@@ -59,7 +60,7 @@ pub(super) fn html(tried: &Tried, path: &Path, command: &str) -> Result<String> 
     let summary = tried.report.summary();
     let texts = [
         ("title", escaped(&format!("splatref conformance {method}"))),
-        ("style", include_str!("page.css").to_owned()),
+        ("style", [PALETTE, include_str!("page.css")].concat()),
         ("command", escaped(command)),
         ("summary", escaped(&summary.join("\n"))),
         ("rows", body),

@@ -18,6 +18,8 @@ use serde::Serialize;
 use std::io::Write;
 use std::path::Path;
 
+/// The colours of all pages, by day and by night, as a style sheet.
+pub const PALETTE: &str = include_str!("palette.css");
 /// The largest page that is written, in bytes.
 pub const LARGEST: usize = 10_000_000;
 /// How many of the worst pixels of a wrong tab are listed.
@@ -227,7 +229,7 @@ fn html_within(report: &Report, largest: usize, exec: &Exec) -> Result<String> {
             ("title", escaped(&report.title)),
             ("facts", facts.collect()),
             ("about", escaped(&report.about)),
-            ("style", include_str!("page.css").to_owned()),
+            ("style", [PALETTE, include_str!("page.css")].concat()),
             (
                 "script",
                 concat!(include_str!("numbers.js"), "\n", include_str!("page.js")).to_owned(),
