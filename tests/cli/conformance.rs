@@ -175,10 +175,13 @@ fn a_wrong_command_is_found_by_the_rules_that_it_breaks() {
     assert!(lines[1].starts_with("low-pass  wrong        visibility in "), "{said}");
     assert!(lines[0].contains("; looks like the low-pass filter has another variance"), "{said}");
     assert_eq!(lines[2], "nothing   right");
-    assert!(lines[3].starts_with("ewa: 1 right, 2 wrong"), "{said}");
+    let mistake = "the low-pass filter has another variance: 0.6 px^2, not 0.25";
+    let common = format!("looks like {mistake}: explains 2 of 2 wrong rules");
+    assert_eq!(lines[3], common);
+    assert!(lines[4].starts_with("ewa: 1 right, 2 wrong"), "{said}");
     let look = "look closer: splatref verify out/conformance/ewa/rim/scene.toml \
                 out/conformance/ewa/rim/client.exr";
-    assert_eq!(lines[4], look);
+    assert_eq!(lines[5], look);
     // The command that it names says the same.
     let words: Vec<&str> = look.split(' ').skip(3).collect();
     assert_eq!(splatref(at.path(), &words).status.code(), Some(1));
@@ -187,11 +190,17 @@ fn a_wrong_command_is_found_by_the_rules_that_it_breaks() {
         serde_json::from_str(&fs::read_to_string(at.path().join("r.json")).unwrap()).unwrap();
     assert_eq!((&json["right"], &json["counts"]["wrong"]), (&false.into(), &2.into()));
     assert_eq!(json["rules"][1]["verdict"]["first_wrong"], "visibility");
+    assert_eq!(json["looks_like"]["mistake"], mistake);
+    assert_eq!(
+        (&json["looks_like"]["explains"], &json["looks_like"]["wrong"]),
+        (&2.into(), &2.into())
+    );
     let schema = Path::new(env!("CARGO_MANIFEST_DIR")).join("docs/conformance.schema.json");
     let schema: Value = serde_json::from_str(&fs::read_to_string(schema).unwrap()).unwrap();
     fits(&json, &schema, "");
     let xml = fs::read_to_string(at.path().join("r.xml")).unwrap();
     assert!(xml.contains("tests=\"4\" failures=\"2\" errors=\"0\""), "{xml}");
+    assert!(xml.contains(&format!("<property name=\"looks like\" value=\"{common}\"/>")), "{xml}");
     assert_eq!(xml.matches("<testcase ").count(), 4, "{xml}");
     assert_eq!(xml.matches("<failure type=\"wrong\" message=\"visibility in ").count(), 2, "{xml}");
 }

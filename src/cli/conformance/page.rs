@@ -42,7 +42,8 @@ pub(super) fn rule(
     if linked {
         let [scene, planes] = command::files(folder);
         let replay = |(x, y)| format!("splatref explain {scene} {x} {y} --client {planes}");
-        let found = (client, &judged.verdict, judged.cause.clone());
+        let likely = judged.likely.as_ref().map(|likely| likely.words.clone());
+        let found = (client, &judged.verdict, likely);
         let page = VerdictReport::new(session, camera, found, &replay)?;
         let page = page.page(session, camera, Number::F32, exec)?;
         page::pending(&folder.join(VERDICT), &page, exec)?.put()?;

@@ -78,7 +78,7 @@ impl Tried {
                 "tests": row.rule.tests,
                 "outcome": row.word(),
                 "why": (!cause.is_empty()).then_some(cause),
-                "looks_like": judged.and_then(|judged| judged.cause.as_ref()),
+                "looks_like": judged.and_then(|judged| Some(&judged.likely.as_ref()?.words)),
                 "sharper": judged.and_then(|judged| judged.sharper.as_ref()),
                 "seconds": seconds,
                 "folder": folder.display().to_string(),
@@ -104,6 +104,11 @@ impl Tried {
             "method": self.report.method,
             "command": command,
             "right": self.report.is_right(),
+            "looks_like": self.report.common().map(|common| json!({
+                "mistake": common.mistake,
+                "explains": common.explains,
+                "wrong": common.wrong,
+            })),
             "counts": counts.collect::<serde_json::Map<_, _>>(),
             "rules": rules,
             "shifts": shifts,
@@ -127,6 +132,13 @@ impl Tried {
             "<?xml version=\"1.0\" encoding=\"UTF-8\"?>\n<testsuites {counts}>\n\
              <testsuite name=\"splatref conformance {method}\" {counts}>\n"
         );
+        if let Some(common) = self.report.common() {
+            let common = escaped(&common.to_string());
+            let _ = writeln!(
+                xml,
+                "<properties><property name=\"looks like\" value=\"{common}\"/></properties>"
+            );
+        }
         for (row, Run { seconds, .. }) in rows.iter().zip(&self.runs) {
             let (name, why) = (&row.rule.name, escaped(&row.cause()));
             let tag = match row.word() {

@@ -1,12 +1,12 @@
 //! The fields of the records that are wrong, where the client hands its records in.
 
-use super::Case;
 use super::depths::digits;
+use super::{Case, Likely};
 use crate::error::Result;
 use crate::verdict::ewa::WrongField;
 
 /// The name of a mistake, with the fields of the records that are wrong.
-pub(super) fn with(case: &Case<'_, '_>, said: Option<String>) -> Result<Option<String>> {
+pub(super) fn with(case: &Case<'_, '_>, said: Option<Likely>) -> Result<Option<Likely>> {
     if case.wrong.stage != "projection" {
         return Ok(said);
     }
@@ -16,7 +16,10 @@ pub(super) fn with(case: &Case<'_, '_>, said: Option<String>) -> Result<Option<S
     let named = fields.iter().filter(|field| 20 * field.wrong >= most);
     let fields: Vec<String> = named.map(in_words).collect();
     let fields = format!("wrong in the records: {}", fields.join(", "));
-    Ok(Some(said.map_or(fields.clone(), |said| format!("{said}; {fields}"))))
+    Ok(Some(match said {
+        None => fields.into(),
+        Some(said) => Likely { words: format!("{}; {fields}", said.words), ..said },
+    }))
 }
 
 /// A field in words.

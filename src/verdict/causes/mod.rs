@@ -159,15 +159,17 @@ impl Case<'_, '_> {
     }
 
     /// The best explanation in words: two, with their shares, if they explain the same.
-    fn in_words(&self, mut found: Vec<Explanation>) -> Option<String> {
+    fn in_words(&self, mut found: Vec<Explanation>) -> Option<Likely> {
         found.sort_by_key(|one| one.left.all);
+        let mut mistakes: Vec<String> = found.iter().map(|one| one.what.clone()).collect();
+        mistakes.dedup();
         let mut found = found.into_iter();
         let best = found.next()?;
         let near = |other: &Explanation| {
             other.what != best.what && 100 * (other.left.all - best.left.all) <= self.all.all
         };
         let percent = |one: &Explanation| 100.0 * self.share(one.left);
-        Some(match found.find(near) {
+        let words = match found.find(near) {
             Some(other) => format!(
                 "{} (explains {:.1} %), or {} ({:.1} %)",
                 best.what,
@@ -176,7 +178,8 @@ impl Case<'_, '_> {
                 percent(&other)
             ),
             None => best.what,
-        })
+        };
+        Some(Likely { words, mistakes })
     }
 }
 
@@ -205,6 +208,21 @@ impl Wrong {
     }
 }
 
+/// The mistake that a client most probably makes.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Likely {
+    /// The mistake in words: two, with their shares, if they explain the same.
+    pub words: String,
+    /// Every mistake that explains nearly all wrong pixels, the best first.
+    pub mistakes: Vec<String>,
+}
+
+impl From<String> for Likely {
+    fn from(words: String) -> Self {
+        Self { mistakes: vec![words.clone()], words }
+    }
+}
+
 /// The mistake that a client most probably makes, in words; none if no known mistake fits.
 ///
 /// # Errors
@@ -215,6 +233,20 @@ pub fn likely_cause(
     client: &Client,
     verdict: &Verdict,
 ) -> Result<Option<String>> {
+    Ok(likely(session, camera, client, verdict)?.map(|likely| likely.words))
+}
+
+/// The mistake that a client most probably makes, with the others that explain its wrong pixels;
+/// none if no known mistake fits.
+///
+/// # Errors
+/// As [`Session::verify`].
+pub fn likely(
+    session: &Session<'_>,
+    camera: &Camera,
+    client: &Client,
+    verdict: &Verdict,
+) -> Result<Option<Likely>> {
     let Some(wrong) = verdict.first_wrong() else { return Ok(None) };
     // A stage without planes is not judged, so its mistakes show in the first stage that is.
     let before = verdict.stages.iter().take_while(|stage| stage.stage != wrong.stage);
@@ -224,13 +256,13 @@ pub fn likely_cause(
     let (pilot, depths) = (None, OnceCell::new());
     let case = Case { session, camera, client, verdict, wrong, stages, all, pilot, depths };
     if let Some(plain) = plain::plain(&case) {
-        return Ok(Some(plain));
+        return Ok(Some(plain.into()));
     }
     let found = match sample::parts(&case) {
         Some(parts) => sample::confirmed(&case, sample::in_part(&case, &parts, explanations)?)?,
         None => explanations(&case)?,
     };
-    fields::with(&case, case.in_words(found).or_else(|| plain::common(&case)))
+    fields::with(&case, case.in_words(found).or_else(|| plain::common(&case).map(Likely::from)))
 }
 
 /// The mistakes that explain the wrong pixels of a case.

@@ -37,15 +37,17 @@
 //! A case of `deferred` is the first frame of a sequence. So no rule tests what a frame carries to
 //! the next, and none tests the settings `flags` and `share`.
 
+mod common;
 mod report;
 mod rules;
 mod sketch;
 #[cfg(test)]
 mod tests;
 
+pub use common::Common;
 pub use report::{Judged, Report, Row};
 
-use super::causes::likely_cause;
+use super::causes::likely;
 use super::client::Client;
 use super::{StageVerdict, Verdict};
 use crate::error::Result;
@@ -206,9 +208,9 @@ impl Case {
     pub fn judge(&self, client: &Client, budget: f64, exec: &Exec) -> Result<Judged> {
         let session = self.session(exec)?;
         let verdict = session.verify(&self.camera, client, budget)?;
-        let cause = likely_cause(&session, &self.camera, client, &verdict)?;
+        let likely = likely(&session, &self.camera, client, &verdict)?;
         let sharper = self.sharper(&verdict, exec)?;
-        Ok(Judged { verdict, cause, sharper, rounding: client.rounding })
+        Ok(Judged { verdict, likely, sharper, rounding: client.rounding })
     }
 
     /// What to hand in next: of the first stage that is not judged as a whole, the planes or the

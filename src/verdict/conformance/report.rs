@@ -1,8 +1,10 @@
 //! What the suite found: a row for each rule.
 
 use super::Rule;
+use super::common::Common;
 use crate::error::Result;
 use crate::setting::{Word, Words};
+use crate::verdict::causes::Likely;
 use crate::verdict::client::Rounding;
 use crate::verdict::shift::{LIMITS, Shift, Shifts};
 use crate::verdict::{Outcome, Verdict};
@@ -35,7 +37,7 @@ pub struct Judged {
     /// The verdict.
     pub verdict: Verdict,
     /// The mistake that the client most probably makes.
-    pub cause: Option<String>,
+    pub likely: Option<Likely>,
     /// The planes with which the verdict would tell more.
     pub sharper: Option<String>,
     /// What the client promised.
@@ -99,7 +101,7 @@ impl Judged {
             .as_ref()
             .map_or(String::new(), |worst| format!(", at {:?} {}", worst.pixel, worst.fault));
         let cause =
-            self.cause.as_ref().map_or(String::new(), |cause| format!("; looks like {cause}"));
+            self.likely.as_ref().map_or(String::new(), |own| format!("; looks like {}", own.words));
         format!("{} in {pixels}{worst}{cause}", stage.stage)
     }
 }
@@ -162,6 +164,19 @@ impl Report {
         Some((first, 1 + lacking.count()))
     }
 
+    /// The mistake that explains the most wrong rules, if it explains more than one.
+    #[must_use]
+    pub fn common(&self) -> Option<Common> {
+        let judged = self.rows.iter().filter_map(|row| row.judged.as_ref().ok());
+        let wrong: Vec<_> =
+            judged.filter(|judged| judged.verdict.outcome() == Outcome::Wrong).collect();
+        let mistakes = |judged: &&Judged| match &judged.likely {
+            Some(likely) => likely.mistakes.clone(),
+            None => Vec::new(),
+        };
+        Common::new(&wrong.iter().map(mistakes).collect::<Vec<_>>())
+    }
+
     /// The width of the column of rules.
     #[must_use]
     pub fn width(rules: &[Rule]) -> usize {
@@ -185,6 +200,7 @@ impl Report {
                 )
             }));
         }
+        lines.extend(self.common().map(|common| common.to_string()));
         if let Some((planes, rules)) = self.sharper() {
             lines.push(format!("{rules} of the verdicts would tell more with {planes}"));
         }

@@ -131,7 +131,7 @@ fn cause(method: &str, rule: &str) -> Option<String> {
     let rules = Rule::all(method).unwrap();
     let rule = rules.iter().find(|own| own.name == rule).unwrap();
     let (case, broken) = (rule.case(&exec).unwrap(), rule.broken(&exec).unwrap());
-    case.judge(&drawn(&broken, &exec), 1.0, &exec).unwrap().cause
+    case.judge(&drawn(&broken, &exec), 1.0, &exec).unwrap().likely.map(|likely| likely.words)
 }
 
 #[test]

@@ -6,6 +6,7 @@ use splatref::frame::{Exec, Frame};
 use splatref::method::{Method, Session};
 use splatref::verdict::causes::likely_cause;
 use splatref::verdict::client::{Client, Rounding};
+use splatref::verdict::conformance::{self, Renderer, run};
 use splatref::verdict::{Outcome, Verdict};
 
 /// What a client hands in: every plane, or the picture alone.
@@ -200,4 +201,28 @@ fn some_bugs_of_gaussians_are_named() {
     });
     let wrong = misnamed(&named);
     assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// A renderer with a bug.
+struct Seeded(Bug);
+
+impl Renderer for Seeded {
+    fn draw(&mut self, case: &conformance::Case) -> splatref::Result<Client> {
+        let Method::Gaussians(settings) = case.method else { panic!("a rule of Gaussians") };
+        Ok(Client::from(&render(&case.scene, &case.camera, &settings, bug(self.0))))
+    }
+}
+
+/// A scene may have several explanations; the report names the one of most scenes.
+#[test]
+fn a_suite_names_the_mistake_that_explains_its_scenes() {
+    let exec = Exec::new(0, 32).unwrap();
+    let few = ["flat", "needle", "low-pass", "stop", "scale-axes", "linear"];
+    let some = |rule: &conformance::Rule| few.contains(&rule.name.as_str());
+    let report = run("gaussians", &mut Seeded(Bug::LowPassSmall), some, &exec).unwrap();
+    let common = report.common().unwrap_or_else(|| panic!("{report}"));
+    assert!(common.mistake.contains("low-pass"), "{common}");
+    assert!(common.mistake.contains("0.1"), "{common}");
+    assert!(3 * common.explains > 2 * common.wrong, "{report}");
+    assert!(report.summary().contains(&common.to_string()), "{report}");
 }
