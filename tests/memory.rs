@@ -11,10 +11,13 @@
 use glam::{DVec3, Vec3};
 use splatref::frame::{Exec, Samples};
 use splatref::index::grouping::{Extension, Grouping, Rules};
+use splatref::memory::set_limit;
+use splatref::method::gaussians;
 use splatref::method::session::Making;
 use splatref::method::single_pass::{self, DepthTest};
 use splatref::method::{Method, Session};
 use splatref::number::random::unit;
+use splatref::scene::gaussians::{Encoding, GaussianArrays, Gaussians};
 use splatref::scene::{Camera, Cloud, Geometry, Groups, Lens, Motion, Object, Objects, Pose};
 use splatref::scene::{Primitives, Scene, Similarity, Surfels};
 use splatref::source::Shape;
@@ -342,4 +345,52 @@ fn a_picture_takes_what_it_is_said_to() {
         println!("{}, {making:?}: {said} for {taken}, {ratio:.2}", method.name());
         assert!((1.0..6.0).contains(&ratio), "{}, {making:?}: {said} for {taken}", method.name());
     }
+}
+
+/// Splats that all lie in the two tiles of a small picture, whose pixels sort them by themselves. The
+/// least memory with which they are drawn, and what they take.
+fn allowed_and_taken() -> [u64; 2] {
+    const SPLATS: usize = 20_000;
+    let at = |i: usize| [0, 1, 2].map(|k| 0.2 * unit(3, (3 * i + k) as u64) - 0.1);
+    let arrays = GaussianArrays {
+        position: (0..SPLATS).map(|i| Vec3::from_array(at(i))).collect(),
+        scale: vec![Vec3::splat(1.0); SPLATS],
+        rotation: vec![[0.0, 0.0, 0.0, 1.0]; SPLATS],
+        opacity: vec![0.005; SPLATS],
+        degree: 0,
+        harmonics: vec![Vec3::ZERO; SPLATS],
+        encoding: Encoding::Srgb,
+    };
+    let scene = Scene::of_gaussians("heap", Gaussians::new(arrays).expect("splats").0);
+    let pose = Pose { eye: DVec3::new(0.0, 0.0, 4.0), target: DVec3::ZERO, up: DVec3::Y };
+    let camera = Camera::new(64, 32, pose, Lens::FieldOfView(10.0)).expect("a camera");
+    let settings =
+        gaussians::Settings { order: gaussians::Order::Pixel, ..gaussians::Settings::default() };
+    let exec = Exec::new(2, 32).expect("threads");
+    let mut session = Session::new(&scene, settings.into(), &exec).expect("a session");
+    let [before, held] = ["VmHWM", "VmRSS"].map(|key| status(key).expect("a size"));
+    let mut allowed = session.needs(&camera, Making::Render) / 2;
+    loop {
+        set_limit(held + allowed);
+        if session.render(&camera).is_ok() {
+            return [allowed, status("VmHWM").expect("a peak") - before];
+        }
+        allowed += allowed / 16;
+    }
+}
+
+/// As a picture: lists of fragments that each pixel sorts by itself are asked for.
+#[test]
+fn lists_of_fragments_take_what_they_are_said_to() {
+    const LISTS: &str = "SPLATREF_MEMORY_LISTS";
+    if std::env::var(LISTS).is_ok() {
+        let [allowed, taken] = allowed_and_taken();
+        println!("\nmemory {allowed} {taken}");
+        return;
+    }
+    let test = "lists_of_fragments_take_what_they_are_said_to";
+    let [allowed, taken] = in_a_process(test, (LISTS, "1"));
+    let ratio = allowed as f64 / taken as f64;
+    println!("lists: {allowed} for {taken}, {ratio:.2}");
+    assert!((1.0..6.0).contains(&ratio), "{allowed} for {taken}");
 }

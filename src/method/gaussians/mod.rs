@@ -98,7 +98,7 @@ impl Algorithm for Settings {
     }
 
     fn draw(&self, job: &Job<'_>, (): &mut (), pool: &mut Pool) -> Result<Picture<f32>> {
-        Ok(fast::draw(job, self, pool))
+        fast::draw(job, self, pool)
     }
 
     fn stage<R: Exact>(

@@ -105,6 +105,12 @@ impl<R: Exact> Splats<R> {
         (at >> self.shift, at & ((1 << self.shift) - 1))
     }
 
+    /// How many splats may touch the tile that most may touch.
+    pub(crate) fn most_in_a_tile(&self, grid: &Grid) -> usize {
+        let count = |tile| self.bins.iter().map(|(_, bins)| bins.count(tile)).sum();
+        (0..grid.len()).map(count).max().unwrap_or(0)
+    }
+
     /// The places of the splats that may touch a rectangle in a tile, in their order.
     pub(crate) fn places(&self, tile: usize, rect: Rect) -> Vec<usize> {
         let mut places = Vec::new();

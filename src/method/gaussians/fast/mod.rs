@@ -12,7 +12,9 @@ use super::order::Splats;
 use super::picture::{self, display};
 use super::splats::Source;
 use super::{Order, Settings, planes};
+use crate::error::Result;
 use crate::frame::{Grid, NO_ID, NamedPlane, Plane, Pool, TileMut};
+use crate::memory;
 use crate::method::Job;
 use crate::method::buffer_formats::Buffers;
 use crate::method::fast::store::{clear_plane, store_plane};
@@ -20,9 +22,12 @@ use crate::method::picture::{Clock, Picture};
 use blending::{Block, Blocks};
 
 /// Draws the picture.
-pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Picture<f32> {
+///
+/// # Errors
+/// [`crate::Error::Invalid`] if the process may not hold the lists of pixels with orders of their own.
+pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
     if job.buffers != Buffers::F32 {
-        return picture::define(job, settings, false);
+        return Ok(picture::define(job, settings, false));
     }
     let mut clock = Clock::default();
     let source = Source::<f32>::new(job.scene, job.camera, settings);
@@ -31,6 +36,13 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Pictu
     let grid = if own { job.grid() } else { job.strips() };
     let splats = Splats::new(job, &grid, &source);
     clock.lap(planes::STAGES[0].name);
+    if own {
+        let (tiles, most) = (grid.len() as u64, splats.most_in_a_tile(&grid) as u64);
+        let at_once = tiles.min(job.exec.threads() as u64);
+        memory::ask(at_once * most * own_order::BYTES_A_SPLAT, || {
+            format!("a tile of {most} splats, which each pixel sorts by itself,")
+        })?;
+    }
     let rules = Rules::new(settings);
     let blending = Blending { source, splats: &splats, rules, buffers: Buffers::F32 };
     let mut target = Target::new(job.size(), pool);
@@ -56,7 +68,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Pictu
     left.extend(shown);
     clock.lap(planes::STAGES[2].name);
     let (frame, timings) = (job.frame(left), clock.into_laps());
-    Picture { frame, tally: splats.tally, timings, seen: None }
+    Ok(Picture { frame, tally: splats.tally, timings, seen: None })
 }
 
 /// The planes of blending.

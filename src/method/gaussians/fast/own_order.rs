@@ -28,6 +28,11 @@ struct Near {
     place: u32,
 }
 
+/// The most bytes that a splat takes while its tile is blended: itself, and a fragment in each pixel
+/// of a block. A list that grows has up to twice the room that it needs.
+pub(super) const BYTES_A_SPLAT: u64 =
+    (size_of::<Near>() + 2 * LANES * size_of::<Fragment>()) as u64;
+
 /// The blocks of a tile.
 pub(super) fn blend(blending: &Blending<'_, f32>, places: &[usize], rect: Rect) -> Vec<Block> {
     let splats = blending.splats;
