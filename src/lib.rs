@@ -231,6 +231,8 @@
 //! - \[GBP04\] Guennebaud, Barthe, Paulin: Deferred Splatting, Eurographics 2004.
 //! - \[GP03\] Guennebaud, Paulin: Efficient screen space approach for hardware accelerated surfel
 //!   rendering, VMV 2003.
+//! - \[HYCGG24\] Huang, Yu, Chen, Geiger, Gao: 2D Gaussian Splatting for Geometrically Accurate
+//!   Radiance Fields, SIGGRAPH 2024.
 //! - \[Lei79\] Leighton: A Graph Coloring Algorithm for Large Scheduling Problems, J. Res. NBS 84,
 //!   1979.
 //! - \[Mam89\] Mammen: Transparency and Antialiasing Algorithms, IEEE CG&A 9(4), 1989.

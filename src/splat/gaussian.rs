@@ -1,7 +1,7 @@
 //! Project one Gaussian: the specification of its ellipse on the screen.
 //!
 //! All programs that draw 3D Gaussians share these formulas; what they do differently is a
-//! [`GaussianKernel`]. A symmetric matrix is written by its upper triangle, row by row: (xx, xy, xz,
+//! [`GaussianKernel`]. Programs that draw 2D Gaussians meet discs with rays: [`mod@super::ray_disc`]. A symmetric matrix is written by its upper triangle, row by row: (xx, xy, xz,
 //! yy, yz, zz). Products associate as the parentheses say; where there are none, from the left.
 //!
 //! **Shape**, in the world. Of a Gaussian with the unit quaternion (x, y, z, w) and the standard
@@ -62,6 +62,7 @@
 //! Real-Time Radiance Field Rendering*, 2023.
 
 use super::View;
+use super::ray_disc::{DiscRule, RayRules};
 use crate::number::{MapInline, Real, Vector2, Vector3};
 use crate::scene::{Gaussians, Surfels};
 use crate::setting::Words;
@@ -106,6 +107,8 @@ impl Words for Compensation {
 /// What programs do differently when they project a Gaussian.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct GaussianKernel {
+    /// Whether discs are ellipses, or meet the rays of the pixels.
+    pub disc: DiscRule,
     /// The depth up to which nothing is seen, in world units; 0: the camera's near plane.
     pub near: f32,
     /// See [`Clamp`].
@@ -177,7 +180,7 @@ impl<R: Real> GaussianShape<R> {
 
 /// The rows of the rotation of a unit quaternion (x, y, z, w).
 #[inline(always)]
-fn rotation<R: Real>([x, y, z, w]: [R; 4]) -> [[R; 3]; 3] {
+pub(super) fn rotation<R: Real>([x, y, z, w]: [R; 4]) -> [[R; 3]; 3] {
     let two = R::from_f32(2.0);
     let diagonal = |a: R, b: R| R::ONE - two * (a * a + b * b);
     [
@@ -254,6 +257,8 @@ pub struct GaussianProjector<R> {
     limits: Option<[[R; 2]; 2]>,
     low_pass: R,
     compensation: Compensation,
+    /// What the discs share that meet rays.
+    pub(crate) rays: RayRules<R>,
 }
 
 impl<R: Real> GaussianProjector<R> {
@@ -275,9 +280,11 @@ impl<R: Real> GaussianProjector<R> {
             }
         };
         let limits = [side(view.width, view.fx, view.cx), side(view.height, view.fy, view.cy)];
+        let near = if kernel.near == 0.0 { view.near } else { R::from_f32(kernel.near) };
         Self {
             frame: [row(0), -row(1), -row(2)],
-            near: if kernel.near == 0.0 { view.near } else { R::from_f32(kernel.near) },
+            near,
+            rays: RayRules::new(kernel, near),
             limits: (kernel.clamp != Clamp::None && view.perspective).then_some(limits),
             low_pass: R::from_f32(kernel.low_pass),
             compensation: kernel.compensation,
@@ -295,6 +302,14 @@ impl<R: Real> GaussianProjector<R> {
         let [x, y, z] = self.frame;
         let (ax, ay, az) = (times(x), times(y), times(z));
         [x.dot(ax), x.dot(ay), x.dot(az), y.dot(ay), y.dot(az), z.dot(az)]
+    }
+
+    /// A direction of the world in the camera frame.
+    #[inline(always)]
+    #[must_use]
+    pub(super) fn direction(&self, v: Vector3<R>) -> Vector3<R> {
+        let [x, y, z] = self.frame;
+        Vector3::new(x.dot(v), y.dot(v), z.dot(v))
     }
 
     /// The centre in the camera frame.

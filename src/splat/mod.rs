@@ -26,6 +26,7 @@ pub mod frustum;
 pub mod gaussian;
 pub mod project;
 mod projector;
+pub mod ray_disc;
 pub mod record;
 pub mod settings;
 mod shape;

@@ -43,6 +43,32 @@ fn a_file_is_described_with_its_convention() {
 }
 
 #[test]
+fn a_file_of_discs_names_its_preset_and_is_explained() {
+    let at = TempDir::new().unwrap();
+    write(&at.path().join("g.ply"), &ROWS);
+    let text = fs::read_to_string(at.path().join("g.ply")).unwrap();
+    // The file of a program that trains discs lacks the third scale.
+    let text = text.replace("property float scale_2\n", "").replace(" -3 1", " 1");
+    let text = text.replace("-2 -2 -2", "-2 -2").replace("-1 -1 -2.5", "-1 -1");
+    fs::write(at.path().join("d.ply"), text).unwrap();
+    let said = succeeds(at.path(), &["info", "d.ply"]);
+    assert!(said.contains("the third scale is 0") && said.contains("--preset 2dgs"), "{said}");
+    let view = ["--method", "gaussians", "--eye", "0.5,0.5,4", "--size", "24x16"];
+    let all = |first: &[&'static str]| [first, &view[..], &["--preset", "2dgs"]].concat();
+    succeeds(at.path(), &all(&["render", "d.ply", "-o", "p.exr"]));
+    let said = succeeds(at.path(), &all(&["verify", "d.ply", "p.exr"]));
+    assert!(said.contains("\nright"), "{said}");
+    let said = succeeds(at.path(), &all(&["explain", "d.ply", "12", "8"]));
+    assert!(
+        said.contains("  u ") && said.contains(", rho3d ") && said.contains(", rho2d "),
+        "{said}"
+    );
+    let line =
+        fails(at.path(), &[&all(&["render", "d.ply"])[..], &["--clamp", "none"]].concat(), 2);
+    assert!(line.contains("`clamp` has no effect with discs that meet rays; remove it"), "{line}");
+}
+
+#[test]
 fn a_scene_file_moves_them() {
     let at = TempDir::new().unwrap();
     write(&at.path().join("g.ply"), &ROWS);

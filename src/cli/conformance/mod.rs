@@ -49,7 +49,7 @@ pub(super) struct Args {
     /// The method
     #[arg(value_parser = method)]
     method: &'static str,
-    /// Choose a preset of the method's settings: for gaussians khr, inria, gsplat, mip or exact
+    /// Choose a preset of the method's settings: for gaussians khr, inria, gsplat, mip, exact or 2dgs
     #[arg(long, value_name = "NAME")]
     preset: Option<String>,
     /// Run this command for each scene; without it, only write the scenes

@@ -26,7 +26,9 @@
 //! | `f_dc_0 f_dc_1 f_dc_2` | red, green and blue of the first coefficient |
 //! | `f_rest_0` ... | the other coefficients: all of red, then all of green, then all of blue. 0, 9, 24 or 45 properties give degree 0, 1, 2 or 3 |
 //!
-//! - Without `scale_2`, the Gaussians are discs: the third scale is 0.
+//! - Without `scale_2`, the Gaussians are discs: the third scale is 0. `Decided:` the file chooses no
+//!   setting. The reader says in [`GaussianFile::convention`] that the preset `2dgs` draws them as the
+//!   program does that trains them; the others draw flat ellipsoids.
 //! - `exp` is the correctly rounded `f32` if the file's number is one; otherwise it is computed in f64 and
 //!   rounded once. Opacities are computed in f64, operation by operation as written, and rounded once.
 //! - All colours are encoded as [sRGB](crate::scene::gaussians::Encoding::Srgb), because the programs train

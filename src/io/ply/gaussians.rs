@@ -283,7 +283,8 @@ impl Rows {
         } else {
             "PLY of 3D Gaussians: log scales, logit opacities"
         };
-        let convention = format!("{what}, quaternion w first");
+        let hint = if places.flat { "; draw it with --preset 2dgs" } else { "" };
+        let convention = format!("{what}, quaternion w first{hint}");
         Ok(GaussianFile { arrays, offset, convention, warnings })
     }
 }

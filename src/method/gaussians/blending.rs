@@ -1,7 +1,7 @@
 //! Blend the fragments of a pixel from front to back.
 
 use super::order::Splats;
-use super::splats::{GaussianSplat, Solid, Source};
+use super::splats::{Beside, GaussianSplat, Solid, Source};
 use super::{Order, Settings, Support};
 use crate::composite::decide;
 use crate::composite::under::Under;
@@ -12,6 +12,7 @@ use crate::method::tiled::pixels;
 use crate::number::real::ordered_f64;
 use crate::number::{Exact, Real};
 use crate::splat::gaussian::ProjectedGaussian;
+use crate::splat::ray_disc::RayFragment;
 
 /// A pixel after blending.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -78,6 +79,8 @@ pub(crate) struct GaussianFragment<R: Real> {
     pub(crate) power: R,
     /// alpha.
     pub(crate) alpha: R,
+    /// The depth.
+    pub(crate) depth: R,
     /// Whether it is in reach: 0 <= q/2, and within the cut-off if there is one.
     pub(crate) inside: R::Truth,
     /// Whether alpha is not too small.
@@ -113,12 +116,6 @@ impl<R: Real> Rules<R> {
         }
     }
 
-    /// The fragment of a splat at a pixel within its bounds.
-    #[inline(always)]
-    pub(crate) fn fragment(&self, splat: &GaussianSplat<R>, at: (u32, u32)) -> GaussianFragment<R> {
-        self.with_power(splat, ProjectedGaussian::power(splat.center, splat.conic, at))
-    }
-
     /// The fragment of a splat where q/2 is this.
     #[inline(always)]
     pub(crate) fn with_power(&self, splat: &GaussianSplat<R>, power: R) -> GaussianFragment<R> {
@@ -126,7 +123,18 @@ impl<R: Real> Rules<R> {
         let reaches = power.ge(R::ZERO);
         let inside = self.limit.map_or(reaches, |limit| reaches & decide::inside(power, limit));
         let dense = if self.all { true.into() } else { decide::dense(alpha, self.least) };
-        GaussianFragment { power, alpha, inside, dense }
+        GaussianFragment { power, alpha, depth: splat.depth, inside, dense }
+    }
+
+    /// The fragment of a disc that met a ray.
+    #[inline(always)]
+    pub(crate) fn of_disc(
+        &self,
+        splat: &GaussianSplat<R>,
+        own: &RayFragment<R>,
+    ) -> GaussianFragment<R> {
+        let fragment = self.with_power(splat, R::from_f32(0.5) * own.rho);
+        GaussianFragment { depth: own.depth, inside: fragment.inside & own.met, ..fragment }
     }
 
     /// Whether blending ends before a fragment that leaves this transmittance.
@@ -151,8 +159,8 @@ pub(crate) struct Blending<'a, R> {
     pub(crate) buffers: Buffers,
 }
 
-/// A splat at a pixel: its place in the list, its fragment, and the depth that orders it.
-pub(crate) type Listed<R> = (usize, GaussianFragment<R>, R);
+/// A splat at a pixel: its place in the list, and its fragment.
+type Listed<R> = (usize, GaussianFragment<R>);
 
 impl<R: Exact> Blending<'_, R> {
     /// The pixels of a rectangle in a tile, row by row.
@@ -171,35 +179,34 @@ impl<R: Exact> Blending<'_, R> {
     ) -> GaussianPixel<R> {
         let mut pixel = GaussianPixel::EMPTY;
         let mut done = false;
-        let mut draw = |&(place, fragment, depth): &Listed<R>| {
+        let mut draw = |&(place, fragment): &Listed<R>| {
             let splat = self.splats.at(place);
             done = done || self.rules.ends(pixel.blend.through * (R::ONE - fragment.alpha));
             let weight = pixel.blend.through * fragment.alpha;
             each(place, &fragment, (!done).then_some(weight));
             if !done {
-                pixel = self.add(pixel, splat, fragment.alpha, depth);
+                pixel = self.add(pixel, splat, fragment.alpha, fragment.depth);
             }
             !done
         };
         if self.source.settings.order == Order::Pixel {
             let mut listed = Vec::new();
             for &place in places {
-                let splat = self.splats.at(place);
-                if let Some(fragment) = self.drawn(splat, at) {
-                    let Solid { place: center, adjugate } = self.splats.solid(place);
+                let Some(mut fragment) = self.drawn(place, at) else { continue };
+                if let Some(Beside::Solid(solid)) = self.splats.beside(place) {
+                    let Solid { place: center, adjugate } = solid;
                     let ray = self.source.projector.ray(at);
-                    let depth = self.source.projector.deepest(adjugate, *center, ray);
-                    listed.push((place, fragment, depth));
+                    fragment.depth = self.source.projector.deepest(adjugate, *center, ray);
                 }
+                listed.push((place, fragment));
             }
             // Stable, so that ties stay in the order of the indices.
-            listed.sort_by_key(|(.., depth)| ordered_f64(depth.to_f64()));
+            listed.sort_by_key(|(_, fragment)| ordered_f64(fragment.depth.to_f64()));
             listed.iter().all(&mut draw);
         } else {
             for &place in places {
-                let splat = self.splats.at(place);
-                let fragment = self.drawn(splat, at);
-                if fragment.is_some_and(|fragment| !draw(&(place, fragment, splat.depth))) {
+                let fragment = self.drawn(place, at);
+                if fragment.is_some_and(|fragment| !draw(&(place, fragment))) {
                     break;
                 }
             }
@@ -209,13 +216,28 @@ impl<R: Exact> Blending<'_, R> {
 
     /// The fragment of a splat, if it takes part.
     #[inline(always)]
-    fn drawn(&self, splat: &GaussianSplat<R>, (x, y): (u32, u32)) -> Option<GaussianFragment<R>> {
-        let Rect { x0, y0, x1, y1 } = splat.bounds;
+    fn drawn(&self, place: usize, (x, y): (u32, u32)) -> Option<GaussianFragment<R>> {
+        let Rect { x0, y0, x1, y1 } = self.splats.at(place).bounds;
         if x < x0 || x >= x1 || y < y0 || y >= y1 {
             return None;
         }
-        let fragment = self.rules.fragment(splat, (x, y));
+        let fragment = self.fragment(place, (x, y));
         (fragment.inside && fragment.dense).then_some(fragment)
+    }
+
+    /// The fragment of a splat at a pixel within its bounds.
+    #[inline(always)]
+    pub(crate) fn fragment(&self, place: usize, at: (u32, u32)) -> GaussianFragment<R> {
+        let splat = self.splats.at(place);
+        match self.splats.beside(place) {
+            Some(Beside::Disc(disc)) => {
+                self.rules.of_disc(splat, &disc.fragment(&self.source.projector.rays, at))
+            }
+            _ => {
+                let power = ProjectedGaussian::power(splat.center, splat.conic, at);
+                self.rules.with_power(splat, power)
+            }
+        }
     }
 
     /// The pixel with one more fragment.

@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::method::Job;
 use crate::method::decisions::Place;
 use crate::number::{Exact, MapInline, Real};
+use crate::splat::ray_disc::{RayDisc, RayFragment};
 use std::fmt;
 
 /// The replay of one pixel.
@@ -33,6 +34,8 @@ pub struct FragmentAt<R: Real> {
     /// The colour before it is bounded, and as it is blended.
     look: ([R; 3], [R; 3]),
     fragment: GaussianFragment<R>,
+    /// If discs meet the rays of pixels.
+    met: Option<RayFragment<R>>,
 }
 
 /// Replays blending at one pixel.
@@ -54,7 +57,8 @@ pub fn explain<R: Exact>(
         let index = splats.at(place).index;
         let projected = source.project(index as usize);
         let look = source.look(index as usize, &projected.shape);
-        FragmentAt { index, weight, projected, look, fragment: *fragment }
+        let met = projected.disc.map(|disc| disc.fragment(&source.projector.rays, pixel));
+        FragmentAt { index, weight, projected, look, fragment: *fragment, met }
     };
     let (mut drawn, mut seen) = (Vec::new(), vec![false; places.len()]);
     let pixel_after = blending.pixel(&places, pixel, |place, fragment, weight| {
@@ -64,8 +68,7 @@ pub fn explain<R: Exact>(
         drawn.push(at(place, fragment, weight));
     });
     let skipped = places.iter().zip(&seen).filter(|(_, seen)| !**seen);
-    let skipped =
-        skipped.map(|(&place, _)| at(place, &rules.fragment(splats.at(place), pixel), None));
+    let skipped = skipped.map(|(&place, _)| at(place, &blending.fragment(place, pixel), None));
     let fragments = drawn.iter().cloned().chain(skipped).collect();
     Ok(GaussianReplay { pixel, fragments, pixel_after, rules })
 }
@@ -101,7 +104,7 @@ impl<R: Exact> FragmentAt<R> {
     /// Writes how the splat was projected.
     fn fmt_projection(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let n = |value: R| value.to_f64();
-        let Projected { on_screen, opacity, alpha, distance, .. } = &self.projected;
+        let Projected { on_screen, opacity, alpha, distance, disc, .. } = &self.projected;
         let (raw, color) = self.look;
         writeln!(f, "\nsplat {}", self.index)?;
         writeln!(
@@ -112,18 +115,24 @@ impl<R: Exact> FragmentAt<R> {
             n(on_screen.center.x),
             n(on_screen.center.y)
         )?;
-        writeln!(
-            f,
-            "  V0 {:?}, V {:?} px^2, conic {:?}",
-            on_screen.unfiltered.map_inline(n),
-            on_screen.ellipse.map_inline(n),
-            on_screen.conic.map_inline(n)
-        )?;
+        if let Some(RayDisc { filter, images: [a, b], divisor: w, .. }) = *disc {
+            let axes = [a.x, a.y, b.x, b.y].map_inline(|image| n(image / w));
+            writeln!(f, "  filter about ({}, {}), axes {axes:?} px", n(filter.x), n(filter.y))?;
+        } else {
+            writeln!(
+                f,
+                "  V0 {:?}, V {:?} px^2, conic {:?}",
+                on_screen.unfiltered.map_inline(n),
+                on_screen.ellipse.map_inline(n),
+                on_screen.conic.map_inline(n)
+            )?;
+        }
+        let factor = if disc.is_some() { R::ONE } else { on_screen.compensation };
         writeln!(
             f,
             "  opacity {} x compensation {} = {}, harmonics {:?}, colour {:?}",
             n(*opacity),
-            n(on_screen.compensation),
+            n(factor),
             n(*alpha),
             raw.map_inline(n),
             color.map_inline(n)
@@ -133,7 +142,14 @@ impl<R: Exact> FragmentAt<R> {
     /// Writes the decisions on its fragment.
     fn fmt_decisions(&self, f: &mut fmt::Formatter<'_>, rules: &Rules<R>) -> fmt::Result {
         let n = |value: R| value.to_f64();
-        let GaussianFragment { power, alpha, inside, dense } = self.fragment;
+        let GaussianFragment { power, alpha, inside, dense, .. } = self.fragment;
+        if let Some(RayFragment { at: [u, v], rho3d, rho2d, depth, met, .. }) = self.met {
+            let (u, v, rho3d, rho2d) = (n(u), n(v), n(rho3d), n(rho2d));
+            writeln!(f, "  u {u}, v {v}, rho3d {rho3d}, rho2d {rho2d}, depth {}", n(depth))?;
+            if !met {
+                return writeln!(f, "  the ray meets no part of the disc: skipped");
+            }
+        }
         write!(f, "  q/2 {}", n(power))?;
         if !inside {
             let limit = rules.limit.map_or(f64::INFINITY, n);

@@ -5,8 +5,12 @@
 //! colour, without light, and from both sides.
 //!
 //! Programs share the formulas and differ in details. Each detail is a setting, and
-//! [`Settings::KHR`], [`Settings::INRIA`], [`Settings::GSPLAT`], [`Settings::MIP`] and
-//! [`Settings::EXACT`] are presets of all of them.
+//! [`Settings::KHR`], [`Settings::INRIA`], [`Settings::GSPLAT`], [`Settings::MIP`],
+//! [`Settings::EXACT`] and [`Settings::DISCS`] are presets of all of them.
+//!
+//! With [`DiscRule::Ray`] or [`DiscRule::RayBox`] the splats are discs instead: surfels, and Gaussians
+//! without their third axis. The rays of the pixels meet their planes, see
+//! [`mod@crate::splat::ray_disc`].
 //!
 //! # Stages
 //!
@@ -19,19 +23,29 @@
 //!      its length again. The colour is bounded ([`ColorBounds`]), then put into the space of
 //!      blending ([`BlendSpace`]). A surfel without a colour has
 //!      [`Phong::color`](crate::scene::Phong::color).
-//!    - o = opacity times compensation.
-//!    - Bounds, in f64 from the numbers of this arithmetic: the pixels whose centres are within e of
+//!    - o = opacity times compensation. That of a disc is its opacity.
+//!    - Bounds of an ellipse, in f64 from the numbers of this arithmetic: the pixels whose centres are within e of
 //!      the centre, with e as [`Support`] says; under `ellipse` e = k sqrt(Vxx) (1 + 2^-10) + 1 px, and
 //!      so for y. If [`Settings::least_alpha`] is above 0, also within e = sqrt(2 ln(o / least) Vxx)
 //!      (1 + 2^-10) + 1, beyond which alpha is less; there are none if o is less than it. The 1 and
 //!      the factor exceed what rounding moves the rim of a splat that is not extremely thin.
 //!      `Decided:` a pixel out of bounds has no fragment, even where its rounded q says otherwise.
+//!    - Bounds of a disc, in f64 from the numbers of this arithmetic, with r rounded to f32. `Around`
+//!      r standard deviations are the pixels whose centres are within sqrt(E) (1 + 2^-10) + 1 px of M,
+//!      E and M of the box of r; those within r sqrt(h) (1 + 2^-10) + 1 px of F; and the rectangle
+//!      about both. It is the picture if the box does not exist. Under `ellipse` the bounds are those
+//!      around k. If the least alpha is above 0, also those around sqrt(2 ln(o / least)). Under
+//!      `tiles`, E and M are of the box of k, and e = ceil(max(sqrt(max(0.0001, Ex)), sqrt(max(0.0001,
+//!      Ey)), k sqrt(h))) about M in the tiles that [`Support::Tiles`] says; under `boxes`, E and M are
+//!      of the box of 1, and e = ceil(k sqrt(max(0.0001, E))) for x and for y. They are the picture
+//!      if a number of the box is not finite.
 //! 2. **Order** ([`Order`]): ascending, ties to the lower index. The depth of a fragment is t of the
-//!    centre of its splat, whatever the order; only under `pixel` it is the depth along the ray.
+//!    centre of its splat, whatever the order; only under `pixel` it is the depth along the ray. A disc
+//!    has the depth of its fragment at each pixel, under every order.
 //! 3. **Blending**, at each pixel from front to back with T = 1 at first. Of each splat whose bounds
 //!    hold the pixel:
-//!    - q/2, see [`power`](crate::splat::gaussian::ProjectedGaussian::power). A fragment with q/2 < 0
-//!      is skipped. Under `ellipse` one is skipped unless q/2 <= (k k) / 2.
+//!    - q/2, see [`power`](crate::splat::gaussian::ProjectedGaussian::power); of a disc, 1/2 rho. A
+//!      fragment with q/2 < 0 is skipped, and one of a disc that the ray does not meet. Under `ellipse` one is skipped unless q/2 <= (k k) / 2.
 //!    - alpha = the lesser of o e^(-q/2) and [`Settings::most_alpha`]. A fragment is skipped unless
 //!      alpha >= [`Settings::least_alpha`].
 //!    - T' = T (1 - alpha). If T' < [`Settings::stop`] (or T' = it, with [`Settings::stop_at`]), the
@@ -56,10 +70,13 @@
 //! - Overlapping Gaussians are blended as if one were in front of the other.
 //!
 //! [`Clamp`]: crate::splat::gaussian::Clamp
+//! [`DiscRule::Ray`]: crate::splat::ray_disc::DiscRule::Ray
+//! [`DiscRule::RayBox`]: crate::splat::ray_disc::DiscRule::RayBox
 //!
 //! What a right implementation may leave of each stage: [`crate::verdict::gaussians`].
 
 pub(crate) mod blending;
+pub(crate) mod bounds;
 pub mod explain;
 mod fast;
 mod order;

@@ -1,7 +1,7 @@
 //! Put all splats of a picture in order, and sort them into tiles.
 
 use super::Order;
-use super::splats::{GaussianSplat, Solid, Source};
+use super::splats::{Beside, GaussianSplat, Source};
 use crate::frame::{Bins, Exec, Grid, Rect};
 use crate::method::Job;
 use crate::method::prepare::batch_size;
@@ -28,14 +28,13 @@ pub(crate) struct Splats<R> {
 #[derive(Debug)]
 struct Batch<R> {
     splats: Vec<GaussianSplat<R>>,
-    /// Beside each splat, if each pixel has its own order.
-    solids: Vec<Solid<R>>,
+    /// Beside each splat, if it needs more; else nothing.
+    beside: Vec<Beside<R>>,
 }
 
 impl<R: Exact> Batch<R> {
     /// The splats of a run of items, and what became of all of them.
     fn new(job: &Job<'_>, source: &Source<'_, R>, range: Range<usize>) -> (Self, Tally) {
-        let own = source.settings.order == Order::Pixel;
         let (mut splats, mut tally) = (Vec::with_capacity(range.len()), Tally::default());
         for i in range {
             let (splat, fate) = source.splat(i);
@@ -47,9 +46,9 @@ impl<R: Exact> Batch<R> {
         if source.settings.order != Order::Steps {
             job.keep_touching(&mut splats, |splat| splat.bounds);
         }
-        let solid = |splat: &GaussianSplat<R>| source.solid(splat.index as usize);
-        let solids = if own { splats.iter().map(solid).collect() } else { Vec::new() };
-        (Self { splats, solids }, tally)
+        let beside = |splat: &GaussianSplat<R>| source.beside(splat.index as usize);
+        let beside = splats.iter().map_while(beside).collect();
+        (Self { splats, beside }, tally)
     }
 }
 
@@ -92,11 +91,11 @@ impl<R: Exact> Splats<R> {
         &self.batches[batch].splats[i]
     }
 
-    /// The same splat in the camera frame, if each pixel has its own order.
+    /// What its fragments need beside it, if anything.
     #[inline(always)]
-    pub(crate) fn solid(&self, place: usize) -> &Solid<R> {
+    pub(crate) fn beside(&self, place: usize) -> Option<&Beside<R>> {
         let (batch, i) = self.split(place);
-        &self.batches[batch].solids[i]
+        self.batches[batch].beside.get(i)
     }
 
     #[inline(always)]

@@ -3,6 +3,7 @@
 use crate::error::{Error, Result};
 use crate::setting::{Field, Fields, Slot, Visit, Words};
 use crate::splat::gaussian::{Clamp, Compensation, GaussianKernel};
+use crate::splat::ray_disc::DiscRule;
 
 /// The settings of the method; each of them may change the picture.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -121,6 +122,7 @@ impl Words for Settings {
         ("gsplat", Self::GSPLAT),
         ("mip", Self::MIP),
         ("exact", Self::EXACT),
+        ("2dgs", Self::DISCS),
     ];
 
     fn is(&self, other: &Self) -> bool {
@@ -135,6 +137,7 @@ impl Settings {
     /// The original program of 2023, as its CUDA rasterizer draws.
     pub const INRIA: Self = Self {
         kernel: GaussianKernel {
+            disc: DiscRule::Projected,
             near: 0.2,
             clamp: Clamp::Fov,
             low_pass: 0.3,
@@ -198,6 +201,18 @@ impl Settings {
         ..Self::INRIA
     };
 
+    /// The program of 2D Gaussian splatting (Huang et al. 2024): the original program, but for discs
+    /// that meet the rays of pixels.
+    pub const DISCS: Self = Self {
+        kernel: GaussianKernel { disc: DiscRule::RayBox, low_pass: 0.5, ..Self::INRIA.kernel },
+        ..Self::INRIA
+    };
+
+    /// Whether discs meet the rays of pixels.
+    pub(crate) fn meets_rays(&self) -> bool {
+        self.kernel.disc != DiscRule::Projected
+    }
+
     /// Checks that the numbers are in range.
     ///
     /// # Errors
@@ -240,7 +255,8 @@ impl Default for Settings {
 impl Fields for Settings {
     fn fields(&mut self, each: &mut Visit<'_>) {
         let preset = "choose whose picture it is: the draft of glTF, the original program, gsplat, the \
-                      original with the filter of Mip-Splatting, or what they all approximate";
+                      original with the filter of Mip-Splatting, what they all approximate, or the \
+                      program of 2D Gaussian splatting";
         let mut chosen = *self;
         each(Field::new("preset", preset, Slot::Preset(&mut chosen)));
         *self = chosen;
@@ -253,6 +269,16 @@ impl Settings {
     /// The rows of projection and colour.
     fn shapes(&mut self, each: &mut Visit<'_>) {
         let Self { kernel, degree, bounds, .. } = self;
+        let disc = "draw ellipses of all three axes, or discs that the pixels' rays meet: as in the \
+                    paper of 2D Gaussian splatting, or as in its program";
+        each(Field::new("disc", disc, Slot::Word(&mut kernel.disc)));
+        let rays = kernel.disc != DiscRule::Projected;
+        let (mut other, mut none) = (Self::INRIA.kernel.clamp, Self::INRIA.kernel.compensation);
+        if rays {
+            // What has no effect has its default, so that equal pictures have equal settings.
+            (kernel.clamp, kernel.compensation) = (other, none);
+        }
+        let idle = "with discs that meet rays";
         let near = "drop Gaussians up to this depth; 0 for the camera's near plane";
         each(
             Field::new("near_depth", near, Slot::Number(&mut kernel.near))
@@ -261,7 +287,9 @@ impl Settings {
         );
         let clamp = "bound x/t and y/t in the Jacobian: not at all, to 1.3 times half the field of \
                      view, or to the picture's edges and 0.3 times that beyond";
-        each(Field::new("clamp", clamp, Slot::Word(&mut kernel.clamp)));
+        let slot = Slot::Word(if rays { &mut other } else { &mut kernel.clamp });
+        let field = Field::new("clamp", clamp, slot);
+        each(if rays { field.idle(idle) } else { field });
         let variance = "set the variance of the low-pass filter";
         each(
             Field::new("low_pass", variance, Slot::Number(&mut kernel.low_pass))
@@ -270,7 +298,9 @@ impl Settings {
         );
         let compensation = "multiply opacities by sqrt(det V0 / det V), so that the low-pass filter \
                             adds no light; floor: by 0.005 at least; mip: as Mip-Splatting does";
-        each(Field::new("compensation", compensation, Slot::Word(&mut kernel.compensation)));
+        let slot = Slot::Word(if rays { &mut none } else { &mut kernel.compensation });
+        let field = Field::new("compensation", compensation, slot);
+        each(if rays { field.idle(idle) } else { field });
         let harmonics = "use spherical harmonics up to this degree";
         each(Field::new("degree", harmonics, Slot::Count(degree)).range("0 to 3"));
         let colors = "bound colours before blending: not at all, from 0, or to 0 to 1";

@@ -1,5 +1,6 @@
 //! Project one Gaussian of a scene, and find its colour and the pixels that it may touch.
 
+use super::bounds::{End, TILE};
 use super::{BlendSpace, ColorBounds, Order, Settings, Support};
 use crate::frame::Rect;
 use crate::number::{Exact, MapInline, Real, Vector2, Vector3, elementary, srgb};
@@ -7,6 +8,7 @@ use crate::scene::gaussians::Encoding;
 use crate::scene::{Camera, Gaussians, Scene};
 use crate::shade::harmonics;
 use crate::splat::gaussian::{GaussianProjector, GaussianShape, ProjectedGaussian, Symmetric};
+use crate::splat::ray_disc::{RayDisc, axes_of_gaussian, axes_of_surfel};
 use crate::splat::{Fate, View, batch};
 
 /// A splat that is drawn: all that its fragments need.
@@ -29,6 +31,15 @@ pub(crate) struct GaussianSplat<R> {
     pub(crate) reach: f32,
 }
 
+/// What the fragments of a splat need beside it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Beside<R> {
+    /// For the order of a pixel.
+    Solid(Solid<R>),
+    /// If discs meet the rays of pixels.
+    Disc(RayDisc<R>),
+}
+
 /// The splat in the camera frame, for the order of a pixel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Solid<R> {
@@ -43,7 +54,7 @@ pub(crate) struct Source<'a, R> {
     pub(crate) settings: &'a Settings,
     pub(crate) projector: GaussianProjector<R>,
     eye: Vector3<R>,
-    size: [u32; 2],
+    pub(super) size: [u32; 2],
     /// The space of blending.
     pub(crate) space: Encoding,
 }
@@ -58,6 +69,8 @@ pub(crate) struct Projected<R> {
     pub(crate) alpha: R,
     /// The distance from the camera's centre; t under an orthographic camera.
     pub(crate) distance: R,
+    /// If discs meet the rays of pixels.
+    pub(crate) disc: Option<RayDisc<R>>,
 }
 
 impl<R: Real> Projected<R> {
@@ -67,6 +80,12 @@ impl<R: Real> Projected<R> {
             Order::Depth | Order::Pixel => self.on_screen.place.z,
             Order::Distance | Order::Steps => self.distance,
         }
+    }
+
+    /// Whether the splat has no ellipse, or no disc, in this arithmetic.
+    #[inline(always)]
+    pub(crate) fn degenerate(&self) -> R::Truth {
+        self.disc.map_or_else(|| self.on_screen.degenerate(), |disc| disc.degenerate())
     }
 }
 
@@ -120,8 +139,20 @@ impl<'a, R: Real> Source<'a, R> {
             None => self.scene.surfels.opacity_of(i),
         };
         let opacity = R::from_f32(opacity);
-        let alpha = opacity * on_screen.compensation;
-        Projected { shape, on_screen, opacity, alpha, distance }
+        let disc = self.settings.meets_rays().then(|| self.disc(i));
+        let alpha = if disc.is_some() { opacity } else { opacity * on_screen.compensation };
+        Projected { shape, on_screen, opacity, alpha, distance, disc }
+    }
+
+    /// An item as a disc that meets rays.
+    #[inline]
+    pub(crate) fn disc(&self, i: usize) -> RayDisc<R> {
+        let (surfels, k) = (&self.scene.surfels, self.settings.cutoff);
+        let (position, axes) = match &self.scene.gaussians {
+            Some(gaussians) => (gaussians.position()[i], axes_of_gaussian(gaussians, i)),
+            None => (surfels.position()[i], axes_of_surfel(surfels, i, k)),
+        };
+        self.projector.ray_disc(Vector3::from_glam(position), &axes, k)
     }
 
     /// The colour of an item: in the scene's encoding before it is bounded, and as it is blended.
@@ -200,64 +231,13 @@ impl<'a, R: Real> Source<'a, R> {
         } else {
             f64::INFINITY
         };
-        if support == Support::None { dense } else { dense.at_most(f64::from(cutoff)) }
-    }
-
-    /// The q/2 at which o e^(-q/2) is the least alpha: +inf if that is 0, below 0 if o is less.
-    pub(crate) fn reach(&self, alpha: f64) -> f64 {
-        let least = f64::from(self.settings.least_alpha);
-        match (alpha < least, least > 0.0) {
-            (true, _) => f64::NEG_INFINITY,
-            (_, true) => elementary::ln(alpha / least),
-            _ => f64::INFINITY,
-        }
-    }
-
-    /// The pixels that a splat of this [`Self::reach`] may touch; from ranges of its numbers, those
-    /// that it may touch for any of them.
-    pub(crate) fn bounds(
-        &self,
-        center: [[f64; 2]; 2],
-        [xx, xy, yy]: [f64; 3],
-        (alpha, reach): (f64, f64),
-    ) -> Rect {
-        let k = f64::from(self.settings.cutoff);
-        let wide = |q: f64| {
-            let side = |v: f64| (q * v).sqrt() * (1.0 + 1.0 / 1024.0) + 1.0;
-            rect(center, [side(xx), side(yy)], self.size, Cover::Centers)
-        };
-        if reach < 0.0 {
-            return Rect::default();
-        }
-        // A fragment beyond this has less than the least alpha.
-        let dense = if reach == f64::INFINITY {
-            Rect { x0: 0, y0: 0, x1: self.size[0], y1: self.size[1] }
+        // The tiles of a disc hold a square about its box.
+        let tiles = matches!(support, Support::Tiles | Support::Boxes);
+        if support == Support::None || (tiles && self.settings.meets_rays()) {
+            dense
         } else {
-            wide(2.0 * reach)
-        };
-        let support = match self.settings.support {
-            Support::None => dense,
-            Support::Ellipse => wide(k * k),
-            Support::Tiles => {
-                let middle = 0.5 * (xx + yy);
-                let square = middle * middle - (xx * yy - xy * xy);
-                let square = if square < 0.1 { 0.1 } else { square };
-                let side = (k * (middle + square.sqrt()).sqrt()).ceil();
-                rect(center, [side, side], self.size, Cover::Square)
-            }
-            Support::Boxes if alpha * 255.0 < 1.0 => Rect::default(),
-            Support::Boxes => {
-                let own = (2.0 * elementary::ln(alpha * 255.0)).sqrt();
-                let k = if own < k { own } else { k };
-                rect(
-                    center,
-                    [(k * xx.sqrt()).ceil(), (k * yy.sqrt()).ceil()],
-                    self.size,
-                    Cover::Box,
-                )
-            }
-        };
-        support.intersection(&dense)
+            dense.at_most(f64::from(cutoff))
+        }
     }
 }
 
@@ -269,41 +249,6 @@ fn stored(scene: &Scene) -> Encoding {
 /// How many items of a scene the method draws.
 pub(crate) fn count(scene: &Scene) -> usize {
     scene.gaussians.as_ref().map_or(scene.surfels.len(), Gaussians::len)
-}
-
-/// The side of a tile of the original program and of gsplat, in px.
-const TILE: f64 = 16.0;
-
-/// The pixels that an extent covers.
-#[derive(Clone, Copy)]
-enum Cover {
-    /// Those whose centres are within it.
-    Centers,
-    /// The tiles that it touches, as gsplat counts them.
-    Box,
-    /// The tiles that it touches, as the original program counts them.
-    Square,
-}
-
-/// The pixels of a picture that an extent covers, around a range of centres: (least, greatest) for x
-/// and y.
-fn rect(center: [[f64; 2]; 2], extent: [f64; 2], size: [u32; 2], cover: Cover) -> Rect {
-    let side = |axis: usize| {
-        let [low, high] = [center[axis][0] - extent[axis], center[axis][1] + extent[axis]];
-        let most = f64::from(size[axis]);
-        let (first, end) = match cover {
-            Cover::Centers => ((low - 0.5).ceil(), (high - 0.5).floor() + 1.0),
-            Cover::Box => ((low / TILE).floor() * TILE, (high / TILE).ceil() * TILE),
-            Cover::Square => {
-                let [low, high] = [low - 0.5, high - 0.5 + (TILE - 1.0)];
-                ((low / TILE).floor() * TILE, (high / TILE).floor() * TILE)
-            }
-        };
-        // A comparison with NaN is false, and a cast saturates.
-        if first < most && end > 0.0 { [first as u32, end.at_most(most) as u32] } else { [0, 0] }
-    };
-    let ([x0, x1], [y0, y1]) = (side(0), side(1));
-    Rect { x0, y0, x1, y1 }
 }
 
 impl<R: Exact> Source<'_, R> {
@@ -320,18 +265,21 @@ impl<R: Exact> Source<'_, R> {
     #[inline]
     pub(super) fn splat(&self, i: usize) -> (GaussianSplat<R>, Fate) {
         let projected = self.project(i);
-        let Projected { on_screen, alpha, .. } = projected;
+        let Projected { on_screen, alpha, disc, .. } = projected;
         let ProjectedGaussian { place, center, ellipse, conic, .. } = on_screen;
         let [x, y] = [center.x, center.y].map_inline(R::to_f64);
         let behind = self.projector.behind(place);
-        let sound = !on_screen.degenerate();
+        let sound = !projected.degenerate();
         let alpha = alpha.to_f64();
         let seen = sound && !behind;
         let reach = if seen { self.reach(alpha) } else { f64::NEG_INFINITY };
-        let bounds = if seen {
-            self.bounds([[x, x], [y, y]], ellipse.map_inline(R::to_f64), (alpha, reach))
-        } else {
-            Rect::default()
+        let bounds = match disc {
+            _ if !seen => Rect::default(),
+            Some(disc) => {
+                let disc = disc.map(R::to_f64);
+                self.bounds_of_disc(&disc, |number| [number; 2], reach, End::Most)
+            }
+            None => self.bounds([[x, x], [y, y]], ellipse.map_inline(R::to_f64), (alpha, reach)),
         };
         let fate = match (behind, sound, bounds.is_empty()) {
             (true, _, _) => Fate::Behind,
@@ -355,11 +303,16 @@ impl<R: Exact> Source<'_, R> {
         (splat, fate)
     }
 
-    /// An item in the camera frame.
-    pub(super) fn solid(&self, i: usize) -> Solid<R> {
-        let shape = self.shape(i);
-        let place = self.projector.place(shape.position);
-        Solid { place, adjugate: self.projector.turned(&shape.adjugate) }
+    /// What the fragments of an item need beside it, if anything.
+    pub(super) fn beside(&self, i: usize) -> Option<Beside<R>> {
+        if self.settings.meets_rays() {
+            return Some(Beside::Disc(self.disc(i)));
+        }
+        (self.settings.order == Order::Pixel).then(|| {
+            let shape = self.shape(i);
+            let place = self.projector.place(shape.position);
+            Beside::Solid(Solid { place, adjugate: self.projector.turned(&shape.adjugate) })
+        })
     }
 }
 

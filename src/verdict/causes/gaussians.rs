@@ -10,6 +10,7 @@ use crate::method::gaussians::{BlendSpace, ColorBounds, Order, Settings, Support
 use crate::number::MapInline;
 use crate::scene::Camera;
 use crate::splat::gaussian::{Clamp, Compensation, GaussianKernel};
+use crate::splat::ray_disc::DiscRule;
 use crate::verdict::supposed::Supposed;
 
 /// All mistakes that are tried, whatever stage is wrong first: nearly all show in both.
@@ -88,11 +89,43 @@ fn of_settings(own: &Settings) -> Mistakes {
 
 /// Mistakes with the projection.
 fn filters(own: &Settings, add: &mut dyn FnMut(String, Settings)) {
-    for h in [0.0, 0.1, 0.3, 1.0] {
+    for h in [0.0, 0.1, 0.3, 0.5, 1.0] {
         let kernel = GaussianKernel { low_pass: h, ..own.kernel };
         let right = own.kernel.low_pass;
         let what = format!("the low-pass filter has another variance: {h} px^2, not {right}");
         add(what, Settings { kernel, ..*own });
+    }
+    for (disc, what) in [
+        (DiscRule::Projected, "discs are projected as ellipses; rays do not meet them"),
+        (
+            DiscRule::Ray,
+            "discs are drawn as the paper of 2D Gaussians says, not as its program does",
+        ),
+        (
+            DiscRule::RayBox,
+            "discs are drawn as the program of 2D Gaussians does, not as its paper says",
+        ),
+    ] {
+        let kernel = GaussianKernel { disc, ..own.kernel };
+        let what = match (own.meets_rays(), disc) {
+            (false, DiscRule::Ray | DiscRule::RayBox) => {
+                "rays meet discs; no ellipses are projected"
+            }
+            _ => what,
+        };
+        add(what.into(), Settings { kernel, ..*own });
+    }
+    for near in [0.0, 0.01, 0.2] {
+        let kernel = GaussianKernel { near, ..own.kernel };
+        let what = if near == 0.0 {
+            "splats are dropped at the camera's near plane".to_owned()
+        } else {
+            format!("splats are dropped up to the depth {near}")
+        };
+        add(what, Settings { kernel, ..*own });
+    }
+    if own.meets_rays() {
+        return;
     }
     for (compensation, what) in [
         (Compensation::None, "opacities are not compensated for the low-pass filter"),
@@ -116,15 +149,6 @@ fn filters(own: &Settings, add: &mut dyn FnMut(String, Settings)) {
     ] {
         let kernel = GaussianKernel { clamp, ..own.kernel };
         add(what.into(), Settings { kernel, ..*own });
-    }
-    for near in [0.0, 0.01, 0.2] {
-        let kernel = GaussianKernel { near, ..own.kernel };
-        let what = if near == 0.0 {
-            "splats are dropped at the camera's near plane".to_owned()
-        } else {
-            format!("splats are dropped up to the depth {near}")
-        };
-        add(what, Settings { kernel, ..*own });
     }
 }
 

@@ -143,6 +143,9 @@ fn numbers_of_broken_rules_are_estimated() {
         ("ewa", "rolled", "the camera is tilted by -26.57 degrees"),
         ("ewa", "sizes", "large splats are clamped: no radius is above 2"),
         ("ewa", "between-pixels", "centres are rounded to the centres of pixels"),
+        ("gaussians", "disc-tilted", "the scales of x and y are exchanged"),
+        ("gaussians", "disc-edge-on", "the low-pass filter has another variance: 0 px^2, not 0.5"),
+        ("gaussians", "disc-small", "the low-pass filter has another variance: 1 px^2, not 0.5"),
     ] {
         assert_eq!(cause(method, rule).as_deref(), Some(name), "{method}: {rule}");
     }

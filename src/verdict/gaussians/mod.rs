@@ -7,6 +7,8 @@
 //!
 //! - Whether a splat is drawn: near plane, determinant, bounds.
 //! - Whether a fragment is inside, dense enough, or behind the end of blending.
+//! - Whether a disc that meets rays shows at a pixel, or its low-pass filter. A disc that is nearly
+//!   edge-on is decided where rho3d certainly is greater than rho2d.
 //! - Which of two splats is in front. Two splats are in the order of their indices only if their keys
 //!   are equal whatever rounds: the same numbers, or the same products with the row of the view
 //!   matrix. Of two or three splats whose order is open, every order is followed, and the pixel is
@@ -25,7 +27,9 @@
 //! alpha, judges the pixel nearly as well as 8 bits do. A generated capture of 300,000 splats had such
 //! decisions at every tenth pixel.
 
+mod discs;
 mod splats;
+mod supposed;
 #[cfg(test)]
 mod tests;
 mod walk;

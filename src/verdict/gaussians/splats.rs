@@ -1,15 +1,16 @@
 //! Project all Gaussians in balls.
 
+use super::supposed::{supposed_disc, supposed_ellipse, supposed_shape};
 use crate::frame::{Bins, Rect};
 use crate::method::Job;
 use crate::method::gaussians::Order;
-use crate::method::gaussians::splats::{GaussianSplat, Projected, Solid, Source};
+use crate::method::gaussians::bounds::End;
+use crate::method::gaussians::splats::{Beside, GaussianSplat, Projected, Solid, Source};
 use crate::method::part::{Nearby, Part};
 use crate::number::ball::Profile;
 use crate::number::{Ball, MapInline, Real, Truth};
-use crate::splat::gaussian::{GaussianShape, ProjectedGaussian};
+use crate::splat::gaussian::ProjectedGaussian;
 use crate::verdict::checks::widened;
-use crate::verdict::client::Storage;
 use crate::verdict::supposed::Supposed;
 use std::cmp::Ordering;
 
@@ -24,8 +25,8 @@ pub(super) struct PossibleSplat<P: Profile> {
     /// The products of its position with the row of depth: equal products give equal depths,
     /// whatever rounds.
     pub(super) products: [f64; 3],
-    /// In the camera frame, if each pixel has its own order.
-    pub(super) solid: Option<Solid<Ball<P>>>,
+    /// What its fragments need beside it, if anything; most splats need nothing.
+    pub(super) beside: Option<Box<Beside<Ball<P>>>>,
     /// V: (xx, xy, yy).
     ellipse: [Ball<P>; 3],
     /// 1/det V.
@@ -115,36 +116,30 @@ fn possible<P: Profile>(
     i: usize,
 ) -> Option<PossibleSplat<P>> {
     let projected = source.project_as(i, supposed_shape(source.shape(i), supposed));
-    let Projected { shape, alpha, .. } = projected;
-    let on_screen = supposed_ellipse(projected.on_screen, supposed);
+    let projected = Projected {
+        on_screen: supposed_ellipse(projected.on_screen, supposed),
+        disc: projected.disc.map(|disc| supposed_disc(disc, supposed)),
+        ..projected
+    };
+    let Projected { shape, alpha, on_screen, disc, .. } = projected;
     let place = on_screen.place;
     let behind = match supposed {
         Supposed::NearIgnored => false.into(),
         _ => source.projector.behind(place),
     };
-    let degenerate = on_screen.degenerate();
+    let degenerate = projected.degenerate();
     if behind.certainly() || (degenerate.certainly() && !behind.possibly()) {
         return None;
     }
     let sound = !behind.possibly() && !degenerate.possibly();
-    let [x, y] = [on_screen.center.x, on_screen.center.y].map_inline(|at| at.ends());
-    let ellipse = on_screen.ellipse.map_inline(Ball::ends);
-    let [least, most] = alpha.ends();
-    let known = ellipse.iter().chain([&x, &y]).flatten().all(|end| end.is_finite());
-    let (bounds, certain) = if known {
-        let [xx, xy, yy] = ellipse;
-        // The extents grow with each element; that of the cross term by its magnitude.
-        let across = [xy[0].abs(), xy[1].abs()];
-        let [small, large] = if across[0] < across[1] { across } else { [across[1], across[0]] };
-        let small = if xy[0] < 0.0 && xy[1] > 0.0 { 0.0 } else { small };
-        let positive = |end: f64| if end > 0.0 { end } else { 0.0 };
-        let with_reach = |alpha| (alpha, source.reach(alpha));
-        let widest = source.bounds([x, y], [xx[1], large, yy[1]], with_reach(most));
-        let ends = [[x[1], x[0]], [y[1], y[0]]];
-        let smallest = [positive(xx[0]), small, positive(yy[0])];
-        (widest, source.bounds(ends, smallest, with_reach(least)))
-    } else {
-        (job.picture(), Rect::default())
+    let [bounds, certain] = match &disc {
+        Some(disc) => {
+            let [least, most] = alpha.ends();
+            let bounds =
+                |alpha, end| source.bounds_of_disc(disc, Ball::ends, source.reach(alpha), end);
+            [bounds(most, End::Most), bounds(least, End::Least)]
+        }
+        None => bounds(job, source, (&on_screen, alpha)),
     };
     if bounds.is_empty() || part.is_some_and(|part| !part.touches(&bounds)) {
         return None;
@@ -152,10 +147,11 @@ fn possible<P: Profile>(
     let [a, b, c, _] = source.projector.view.rows[2].map_inline(|part| part.middle);
     let p = shape.position.map(|part| part.middle);
     let own = source.settings.order == Order::Pixel;
-    let solid = own.then(|| {
+    let solid = || {
         let adjugate = source.projector.turned(&shape.adjugate);
-        Solid { place, adjugate }
-    });
+        Beside::Solid(Solid { place, adjugate })
+    };
+    let beside = disc.map(Beside::Disc).or_else(|| own.then(solid)).map(Box::new);
     let splat = GaussianSplat {
         index: i as u32,
         bounds,
@@ -169,45 +165,38 @@ fn possible<P: Profile>(
     };
     let products = [a * p.x, b * p.y, c * p.z];
     let (ellipse, inverse) = (on_screen.ellipse, Ball::ONE / on_screen.det);
-    Some(PossibleSplat { splat, certain, sound, products, solid, ellipse, inverse })
+    Some(PossibleSplat { splat, certain, sound, products, beside, ellipse, inverse })
+}
+
+/// The pixels that an ellipse may touch, and those that its bounds certainly hold.
+fn bounds<P: Profile>(
+    job: &Job<'_>,
+    source: &Source<'_, Ball<P>>,
+    (on_screen, alpha): (&ProjectedGaussian<Ball<P>>, Ball<P>),
+) -> [Rect; 2] {
+    let [x, y] = [on_screen.center.x, on_screen.center.y].map_inline(|at| at.ends());
+    let ellipse = on_screen.ellipse.map_inline(Ball::ends);
+    let [least, most] = alpha.ends();
+    let known = ellipse.iter().chain([&x, &y]).flatten().all(|end| end.is_finite());
+    if !known {
+        return [job.picture(), Rect::default()];
+    }
+    let [xx, xy, yy] = ellipse;
+    // The extents grow with each element; that of the cross term by its magnitude.
+    let across = [xy[0].abs(), xy[1].abs()];
+    let [small, large] = if across[0] < across[1] { across } else { [across[1], across[0]] };
+    let small = if xy[0] < 0.0 && xy[1] > 0.0 { 0.0 } else { small };
+    let positive = |end: f64| if end > 0.0 { end } else { 0.0 };
+    let with_reach = |alpha| (alpha, source.reach(alpha));
+    let widest = source.bounds([x, y], [xx[1], large, yy[1]], with_reach(most));
+    let ends = [[x[1], x[0]], [y[1], y[0]]];
+    let smallest = [positive(xx[0]), small, positive(yy[0])];
+    [widest, source.bounds(ends, smallest, with_reach(least))]
 }
 
 /// The order of two items with the same key.
 pub(super) fn tie(supposed: Supposed, a: u32, b: u32) -> Ordering {
     if supposed == Supposed::HigherIndexFirst { b.cmp(&a) } else { a.cmp(&b) }
-}
-
-/// A shape by the rule that is supposed.
-fn supposed_shape<P: Profile>(
-    shape: GaussianShape<Ball<P>>,
-    supposed: Supposed,
-) -> GaussianShape<Ball<P>> {
-    if supposed != Supposed::HalfCovariance {
-        return shape;
-    }
-    let half = |part: Ball<P>| widened(part, Storage::Half.radius(part.middle));
-    GaussianShape { covariance: shape.covariance.map_inline(half), ..shape }
-}
-
-/// An ellipse by the rule that is supposed.
-fn supposed_ellipse<P: Profile>(
-    own: ProjectedGaussian<Ball<P>>,
-    supposed: Supposed,
-) -> ProjectedGaussian<Ball<P>> {
-    let ([xx, xy, yy], [a, b, c]) = (own.ellipse, own.conic);
-    match supposed {
-        Supposed::Mirrored => {
-            ProjectedGaussian { ellipse: [xx, -xy, yy], conic: [a, -b, c], ..own }
-        }
-        Supposed::Transposed => {
-            ProjectedGaussian { ellipse: [yy, xy, xx], conic: [c, b, a], ..own }
-        }
-        Supposed::CentersWhole => {
-            let center = own.center.map(|at| at.floor() + Ball::from_f32(0.5));
-            ProjectedGaussian { center, ..own }
-        }
-        _ => own,
-    }
 }
 
 /// Replaces each key by its step, over all that may be drawn.

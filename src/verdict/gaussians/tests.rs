@@ -1,20 +1,22 @@
+use super::discs;
 use super::splats::PossibleSplats;
 use crate::frame::{Exec, Frame, Plane, Rect, Samples};
 use crate::index::Index;
-use crate::method::gaussians::Settings;
-use crate::method::gaussians::splats::Source;
+use crate::method::gaussians::splats::{Beside, Source};
+use crate::method::gaussians::{Order, Settings};
 use crate::method::part::Part;
 use crate::method::{Job, Method, Session};
 use crate::number::ball::Gpu;
 use crate::number::elementary::pow_f32;
 use crate::number::random::unit;
-use crate::number::{Ball, Exact};
+use crate::number::{Ball, Exact, Truth};
 use crate::scene::gaussians::{Encoding, GaussianArrays, Gaussians};
 use crate::scene::{Camera, Lens, Pose, Scene};
 use crate::setting::Words;
 use crate::source::Shape;
-use crate::splat::gaussian::ProjectedGaussian;
-use crate::verdict::client::Client;
+use crate::splat::gaussian::{GaussianKernel, ProjectedGaussian};
+use crate::splat::ray_disc::DiscRule;
+use crate::verdict::client::{Client, Rounding};
 use crate::verdict::supposed::Supposed;
 use crate::verdict::{Doubt, Outcome, Verdict};
 use glam::{DVec3, Vec3};
@@ -251,4 +253,155 @@ fn many_splats_of_one_depth_are_judged() {
     assert!(verdict.first_wrong().is_none(), "{:?}", verdict.stages[0].worst);
     assert_eq!(verdict.stages[0].doubtful(Doubt::Nearer as u8), 120);
     assert!(frame.count("count").unwrap().values().iter().all(|count| *count == 255));
+}
+
+/// Discs of all sizes, some of them nearly edge-on.
+fn flakes(count: u64, size: f32) -> Scene {
+    let flat = cloud(count, size, 0.7).gaussians.unwrap();
+    let arrays = GaussianArrays {
+        position: flat.position().to_vec(),
+        scale: flat.scale().iter().map(|s| Vec3::new(s.x, s.y, 0.0)).collect(),
+        rotation: flat.rotation().to_vec(),
+        opacity: flat.opacity().to_vec(),
+        degree: 0,
+        harmonics: (0..flat.len()).map(|i| flat.harmonics(i)[0]).collect(),
+        encoding: Encoding::Srgb,
+    };
+    Scene::of_gaussians("flakes", Gaussians::new(arrays).unwrap().0)
+}
+
+/// The rules of discs, each with two orders.
+fn rules_of_discs() -> Vec<Settings> {
+    let mut all = Vec::new();
+    for disc in [DiscRule::Ray, DiscRule::RayBox] {
+        for order in [Order::Depth, Order::Pixel] {
+            let kernel = GaussianKernel { disc, ..Settings::DISCS.kernel };
+            all.push(Settings { kernel, order, ..Settings::DISCS });
+        }
+    }
+    all
+}
+
+#[test]
+fn discs_of_f32_and_of_f64_are_right_under_every_promise() {
+    let exec = Exec::sequential();
+    let surfels = Shape::Torus.surfels(150, 0).unwrap();
+    let scenes = [flakes(50, 0.15), flakes(150, 0.02), Scene::unlit("surfels", surfels)];
+    for settings in rules_of_discs() {
+        for (scene, camera) in scenes.iter().zip(cameras()) {
+            let camera = Camera { width: 64, height: 40, ..camera };
+            let session = Session::new(scene, settings.into(), &exec).unwrap();
+            let narrow = Client::from(&session.define::<f32>(&camera, true).unwrap().frame);
+            let wide = session.define::<f64>(&camera, true).unwrap().frame.to_f32();
+            let wide = Client::from(&wide).rounded();
+            for (_, rounding) in Rounding::WORDS {
+                for client in [&narrow, &wide] {
+                    let client = Client { rounding: *rounding, ..client.clone() };
+                    let verdict = session.verify(&camera, &client, Verdict::BUDGET).unwrap();
+                    let (outcome, undecided) = (verdict.outcome(), verdict.undecided);
+                    let what = format!("{settings:?}, {}, {rounding:?}", scene.name);
+                    assert_eq!(outcome, Outcome::Right, "{what}: {undecided} undecided");
+                }
+            }
+        }
+    }
+}
+
+/// rho at a pixel by the definition, and by the planes of the ray in homogeneous coordinates.
+fn rhos<R: Exact>(source: &Source<'_, R>, i: usize, at: (u32, u32)) -> [f64; 2] {
+    let disc = source.disc(i);
+    let own = disc.fragment(&source.projector.rays, at);
+    let (x, y) = (R::from_f32(at.0 as f32 + 0.5), R::from_f32(at.1 as f32 + 0.5));
+    let ([a, b], [az, bz], w) = (disc.images, disc.bend, disc.divisor);
+    let (cx, cy) = (disc.center.x, disc.center.y);
+    let row = |at: R, center: R, a: R, b: R| {
+        [at * az - (a + center * az), at * bz - (b + center * bz), at * w - center * w]
+    };
+    let (k, l) = (row(x, cx, a.x, b.x), row(y, cy, a.y, b.y));
+    let p = [k[1] * l[2] - k[2] * l[1], k[2] * l[0] - k[0] * l[2], k[0] * l[1] - k[1] * l[0]];
+    let (u, v) = (p[0] / p[2], p[1] / p[2]);
+    let rho3d = u * u + v * v;
+    let other = if own.rho == own.rho3d { rho3d } else { own.rho };
+    [own.rho, other].map(R::to_f64)
+}
+
+#[test]
+fn every_way_to_meet_a_disc_is_enclosed() {
+    let exec = Exec::sequential();
+    for (settings, camera) in rules_of_discs().iter().zip(cameras().iter().cycle()) {
+        let scene = flakes(500, 0.05);
+        let (single, double) = (
+            Source::<f32>::new(&scene, camera, settings),
+            Source::<f64>::new(&scene, camera, settings),
+        );
+        let source = Source::<Ball<Gpu>>::new(&scene, camera, settings);
+        let index = Index::default();
+        let job = Job::new(&scene, &index, camera, &exec);
+        let all = PossibleSplats::new(&job, &source, Supposed::Nothing);
+        let (mut wide, mut of) = (0, 0);
+        for possible in &all.all {
+            let (i, bounds) = (possible.splat.index as usize, possible.splat.bounds);
+            let Some(Beside::Disc(disc)) = possible.beside.as_deref() else { panic!("no disc") };
+            for k in 0..6 {
+                let at = |j: u64, size: u32| (unit(7, 12 * i as u64 + j) * size as f32) as u32;
+                let at = (
+                    bounds.x0 + at(2 * k, bounds.x1 - bounds.x0),
+                    bounds.y0 + at(2 * k + 1, bounds.y1 - bounds.y0),
+                );
+                let own = discs::fragment(disc, &source.projector.rays, at);
+                let [low, high] = own.rho.ends();
+                let found = [rhos(&single, i, at), rhos(&double, i, at)];
+                if own.met.certainly() {
+                    for rho in found.as_flattened() {
+                        assert!(
+                            !(*rho < low || *rho > high),
+                            "{i}, {at:?}: {rho}: {low} to {high}"
+                        );
+                    }
+                }
+                of += u32::from(found[1][0] < 9.0);
+                wide += u32::from(found[1][0] < 9.0 && !(own.rho.radius < 0.1));
+            }
+        }
+        assert!(of > 100 && wide < of / 20, "{settings:?}: {wide} of {of} are wide");
+    }
+}
+
+#[test]
+fn an_edge_on_disc_is_decided_and_wrong_discs_are_found() {
+    let exec = Exec::sequential();
+    let camera = camera(48, 32);
+    // The ray through the centre lies in the plane.
+    let toward = (Vec3::new(0.4, 0.3, 3.0)).normalize();
+    let across = toward.cross(Vec3::Y).normalize();
+    let basis = glam::Mat3::from_cols(across, toward, across.cross(toward));
+    let one = |scale: Vec3| {
+        let arrays = GaussianArrays {
+            position: vec![Vec3::ZERO],
+            scale: vec![scale],
+            rotation: vec![glam::Quat::from_mat3(&basis).to_array()],
+            opacity: vec![0.9],
+            degree: 0,
+            harmonics: vec![Vec3::ONE],
+            encoding: Encoding::Srgb,
+        };
+        Scene::of_gaussians("edge", Gaussians::new(arrays).unwrap().0)
+    };
+    let scene = one(Vec3::new(0.4, 0.3, 0.0));
+    let settings = |disc, low_pass| {
+        let kernel = GaussianKernel { disc, low_pass, ..Settings::DISCS.kernel };
+        Settings { kernel, ..Settings::DISCS }
+    };
+    let draw = |scene: &Scene, settings: Settings| {
+        let session = Session::new(scene, settings.into(), &exec).unwrap();
+        Client::from(&session.define::<f32>(&camera, true).unwrap().frame)
+    };
+    let own = settings(DiscRule::Ray, 0.5);
+    let session = Session::new(&scene, own.into(), &exec).unwrap();
+    let judge = |client: &Client| session.verify(&camera, client, Verdict::BUDGET).unwrap();
+    let right = judge(&draw(&scene, own));
+    assert_eq!((right.outcome(), right.undecided), (Outcome::Right, 0));
+    for other in [settings(DiscRule::Ray, 0.0), settings(DiscRule::Ray, 1.0), Settings::INRIA] {
+        assert_eq!(judge(&draw(&scene, other)).outcome(), Outcome::Wrong, "{other:?}");
+    }
 }

@@ -1,14 +1,16 @@
 //! Blend a pixel in balls, with every decision that is open.
 
+use super::discs;
 use super::splats::{PossibleSplat, PossibleSplats, tie};
 use super::walked::Walked;
 use crate::composite::under::Under;
 use crate::frame::Rect;
 use crate::method::gaussians::Order;
 use crate::method::gaussians::blending::{GaussianFragment, GaussianPixel, Rules};
-use crate::method::gaussians::splats::Source;
+use crate::method::gaussians::splats::{Beside, Source};
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, MapInline, Real, Truth};
+use crate::splat::ray_disc::RayFragment;
 use crate::verdict::Doubt;
 use crate::verdict::checks::widened;
 use crate::verdict::supposed::Supposed;
@@ -91,25 +93,38 @@ impl<'a, P: Profile> Walker<'a, P> {
         if !holds(&own.bounds, at) {
             return None;
         }
-        let power = splat.power(at);
-        let twice = self.supposed == Supposed::ExpWithoutHalf;
-        let fragment = self.rules.with_power(own, if twice { power + power } else { power });
-        let GaussianFragment { alpha, inside, dense, .. } = fragment;
+        let fragment = self.fragment(splat, at);
+        let GaussianFragment { alpha, inside, dense, depth, .. } = fragment;
         let alpha = bounded(alpha, own.alpha.at_most(self.rules.most));
         let certain = splat.sound && holds(&splat.certain, at);
         let drawn = inside & dense & Three::new([certain, true, true]);
         if !drawn.possibly() {
             return None;
         }
-        let depth = match &splat.solid {
-            Some(solid) => {
+        let depth = match splat.beside.as_deref() {
+            Some(Beside::Solid(solid)) => {
                 let ray = self.source.projector.ray(at);
                 self.source.projector.deepest(&solid.adjugate, solid.place, ray)
             }
-            None => own.depth,
+            _ => depth,
         };
-        let key = if splat.solid.is_some() { depth } else { own.key };
+        let key = if self.source.settings.order == Order::Pixel { depth } else { own.key };
         Some(Possible { splat, alpha, drawn, key, depth })
+    }
+}
+
+impl<P: Profile> Walker<'_, P> {
+    /// The fragment of a splat at a pixel within its bounds.
+    fn fragment(&self, splat: &PossibleSplat<P>, at: (u32, u32)) -> GaussianFragment<Ball<P>> {
+        let own = &splat.splat;
+        let twice = self.supposed == Supposed::ExpWithoutHalf;
+        if let Some(Beside::Disc(disc)) = splat.beside.as_deref() {
+            let met = discs::fragment(disc, &self.source.projector.rays, at);
+            let rho = if twice { met.rho + met.rho } else { met.rho };
+            return self.rules.of_disc(own, &RayFragment { rho, ..met });
+        }
+        let power = splat.power(at);
+        self.rules.with_power(own, if twice { power + power } else { power })
     }
 }
 

@@ -140,7 +140,14 @@ impl Model<'_> {
             return None;
         }
         let mut sure = splat.sure && splat.narrow.hold(at);
-        let q = self.form(splat, at);
+        let met = splat.disc.as_ref().map(|disc| self.meet(disc, splat.depth, at));
+        let q = met.as_ref().map_or_else(|| self.form(splat, at), |met| met.rho);
+        if let Some(met) = &met {
+            sure &= met.sure;
+            if !met.met && met.sure {
+                return None;
+            }
+        }
         if self.settings.support == Support::Ellipse {
             let limit = f64::from(self.settings.cutoff).powi(2);
             let near = tips(q.value - limit, limit, q.condition);
@@ -150,7 +157,7 @@ impl Model<'_> {
             }
         }
         // Rounding may leave less than 0, which is skipped.
-        sure &= q.value == 0.0 || q.value > 16.0 * q.condition;
+        sure &= met.is_some() || q.value == 0.0 || q.value > 16.0 * q.condition;
         let fall = (-q.value / 2.0).exp();
         let change = (q.condition / 2.0).exp_m1() + 2.0 * self.step;
         let alpha = splat.opacity * Conditioned { value: fall, condition: fall * change };
@@ -161,7 +168,7 @@ impl Model<'_> {
         if alpha.value < least && !near {
             return None;
         }
-        let depth = self.depth(splat, at);
+        let depth = met.map_or_else(|| self.depth(splat, at), |met| met.depth);
         Some(Fragment { splat, alpha, depth, sure: sure && !near })
     }
 

@@ -9,15 +9,25 @@ use splatref::method::gaussians::{BlendSpace, ColorBounds, Order, Settings, Supp
 use splatref::scene::environment::Map;
 use splatref::scene::gaussians::{Encoding, coefficients};
 use splatref::scene::{Camera, Environment, GaussianArrays, Gaussians, Lens, Pose, Scene, Surfels};
-use splatref::splat::gaussian::{Clamp, Compensation};
+use splatref::splat::gaussian::{Clamp, Compensation, GaussianKernel};
+use splatref::splat::ray_disc::DiscRule;
 
-pub(crate) const PRESETS: [(&str, Settings); 5] = [
+/// The presets, and the paper's rule of discs.
+pub(crate) const PRESETS: [(&str, Settings); 7] = [
     ("khr", Settings::KHR),
     ("inria", Settings::INRIA),
     ("gsplat", Settings::GSPLAT),
     ("mip", Settings::MIP),
     ("exact", Settings::EXACT),
+    ("2dgs", Settings::DISCS),
+    ("rays", RAYS),
 ];
+
+/// Discs as the paper draws them.
+pub(crate) const RAYS: Settings = Settings {
+    kernel: GaussianKernel { disc: DiscRule::Ray, ..Settings::DISCS.kernel },
+    ..Settings::DISCS
+};
 
 /// A quaternion of any direction; the constructor makes it a unit.
 pub(crate) fn rotation(dice: &mut Dice) -> [f32; 4] {
@@ -277,8 +287,38 @@ fn hidden(stop_at: bool) -> Case<Settings> {
     )
 }
 
+/// Every rule of discs with every setting that it reads, of Gaussians and of surfels.
+fn discs() -> Vec<Case<Settings>> {
+    let others: [Change; 8] = [
+        ("nothing", |_| ()),
+        ("low_pass 0", |s| s.kernel.low_pass = 0.0),
+        ("low_pass 2.5", |s| s.kernel.low_pass = 2.5),
+        ("order pixel", |s| s.order = Order::Pixel),
+        ("support none", |s| s.support = Support::None),
+        ("support ellipse", |s| s.support = Support::Ellipse),
+        ("support boxes", |s| s.support = Support::Boxes),
+        ("near_depth 3", |s| s.kernel.near = 3.0),
+    ];
+    let mut all = Vec::new();
+    for (i, (name, change)) in others.into_iter().enumerate() {
+        for disc in [DiscRule::Ray, DiscRule::RayBox] {
+            let mut settings = Settings::DISCS;
+            settings.kernel.disc = disc;
+            change(&mut settings);
+            let scene = match i % 3 {
+                0 => random(30, 1, Encoding::Srgb, 400 + i as u64),
+                which => surfels(24, which == 1, 400 + i as u64),
+            };
+            let camera = camera(i % 4 == 1, SIZE);
+            all.push(case(format!("{disc:?} with {name}"), scene, camera, settings));
+        }
+    }
+    all
+}
+
 pub(crate) fn all() -> Vec<Case<Settings>> {
     let mut all = by_preset();
+    all.extend(discs());
     all.extend(by_setting());
     all.extend(limits());
     all

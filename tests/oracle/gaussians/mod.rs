@@ -4,6 +4,7 @@ mod blend;
 mod bounds;
 mod cases;
 mod closed_forms;
+pub(crate) mod discs;
 mod harmonics;
 mod laws;
 mod model;

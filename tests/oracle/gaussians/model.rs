@@ -5,6 +5,7 @@
 //! makes in an arithmetic with this rounding, to first order.
 
 use crate::oracle::gaussians::bounds::Bounds;
+use crate::oracle::gaussians::discs::Disc;
 use crate::oracle::gaussians::harmonics::harmonics;
 use crate::oracle::gaussians::shape::Shape;
 use crate::oracle::kit::condition::Conditioned;
@@ -34,6 +35,8 @@ pub(crate) struct Splat {
     /// Pixels that it may touch, and those that no rounding keeps from it.
     pub(crate) wide: Bounds,
     pub(crate) narrow: Bounds,
+    /// If discs meet rays.
+    pub(crate) disc: Option<Disc>,
 }
 
 pub(crate) struct Model<'a> {
@@ -102,7 +105,7 @@ impl<'a> Model<'a> {
         all
     }
 
-    fn shape(&self, i: usize) -> Shape {
+    pub(crate) fn shape(&self, i: usize) -> Shape {
         match &self.scene.gaussians {
             Some(gaussians) => Shape::gaussian(gaussians, i),
             None => Shape::surfel(&self.scene.surfels, i, self.settings.cutoff.into()),
@@ -110,7 +113,7 @@ impl<'a> Model<'a> {
     }
 
     /// A direction in the camera frame: x right, y down, z into the picture.
-    fn turned(&self, v: V3) -> V3 {
+    pub(crate) fn turned(&self, v: V3) -> V3 {
         let [x, y, z] = self.eye.direction(v);
         [x, -y, -z]
     }
@@ -130,14 +133,22 @@ impl<'a> Model<'a> {
         let images = self.images(&shape, p);
         let [v0, v] = self.ellipses(&images, &center);
         let (det0, det) = self.determinants(&images, &v0, &v);
+        let disc = self.meets_rays().then(|| self.disc(i, &center));
         let finite = det.value.is_finite() && v.iter().all(|v| (v.value / det.value).is_finite());
-        if !(det.value > 0.0 && finite) {
+        if !(det.value > 0.0 && finite) && disc.is_none() {
             return None;
         }
-        let opacity = self.opacity(i) * self.compensation(det0, det);
+        let opacity = self.opacity(i);
         let screen = self.screen(&center);
-        let [wide, narrow] = self.bounds(&screen, &v, det, opacity);
-        let sure = !doubtful && det.value > 16.0 * det.condition && narrow.any();
+        let (opacity, [wide, narrow]) = match &disc {
+            Some(disc) => (opacity, self.bounds_of_disc(disc, opacity.value)),
+            None => {
+                let opacity = opacity * self.compensation(det0, det);
+                (opacity, self.bounds(&screen, &v, det, opacity))
+            }
+        };
+        let sound = disc.is_some() || det.value > 16.0 * det.condition;
+        let sure = !doubtful && sound && narrow.any();
         let splat = Splat {
             item: i as u32,
             sure,
@@ -152,6 +163,7 @@ impl<'a> Model<'a> {
             color: self.color(i, shape.center),
             wide,
             narrow,
+            disc,
         };
         wide.any().then_some(splat)
     }
@@ -165,7 +177,7 @@ impl<'a> Model<'a> {
         Conditioned { value, condition: error + 4.0 * self.step * value }
     }
 
-    fn screen(&self, center: &[Conditioned; 3]) -> [Conditioned; 2] {
+    pub(crate) fn screen(&self, center: &[Conditioned; 3]) -> [Conditioned; 2] {
         let Eye { fx, fy, cx, cy, perspective, .. } = self.eye;
         let [x, y, t] = *center;
         [(x, fx, cx), (y, fy, cy)].map(|(along, f, c)| {

@@ -58,12 +58,14 @@ taken! {
     ];
     deferred::Settings, Deferred: ["gbp04_detail", "gbp04_ladder", "gbp04_motion", "gbp04_without_second"];
     gaussians::Settings, Gaussians: [
+        "gaussians_2dgs",
         "gaussians_discs",
         "gaussians_exact",
         "gaussians_gsplat",
         "gaussians_inria",
         "gaussians_khr",
         "gaussians_mip_f64",
+        "gaussians_rays",
         "gaussians_steps",
     ];
     single_pass::Settings, SinglePass: [

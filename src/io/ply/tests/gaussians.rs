@@ -128,6 +128,7 @@ fn two_scales_are_a_disc() {
     let found = read(&file("ascii", "float", &names));
     assert_eq!(found.arrays.scale[0].z, 0.0);
     assert!(found.convention.starts_with("PLY of 2D Gaussians: two log scales"));
+    assert!(found.convention.ends_with("; draw it with --preset 2dgs"));
     assert_eq!(Gaussians::new(found.arrays).unwrap().1, 0);
 }
 

@@ -27,7 +27,7 @@ pub(super) struct Block {
     pub(super) heaviest: [u32; LANES],
     pub(super) count: [u32; LANES],
     /// Whether blending goes on: all bits, or none.
-    alive: [u32; LANES],
+    pub(super) alive: [u32; LANES],
 }
 
 impl Block {
@@ -60,8 +60,8 @@ impl Block {
 
 /// The blocks of a tile.
 pub(super) struct Blocks {
-    grid: BlockGrid,
-    all: Vec<Block>,
+    pub(super) grid: BlockGrid,
+    pub(super) all: Vec<Block>,
 }
 
 impl Blocks {
@@ -76,8 +76,8 @@ impl Blocks {
     }
 
     /// Blends splats in their order.
-    pub(super) fn blend(&mut self, splats: &[GaussianSplat<f32>], settings: &Settings) {
-        blend(self, splats, &Limits::new(settings));
+    pub(super) fn blend(&mut self, splats: &[GaussianSplat<f32>], limits: &Limits) {
+        blend(self, splats, limits);
     }
 
     /// The blocks when all splats are blended.
@@ -95,7 +95,7 @@ impl Blocks {
 /// The limits of the decisions on a fragment.
 #[derive(Clone, Copy)]
 pub(super) struct Limits {
-    inside: f32,
+    pub(super) inside: f32,
     least: f32,
     most: f32,
     stop: f32,
@@ -135,7 +135,7 @@ vectorized!(
                     let corner = (rect.x0 + column * SIDE, rect.y0 + row * SIDE);
                     let fragments = fragments::<FUSED>(splat, limits, corner, &block.alive);
                     if let Some((alpha, takes)) = fragments {
-                        block.add(splat, limits, (&alpha, &takes));
+                        block.add(splat, limits, (&alpha, &takes), |_| splat.depth);
                     }
                     left -= usize::from(!any(&block.alive));
                 }
@@ -186,6 +186,17 @@ pub(super) fn fragments<const FUSED: bool>(
     if !any(&takes) {
         return None;
     }
+    alphas::<FUSED>(splat, limits, &power, takes)
+}
+
+/// The alphas of fragments with these q/2, and the lanes that are dense enough; none if no lane is.
+#[inline(always)]
+pub(super) fn alphas<const FUSED: bool>(
+    splat: &GaussianSplat<f32>,
+    limits: &Limits,
+    power: &Lanes,
+    mut takes: Mask,
+) -> Option<(Lanes, Mask)> {
     let mut alpha = [0.0; LANES];
     for i in 0..LANES {
         // A greater q/2 gives 0 as well, and no other number is used.
@@ -197,14 +208,15 @@ pub(super) fn fragments<const FUSED: bool>(
 }
 
 impl Block {
-    /// Blends the fragments of a splat in the lanes that take it. Numbers that few splats change are
-    /// touched only by those.
+    /// Blends the fragments of a splat in the lanes that take it, with their depths. Numbers that few
+    /// splats change are touched only by those.
     #[inline(always)]
-    fn add(
+    pub(super) fn add(
         &mut self,
         splat: &GaussianSplat<f32>,
         limits: &Limits,
         (alpha, takes): (&Lanes, &Mask),
+        depth: impl Fn(usize) -> f32 + Copy,
     ) {
         let before = self.through;
         let weight = each(|i| before[i] * alpha[i]);
@@ -219,32 +231,37 @@ impl Block {
         self.through = select(&drawn, &through, &before);
         let adds = mask(|i| (drawn[i] != 0) & (weight[i] > 0.0));
         let [r, g, b] = splat.color;
-        self.color[0] = sum(&adds, &self.color[0], &weight, r);
-        self.color[1] = sum(&adds, &self.color[1], &weight, g);
-        self.color[2] = sum(&adds, &self.color[2], &weight, b);
-        self.alpha = sum(&adds, &self.alpha, &weight, 1.0);
-        self.moment = sum(&drawn, &self.moment, &weight, splat.depth);
+        self.color[0] = sum(&adds, &self.color[0], &weight, |_| r);
+        self.color[1] = sum(&adds, &self.color[1], &weight, |_| g);
+        self.color[2] = sum(&adds, &self.color[2], &weight, |_| b);
+        self.alpha = sum(&adds, &self.alpha, &weight, |_| 1.0);
+        self.moment = sum(&drawn, &self.moment, &weight, depth);
         // There are fewer than 2^32 splats.
         self.count = each(|i| self.count[i] + (drawn[i] & 1));
-        self.mark(splat, &before, &weight, &drawn);
+        self.mark(splat.index, (&before, &weight, &drawn), depth);
     }
 
     /// Notes the splat in the lanes where it is the first, the heaviest or the median.
     #[inline(always)]
-    fn mark(&mut self, splat: &GaussianSplat<f32>, before: &Lanes, weight: &Lanes, drawn: &Mask) {
+    fn mark(
+        &mut self,
+        index: u32,
+        (before, weight, drawn): (&Lanes, &Lanes, &Mask),
+        depth: impl Fn(usize) -> f32 + Copy,
+    ) {
         let half = mask(|i| (drawn[i] != 0) & (before[i] > 0.5));
         if any(&half) {
-            self.median = select(&half, &[splat.depth; LANES], &self.median);
+            self.median = select(&half, &each(depth), &self.median);
         }
         let (id, heaviest, most) = (self.id, self.heaviest, self.weight);
         let first = mask(|i| (drawn[i] != 0) & (id[i] == NO_ID));
         if any(&first) {
-            self.id = select_u32(&first, &[splat.index; LANES], &id);
-            self.depth = select(&first, &[splat.depth; LANES], &self.depth);
+            self.id = select_u32(&first, &[index; LANES], &id);
+            self.depth = select(&first, &each(depth), &self.depth);
         }
         let heavier = mask(|i| (drawn[i] != 0) & ((heaviest[i] == NO_ID) | (weight[i] > most[i])));
         if any(&heavier) {
-            self.heaviest = select_u32(&heavier, &[splat.index; LANES], &heaviest);
+            self.heaviest = select_u32(&heavier, &[index; LANES], &heaviest);
             self.weight = select(&heavier, weight, &most);
         }
     }
@@ -252,7 +269,7 @@ impl Block {
 
 /// The sums with weight times a factor in the chosen lanes.
 #[inline(always)]
-fn sum(chosen: &Mask, sums: &Lanes, weight: &Lanes, factor: f32) -> Lanes {
-    let more = each(|i| sums[i] + weight[i] * factor);
+fn sum(chosen: &Mask, sums: &Lanes, weight: &Lanes, factor: impl Fn(usize) -> f32) -> Lanes {
+    let more = each(|i| sums[i] + weight[i] * factor(i));
     select(chosen, &more, sums)
 }

@@ -3,14 +3,16 @@
 //! A tile gathers its splats in their order. Each splat is blended into the blocks that it may touch;
 //! a block whose pixels are all done is left out, and the tile ends when all of its blocks are. In an
 //! order of each pixel's own, a block lists all fragments first, and each pixel then sorts its own.
+//! Discs that meet rays evaluate the definition's own function in each lane.
 
 mod blending;
+mod discs;
 mod own_order;
 
 use super::blending::{Blending, GaussianPixel, Rules};
 use super::order::Splats;
 use super::picture::{self, display};
-use super::splats::Source;
+use super::splats::{Beside, Source};
 use super::{Order, Settings, planes};
 use crate::error::Result;
 use crate::frame::{Grid, NO_ID, NamedPlane, Plane, Pool, TileMut};
@@ -19,7 +21,7 @@ use crate::method::Job;
 use crate::method::buffer_formats::Buffers;
 use crate::method::fast::store::{clear_plane, store_plane};
 use crate::method::picture::{Clock, Picture};
-use blending::{Block, Blocks};
+use blending::{Block, Blocks, Limits};
 
 /// Draws the picture.
 ///
@@ -55,9 +57,8 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
         } else if own {
             tile.store(&own_order::blend(&blending, &places, rect));
         } else {
-            let gathered: Vec<_> = places.into_iter().map(|place| *splats.at(place)).collect();
             let mut blocks = Blocks::new(rect);
-            blocks.blend(&gathered, settings);
+            blend(&blending, &places, &mut blocks);
             tile.store(blocks.finished());
         }
     });
@@ -69,6 +70,23 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     clock.lap(planes::STAGES[2].name);
     let (frame, timings) = (job.frame(left), clock.into_laps());
     Ok(Picture { frame, tally: splats.tally, timings, seen: None })
+}
+
+/// Blends the splats at these places into the blocks of a tile.
+fn blend(blending: &Blending<'_, f32>, places: &[usize], blocks: &mut Blocks) {
+    let (source, splats) = (&blending.source, blending.splats);
+    let limits = Limits::new(source.settings);
+    if source.settings.meets_rays() {
+        let disc = |&place: &usize| match splats.beside(place) {
+            Some(Beside::Disc(disc)) => Some((*splats.at(place), *disc)),
+            _ => None,
+        };
+        let gathered: Vec<_> = places.iter().filter_map(disc).collect();
+        discs::blend(blocks, &gathered, &source.projector.rays, &limits);
+    } else {
+        let gathered: Vec<_> = places.iter().map(|&place| *splats.at(place)).collect();
+        blocks.blend(&gathered, &limits);
+    }
 }
 
 /// The planes of blending.

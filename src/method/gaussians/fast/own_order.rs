@@ -1,10 +1,11 @@
 //! Blend a tile in an order of each pixel's own.
 
 use super::blending::{Block, Limits, fragments, inside};
+use super::discs;
 use crate::frame::Rect;
 use crate::method::fast::tile::{BlockGrid, SIDE};
 use crate::method::gaussians::blending::{Blending, GaussianPixel};
-use crate::method::gaussians::splats::{GaussianSplat, Solid};
+use crate::method::gaussians::splats::{Beside, GaussianSplat, Solid};
 use crate::number::lanes::{LANES, Lanes, each, vectorized};
 use crate::number::real::ordered_f32;
 use crate::splat::gaussian::GaussianProjector;
@@ -24,7 +25,7 @@ struct Fragment {
 /// A splat of a tile, with its place in the order of the indices.
 struct Near {
     splat: GaussianSplat<f32>,
-    solid: Solid<f32>,
+    beside: Beside<f32>,
     place: u32,
 }
 
@@ -37,10 +38,10 @@ pub(super) const BYTES_A_SPLAT: u64 =
 pub(super) fn blend(blending: &Blending<'_, f32>, places: &[usize], rect: Rect) -> Vec<Block> {
     let splats = blending.splats;
     let near = |&place: &usize| {
-        let (splat, solid) = (*splats.at(place), *splats.solid(place));
-        Near { splat, solid, place: place as u32 }
+        let (splat, beside) = (*splats.at(place), *splats.beside(place)?);
+        Some(Near { splat, beside, place: place as u32 })
     };
-    let mut all: Vec<Near> = places.iter().map(near).collect();
+    let mut all: Vec<Near> = places.iter().filter_map(near).collect();
     // Fragments that come about in order are sorted fast; the order of the lists decides nothing.
     all.sort_unstable_by_key(|near| (ordered_f32(near.splat.depth), near.place));
     let limits = Limits::new(blending.source.settings);
@@ -95,10 +96,17 @@ vectorized!(
             if near.splat.bounds.intersection(&block).is_empty() {
                 continue;
             }
-            let Some((alpha, takes)) = fragments::<FUSED>(&near.splat, limits, corner, &own) else {
-                continue;
+            let found = match &near.beside {
+                Beside::Solid(solid) => {
+                    let found = fragments::<FUSED>(&near.splat, limits, corner, &own);
+                    found.map(|(alpha, takes)| (alpha, takes, depths(projector, solid, &u, &v)))
+                }
+                Beside::Disc(disc) => {
+                    let splat = &(near.splat, *disc);
+                    discs::fragments::<FUSED>(splat, (&projector.rays, limits), corner, &own)
+                }
             };
-            let depth = depths(projector, &near.solid, &u, &v);
+            let Some((alpha, takes, depth)) = found else { continue };
             for i in 0..LANES {
                 if takes[i] != 0 {
                     let (depth, alpha) = (depth[i], alpha[i]);

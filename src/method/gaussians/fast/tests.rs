@@ -1,3 +1,4 @@
+use super::super::Support;
 use super::*;
 use crate::frame::Exec;
 use crate::method::{Method, Session};
@@ -5,6 +6,8 @@ use crate::number::random::unit;
 use crate::scene::gaussians::{Encoding, GaussianArrays, Gaussians, coefficients};
 use crate::scene::{Camera, Environment, Lens, Pose, Scene};
 use crate::setting::Words;
+use crate::splat::gaussian::GaussianKernel;
+use crate::splat::ray_disc::DiscRule;
 use glam::{DVec3, Vec3};
 
 /// Splats of all shapes and opacities, some of them huge, tiny, flat, behind the camera or at one
@@ -60,6 +63,8 @@ fn every_pixel_has_the_bits_of_the_definition() {
             Settings { order: Order::Steps, stop: 0.3, stop_at: true, ..*preset },
             Settings { cutoff: 1.5, least_alpha: 0.1, most_alpha: 0.4, degree: 1, ..*preset },
             Settings { least_alpha: 3e-44, stop: 0.0, ..*preset },
+            Settings { kernel: GaussianKernel { disc: DiscRule::Ray, ..preset.kernel }, ..*preset },
+            Settings { order: Order::Pixel, support: Support::Ellipse, ..*preset },
         ];
         for (k, settings) in others.into_iter().enumerate() {
             let mut scene = scene(300, (k + number) as u32 % 4, (3 * number + k) as u64);

@@ -1,10 +1,12 @@
 //! Rules about settings: each at a value that is not its default; and the large scenes.
 
+use super::gaussians::turn;
 use super::layers::layers;
 use super::meshes::square;
 use super::{Of, Row, SettingRow};
 use crate::source::Shape;
 use crate::verdict::conformance::sketch::Sketch;
+use glam::Vec3;
 
 const VORONOI: Of = Of::Only(&["single-pass", "transparent-hq"]);
 const LAYERS: Of = Of::Only(&["transparent", "transparent-hq"]);
@@ -77,6 +79,12 @@ fn beside(s: &mut Sketch) {
     s.blob([0.3, 4.6, 1.0], [0.3, 0.6, 1.5]);
 }
 
+/// Large discs near the camera, where a projected ellipse is not the picture of a disc.
+fn near_flakes(s: &mut Sketch) {
+    s.blob([-0.6, 0.4, 5.0], [1.1, 0.7, 0.0]).rotation = turn(Vec3::new(0.2, 1.0, 0.1), 60.0);
+    s.blob([0.5, -0.3, 4.6], [0.8, 1.2, 0.0]).rotation = turn(Vec3::new(1.0, 0.2, 0.3), 70.0);
+}
+
 /// A splat whose square ends just before a tile, and whose least alpha does not.
 fn rim(s: &mut Sketch) {
     s.blob([-0.006_25, 0.0, 0.0], [0.3184; 3]).opacity = 1.0;
@@ -133,6 +141,8 @@ pub(super) const ROWS: &[SettingRow] = &[
         value: "8",
         draw: |s| s.scatter_blobs(60, 0.3),
     },
+    SettingRow { of: GAUSSIANS, name: "disc", value: "ray", draw: near_flakes },
+    SettingRow { of: GAUSSIANS, name: "disc", value: "ray-box", draw: near_flakes },
     SettingRow { of: GAUSSIANS, name: "clamp", value: "none", draw: beside },
     SettingRow {
         of: GAUSSIANS,
