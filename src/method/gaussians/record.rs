@@ -37,6 +37,9 @@ use std::mem::{offset_of, size_of};
 /// }
 /// ```
 ///
+/// With discs that meet rays, `alpha` is the opacity. V, its inverse, V0 and `compensation` then
+/// describe the ellipse of the Gaussian, which no fragment uses.
+///
 /// numpy reads them with `dtype=[("place", "<f4", 3), ("key", "<f4"), ...]`.
 #[derive(Clone, Copy, Debug, PartialEq)]
 #[repr(C)]

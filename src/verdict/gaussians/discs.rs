@@ -22,7 +22,8 @@ pub(super) fn fragment<P: Profile>(
     let below_most = (-low).at_least(high);
     let least = above / (below_most * below_most) * (1.0 - 1.0 / 1_048_576.0);
     let [rho2d_least, rho2d_most] = rho2d.ends();
-    let less = if least > rho2d_most {
+    // With an axis of length 0, D is 0 whatever rounds, and rho3d is not a finite number.
+    let less = if least > rho2d_most || below_most == 0.0 {
         false.into()
     } else if rho3d.radius.is_finite() {
         rho3d.le(rho2d)

@@ -397,10 +397,14 @@ fn an_edge_on_disc_is_decided_and_wrong_discs_are_found() {
         Client::from(&session.define::<f32>(&camera, true).unwrap().frame)
     };
     let own = settings(DiscRule::Ray, 0.5);
+    // An axis of length 0 makes a line, which no ray meets.
+    for scene in [&scene, &one(Vec3::new(0.4, 0.0, 0.0))] {
+        let session = Session::new(scene, own.into(), &exec).unwrap();
+        let right = session.verify(&camera, &draw(scene, own), Verdict::BUDGET).unwrap();
+        assert_eq!((right.outcome(), right.undecided), (Outcome::Right, 0));
+    }
     let session = Session::new(&scene, own.into(), &exec).unwrap();
     let judge = |client: &Client| session.verify(&camera, client, Verdict::BUDGET).unwrap();
-    let right = judge(&draw(&scene, own));
-    assert_eq!((right.outcome(), right.undecided), (Outcome::Right, 0));
     for other in [settings(DiscRule::Ray, 0.0), settings(DiscRule::Ray, 1.0), Settings::INRIA] {
         assert_eq!(judge(&draw(&scene, other)).outcome(), Outcome::Wrong, "{other:?}");
     }
