@@ -81,20 +81,15 @@ fn of_settings(own: &Settings) -> Mistakes {
             all.push((what, Change::Method(Method::Gaussians(changed))));
         }
     };
+    discs(own, &mut add);
     filters(own, &mut add);
     decisions(own, &mut add);
     colors(own, &mut add);
     all
 }
 
-/// Mistakes with the projection.
-fn filters(own: &Settings, add: &mut dyn FnMut(String, Settings)) {
-    for h in [0.0, 0.1, 0.3, 0.5, 1.0] {
-        let kernel = GaussianKernel { low_pass: h, ..own.kernel };
-        let right = own.kernel.low_pass;
-        let what = format!("the low-pass filter has another variance: {h} px^2, not {right}");
-        add(what, Settings { kernel, ..*own });
-    }
+/// Mistakes with the rule of discs.
+fn discs(own: &Settings, add: &mut dyn FnMut(String, Settings)) {
     for (disc, what) in [
         (DiscRule::Projected, "discs are projected as ellipses; rays do not meet them"),
         (
@@ -114,6 +109,16 @@ fn filters(own: &Settings, add: &mut dyn FnMut(String, Settings)) {
             _ => what,
         };
         add(what.into(), Settings { kernel, ..*own });
+    }
+}
+
+/// Mistakes with the projection.
+fn filters(own: &Settings, add: &mut dyn FnMut(String, Settings)) {
+    for h in [0.0, 0.1, 0.3, 0.5, 1.0] {
+        let kernel = GaussianKernel { low_pass: h, ..own.kernel };
+        let right = own.kernel.low_pass;
+        let what = format!("the low-pass filter has another variance: {h} px^2, not {right}");
+        add(what, Settings { kernel, ..*own });
     }
     for near in [0.0, 0.01, 0.2] {
         let kernel = GaussianKernel { near, ..own.kernel };
