@@ -69,12 +69,13 @@ impl<R: Real> Source<'_, R> {
         support.intersection(&dense)
     }
 
-    /// The pixels that a disc may touch, from ranges of its numbers that `ends` gives.
+    /// The pixels that a disc may touch, from ranges of its numbers that `ends` gives. Beyond these, the
+    /// square of a half side of its tiles may be off by `slack` times the square of the box's middle.
     pub(crate) fn bounds_of_disc<S: Real>(
         &self,
         disc: &RayDisc<S>,
         ends: impl Fn(S) -> [f64; 2] + Copy,
-        reach: f64,
+        (reach, slack): (f64, f64),
         end: End,
     ) -> Rect {
         let k = f64::from(self.settings.cutoff);
@@ -93,11 +94,11 @@ impl<R: Real> Source<'_, R> {
                     let side = x.at_least(y).at_least(filter).ceil();
                     [side, side]
                 };
-                self.tiles_of_disc(disc, ends, (k, Cover::Square, end), tiles)
+                self.tiles_of_disc(disc, (ends, slack), (k, Cover::Square, end), tiles)
             }
             Support::Boxes => {
                 let tiles = |[x, y]: [f64; 2]| [(k * x).ceil(), (k * y).ceil()];
-                self.tiles_of_disc(disc, ends, (1.0, Cover::Box, end), tiles)
+                self.tiles_of_disc(disc, (ends, slack), (1.0, Cover::Box, end), tiles)
             }
         };
         support.intersection(&dense)
@@ -134,13 +135,18 @@ impl<R: Real> Source<'_, R> {
     fn tiles_of_disc<S: Real>(
         &self,
         disc: &RayDisc<S>,
-        ends: impl Fn(S) -> [f64; 2] + Copy,
+        (ends, slack): (impl Fn(S) -> [f64; 2] + Copy, f64),
         (r, cover, end): (f64, Cover, End),
         tiles: impl Fn([f64; 2]) -> [f64; 2],
     ) -> Rect {
         let own = disc.boxed(S::from_f32(r as f32));
-        let [x, y] = own.squares.map(|square| ends(square)[end as usize]);
         let middle = own.middle.map(ends);
+        let side = |square: S, [least, most]: [f64; 2]| {
+            let [low, high] = ends(square);
+            let more = slack * (most * most).at_least(least * least);
+            if end == End::Most { high + more } else { low - more }
+        };
+        let [x, y] = [side(own.squares[0], middle[0]), side(own.squares[1], middle[1])];
         if !middle.as_flattened().iter().chain([&x, &y]).all(|number| number.is_finite()) {
             return if end == End::Most { self.whole() } else { Rect::default() };
         }

@@ -277,7 +277,7 @@ impl<R: Exact> Source<'_, R> {
             _ if !seen => Rect::default(),
             Some(disc) => {
                 let disc = disc.map(R::to_f64);
-                self.bounds_of_disc(&disc, |number| [number; 2], reach, End::Most)
+                self.bounds_of_disc(&disc, |number| [number; 2], (reach, 0.0), End::Most)
             }
             None => self.bounds([[x, x], [y, y]], ellipse.map_inline(R::to_f64), (alpha, reach)),
         };

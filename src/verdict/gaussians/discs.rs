@@ -4,6 +4,13 @@ use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real, Truth};
 use crate::splat::ray_disc::{RayDisc, RayFragment, RayMeeting, RayRules};
 
+/// What the square of a half side of a box may be off, as a share of the square of its middle, in
+/// pixels from the corner of the picture.
+///
+/// The authors' program finds the square as the difference of two numbers that are nearly the square
+/// of the middle. Each takes up to eight operations, which round by 2^-24.
+pub(super) const SLACK: f64 = 16.0 / 16_777_216.0;
+
 /// The disc at a pixel.
 ///
 /// A disc that is nearly edge-on has a D that may be 0, so that u and v are unbounded. But the squares

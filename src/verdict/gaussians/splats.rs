@@ -1,5 +1,6 @@
 //! Project all Gaussians in balls.
 
+use super::discs;
 use super::supposed::{supposed_disc, supposed_ellipse, supposed_shape};
 use crate::frame::{Bins, Rect};
 use crate::method::Job;
@@ -135,8 +136,10 @@ fn possible<P: Profile>(
     let [bounds, certain] = match &disc {
         Some(disc) => {
             let [least, most] = alpha.ends();
-            let bounds =
-                |alpha, end| source.bounds_of_disc(disc, Ball::ends, source.reach(alpha), end);
+            let bounds = |alpha, end| {
+                let reach = (source.reach(alpha), discs::SLACK);
+                source.bounds_of_disc(disc, Ball::ends, reach, end)
+            };
             [bounds(most, End::Most), bounds(least, End::Least)]
         }
         None => bounds(job, source, (&on_screen, alpha)),

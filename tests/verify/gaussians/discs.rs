@@ -169,8 +169,16 @@ fn camera() -> Camera {
     camera
 }
 
-fn judged(scene: &Scene, bug: Option<Bug>) -> Verdict {
-    let (camera, exec) = (camera(), Exec::sequential());
+/// The same view at the right end of a wide picture, where the authors' squares of half sides cancel most.
+fn wide_camera() -> Camera {
+    let narrow = camera();
+    let mut wide = Camera { width: 4096, height: narrow.height, ..narrow };
+    wide.cx += 4096.0 - 80.0;
+    wide
+}
+
+fn judged((scene, camera): (&Scene, Camera), bug: Option<Bug>) -> Verdict {
+    let exec = Exec::sequential();
     let session = Session::new(scene, Method::from(Settings::DISCS), &exec).unwrap();
     let frame = draw(scene.gaussians.as_ref().unwrap(), &camera, bug);
     let mut client = Client::from(&frame);
@@ -180,8 +188,13 @@ fn judged(scene: &Scene, bug: Option<Bug>) -> Verdict {
 
 #[test]
 fn the_order_of_the_authors_program_is_right() {
-    for (count, size) in [(300, 0.02), (120, 0.1), (30, 0.6)] {
-        let verdict = judged(&scene(count, size, 5), None);
+    for (count, size, camera) in [
+        (300, 0.02, camera()),
+        (120, 0.1, camera()),
+        (30, 0.6, camera()),
+        (3000, 0.1, wide_camera()),
+    ] {
+        let verdict = judged((&scene(count, size, 5), camera), None);
         let (outcome, undecided) = (verdict.outcome(), verdict.undecided);
         let worst = verdict.first_wrong().map(|stage| &stage.worst);
         assert_eq!(outcome, Outcome::Right, "{count} of {size}: {undecided}, {worst:?}");
@@ -198,7 +211,7 @@ fn mistakes_with_discs_are_found() {
         (Bug::DepthOfCenter, 0.1),
         (Bug::NearOfFragmentsMissing, 0.6),
     ] {
-        let verdict = judged(&scene(120, size, 5), Some(bug));
+        let verdict = judged((&scene(120, size, 5), camera()), Some(bug));
         assert_eq!(verdict.outcome(), Outcome::Wrong, "{bug:?}");
     }
 }
