@@ -23,25 +23,25 @@ struct Fragment {
 }
 
 /// A splat of a tile, with its place in the order of the indices.
-struct Near {
+struct Near<'a> {
     splat: GaussianSplat<f32>,
-    beside: Beside<f32>,
+    beside: &'a Beside<f32>,
     place: u32,
 }
 
 /// The most bytes that a splat takes while its tile is blended: itself, and a fragment in each pixel
 /// of a block. A list that grows has up to twice the room that it needs.
 pub(super) const BYTES_A_SPLAT: u64 =
-    (size_of::<Near>() + 2 * LANES * size_of::<Fragment>()) as u64;
+    (size_of::<Near<'_>>() + 2 * LANES * size_of::<Fragment>()) as u64;
 
 /// The blocks of a tile.
 pub(super) fn blend(blending: &Blending<'_, f32>, places: &[usize], rect: Rect) -> Vec<Block> {
     let splats = blending.splats;
     let near = |&place: &usize| {
-        let (splat, beside) = (*splats.at(place), *splats.beside(place)?);
+        let (splat, beside) = (*splats.at(place), splats.beside(place)?);
         Some(Near { splat, beside, place: place as u32 })
     };
-    let mut all: Vec<Near> = places.iter().filter_map(near).collect();
+    let mut all: Vec<Near<'_>> = places.iter().filter_map(near).collect();
     // Fragments that come about in order are sorted fast; the order of the lists decides nothing.
     all.sort_unstable_by_key(|near| (ordered_f32(near.splat.depth), near.place));
     let limits = Limits::new(blending.source.settings);
@@ -65,7 +65,7 @@ pub(super) fn blend(blending: &Blending<'_, f32>, places: &[usize], rect: Rect) 
 /// Sorts the fragments of a pixel and blends them.
 fn blended(
     blending: &Blending<'_, f32>,
-    all: &[Near],
+    all: &[Near<'_>],
     list: &mut [Fragment],
 ) -> GaussianPixel<f32> {
     list.sort_unstable_by_key(|one| (ordered_f32(one.depth), one.place));
@@ -83,7 +83,7 @@ vectorized!(
     /// Lists the fragments of a block.
     fn list(
         lists: &mut [Vec<Fragment>; LANES],
-        all: &[Near],
+        all: &[Near<'_>],
         (limits, projector): (&Limits, &GaussianProjector<f32>),
         (rect, corner): (Rect, (u32, u32)),
     ) {
@@ -96,7 +96,7 @@ vectorized!(
             if near.splat.bounds.intersection(&block).is_empty() {
                 continue;
             }
-            let found = match &near.beside {
+            let found = match near.beside {
                 Beside::Solid(solid) => {
                     let found = fragments::<FUSED>(&near.splat, limits, corner, &own);
                     found.map(|(alpha, takes)| (alpha, takes, depths(projector, solid, &u, &v)))
