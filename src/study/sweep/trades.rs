@@ -76,6 +76,7 @@ pub const TRADES: &[Trade] = &[
 pub const NOT_TRADED: &[(&str, &str)] = &[
     ("kernel", "sets outline, cut-off and filter together, which are tried one by one"),
     ("preset", "sets other settings together, which are tried one by one"),
+    ("disc", "chooses what a Gaussian is: an ellipsoid or a disc"),
     ("near_depth", "drops what a person can see"),
     ("clamp", "matters only beside the picture"),
     ("compensation", "sets the sharpness, which is a matter of taste"),
