@@ -4,9 +4,7 @@ use super::options::{ExecOptions, SceneOptions};
 use super::{Ended, Ending, draw, output, progress, report};
 use splatref::io::replace::write_atomically;
 use splatref::io::scene_file::{Number, Ready};
-use splatref::method::Records;
 use splatref::{Error, Result};
-use std::io::Write;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -43,21 +41,20 @@ pub(super) fn run(args: &Args) -> Ended {
     let Ready { loaded, camera, method, .. } = &ready;
     method.check_scene(&loaded.scene)?;
     let records = progress::during("projecting", || method.records(&loaded.scene, camera, &exec));
-    let Some(Records { bytes, size, fields, shared, tally }) = records else {
-        return Ok(Ending::Good);
-    };
-    progress::during("writing", || write_atomically(&args.output, |file| file.write_all(&bytes)))?;
+    let Some(records) = records else { return Ok(Ending::Good) };
+    progress::during("writing", || write_atomically(&args.output, |file| records.write(file)))?;
 
     report::scene(loaded);
     report::camera(camera);
     report::method(method, &loaded.scene, camera);
-    report::tally(&tally);
-    report::line("records", format!("{} of {size} bytes", bytes.len() / size));
-    for (name, offset, kind) in fields {
+    report::tally(&records.tally);
+    report::line("records", format!("{} of {} bytes", records.tally.visible, records.size()));
+    for (name, offset, kind) in records.fields() {
         report::line("", format!("{offset:>3} {name:<12} {kind}"));
     }
-    if !shared.is_empty() {
-        let shared: Vec<_> = shared.iter().map(|(name, v)| format!("{name} = {v:?}")).collect();
+    if !records.shared.is_empty() {
+        let shared: Vec<_> =
+            records.shared.iter().map(|(name, v)| format!("{name} = {v:?}")).collect();
         report::line("all share", shared.join(", "));
     }
     report::line("file", args.output.display());

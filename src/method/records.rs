@@ -8,21 +8,56 @@ use crate::index::Index;
 use crate::scene::{Camera, Scene};
 use crate::splat::Tally;
 use crate::splat::record::{SplatRecord, project_records, shared_numbers};
+use std::io::{self, Write};
 
 /// The visible splats of a picture, projected in `f32`.
 #[derive(Clone, Debug)]
 pub struct Records {
-    /// The records one after the other: [`SplatRecord`]s in ascending surfel index, or
-    /// [`GaussianRecord`]s in the order in which they are blended.
-    pub bytes: Vec<u8>,
-    /// The number of bytes of a record.
-    pub size: usize,
-    /// Name, offset in bytes and type of each field of a record.
-    pub fields: &'static [(&'static str, usize, &'static str)],
+    all: Kind,
     /// The numbers that all records share, each with its name.
     pub shared: Vec<(&'static str, f32)>,
     /// The fates of all surfels or Gaussians.
     pub tally: Tally,
+}
+
+/// The records of one kind.
+#[derive(Clone, Debug)]
+enum Kind {
+    /// In ascending surfel index.
+    Splats(Vec<SplatRecord>),
+    /// In the order in which they are blended.
+    Gaussians(Vec<GaussianRecord>),
+}
+
+impl Records {
+    /// The number of bytes of a record.
+    #[must_use]
+    pub fn size(&self) -> usize {
+        match self.all {
+            Kind::Splats(_) => SplatRecord::SIZE,
+            Kind::Gaussians(_) => GaussianRecord::SIZE,
+        }
+    }
+
+    /// Name, offset in bytes and type of each field of a record.
+    #[must_use]
+    pub fn fields(&self) -> &'static [(&'static str, usize, &'static str)] {
+        match self.all {
+            Kind::Splats(_) => &SplatRecord::FIELDS,
+            Kind::Gaussians(_) => &GaussianRecord::FIELDS,
+        }
+    }
+
+    /// Writes the records one after the other.
+    ///
+    /// # Errors
+    /// Those of `file`.
+    pub fn write(&self, file: &mut dyn Write) -> io::Result<()> {
+        match &self.all {
+            Kind::Splats(all) => all.iter().try_for_each(|own| file.write_all(&own.to_bytes())),
+            Kind::Gaussians(all) => all.iter().try_for_each(|own| file.write_all(&own.to_bytes())),
+        }
+    }
 }
 
 impl Method {
@@ -38,16 +73,12 @@ impl Method {
         if let Self::Gaussians(settings) = self {
             let index = Index::default();
             let job = Job::new(scene, &index, camera, exec);
-            let (records, tally) = record::project_records(&job, settings);
-            let bytes = records.iter().flat_map(GaussianRecord::to_bytes).collect();
-            let (size, fields) = (GaussianRecord::SIZE, &GaussianRecord::FIELDS);
-            return Some(Records { bytes, size, fields, shared: Vec::new(), tally });
+            let (all, tally) = record::project_records(&job, settings);
+            return Some(Records { all: Kind::Gaussians(all), shared: Vec::new(), tally });
         }
         let splats = self.splats()?;
-        let (records, tally) = project_records(&scene.surfels, camera, &splats.kernel, splats.cull);
-        let bytes = records.iter().flat_map(SplatRecord::to_bytes).collect();
+        let (all, tally) = project_records(&scene.surfels, camera, &splats.kernel, splats.cull);
         let shared = shared_numbers(camera, &splats.kernel);
-        let (size, fields) = (SplatRecord::SIZE, &SplatRecord::FIELDS);
-        Some(Records { bytes, size, fields, shared, tally })
+        Some(Records { all: Kind::Splats(all), shared, tally })
     }
 }

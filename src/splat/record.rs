@@ -109,12 +109,7 @@ impl SplatRecord {
     /// Writes the fields in order, little-endian, without padding.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; Self::SIZE] {
-        let mut bytes = [0; Self::SIZE];
-        let words = self.words();
-        for (to, word) in bytes.as_chunks_mut().0.iter_mut().zip(words) {
-            *to = u32::to_le_bytes(word);
-        }
-        bytes
+        little_endian(&self.words())
     }
 
     /// Reads a record from bytes that [`SplatRecord::to_bytes`] wrote.
@@ -163,6 +158,15 @@ impl SplatRecord {
         words[23] = self.back;
         words
     }
+}
+
+/// Words as bytes; there are four times as many.
+pub(crate) fn little_endian<const N: usize>(words: &[u32]) -> [u8; N] {
+    let mut bytes = [0; N];
+    for (to, word) in bytes.as_chunks_mut().0.iter_mut().zip(words) {
+        *to = word.to_le_bytes();
+    }
+    bytes
 }
 
 /// Projects the visible splats of a scene, in ascending surfel index, and counts the fates of all

@@ -68,8 +68,9 @@ pub fn write(folder: &Path, rule: &Rule, case: &Case, exec: &Exec) -> Result<()>
     let scene = folder.join("scene.toml");
     text(&scene, &scene_file(folder, case).text(&scene)?)?;
     arrays(folder, case)?;
-    if let Some(records) = case.method.records(&case.scene, &case.camera, exec) {
-        write_atomically(&folder.join("records.bin"), |file| file.write_all(&records.bytes))?;
+    let records = case.method.records(&case.scene, &case.camera, exec);
+    if let Some(records) = &records {
+        write_atomically(&folder.join("records.bin"), |file| records.write(file))?;
     }
     text(&folder.join("scene.json"), &json::text(rule, case)?)?;
     let frame = case.session(exec)?.define::<f32>(&case.camera, true)?.frame;
@@ -78,7 +79,10 @@ pub fn write(folder: &Path, rule: &Rule, case: &Case, exec: &Exec) -> Result<()>
     let says = provenance::text(scene, groups, &case.camera, method, OutputSettings::default());
     exr::write(&folder.join("reference.exr"), &frame, &says)?;
     png::write_frame(&folder.join("reference.png"), &frame)?;
-    text(&folder.join("README.md"), &page::text(rule, case, &case.planes_of(&frame)))
+    text(
+        &folder.join("README.md"),
+        &page::text(rule, (case, records.as_ref()), &case.planes_of(&frame)),
+    )
 }
 
 /// Writes the page of a suite into the folder that holds the folders of its cases. `options` are

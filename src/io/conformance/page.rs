@@ -1,6 +1,6 @@
 //! The page of a case: what it tests, and what the renderer must leave.
 
-use crate::frame::Exec;
+use crate::method::Records;
 use crate::method::{PlaneRow, Stage};
 use crate::setting::Fields;
 use crate::verdict::conformance::{Case, Rule};
@@ -40,16 +40,16 @@ pub(super) const FILES: &[[&str; 2]] = &[
 const REFERENCE: [&str; 2] =
     ["reference.exr, reference.png", "all planes, as splatref draws them, and the picture"];
 
-/// The text of `README.md`.
+/// The text of `README.md`. `records` are those of the case, if it has any.
 pub(super) fn text(
     rule: &Rule,
-    case: &Case,
+    (case, records): (&Case, Option<&Records>),
     planes: &[(&'static Stage, Vec<&'static PlaneRow>)],
 ) -> String {
     let mut page = format!("# {}: {}\n\n{}\n\n", case.method.name(), rule.name, rule.tests);
     // Writing into a string cannot fail.
     let _ = specification(&mut page, case)
-        .and_then(|()| draw(&mut page, case))
+        .and_then(|()| draw(&mut page, case, records))
         .and_then(|()| leave(&mut page, planes));
     page.push_str(
         "\n## Look closer\n\nRun these in this folder; `client.exr` is your file.\n\n```sh\n\
@@ -79,7 +79,7 @@ fn specification(page: &mut String, case: &Case) -> std::fmt::Result {
     writeln!(page, "The specification, in splatref's rustdoc: {pages}.\n")
 }
 
-fn draw(page: &mut String, case: &Case) -> std::fmt::Result {
+fn draw(page: &mut String, case: &Case, records: Option<&Records>) -> std::fmt::Result {
     let Case { scene, camera, method, .. } = case;
     writeln!(page, "## Draw\n\n| file | what it holds |\n|---|---|")?;
     let files = if scene.gaussians.is_some() { SPLATS } else { FILES };
@@ -94,7 +94,7 @@ fn draw(page: &mut String, case: &Case) -> std::fmt::Result {
         let what = "pairs of a surfel and a group that it is drawn into";
         writeln!(page, "| members.npy | {what}; scene.json has the scale of each group's radii |")?;
     }
-    if method.has_records() {
+    if records.is_some() {
         let what = "the visible splats, projected; use them to leave out your own projection";
         writeln!(page, "| records.bin | {what} |")?;
     }
@@ -109,13 +109,13 @@ fn draw(page: &mut String, case: &Case) -> std::fmt::Result {
     for (name, value) in method.settings_in_scene(scene, camera) {
         writeln!(page, "| {name} | {value} |")?;
     }
-    let Some(records) = method.records(scene, camera, &Exec::sequential()) else { return Ok(()) };
-    let (size, shared) = (records.size, &records.shared);
+    let Some(records) = records else { return Ok(()) };
+    let (size, shared) = (records.size(), &records.shared);
     writeln!(
         page,
         "\nA record has {size} bytes, little-endian:\n\n| offset | field | type |\n|---|---|---|"
     )?;
-    for (name, offset, kind) in records.fields {
+    for (name, offset, kind) in records.fields() {
         writeln!(page, "| {offset} | {name} | {kind} |")?;
     }
     if shared.is_empty() {

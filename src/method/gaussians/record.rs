@@ -6,6 +6,7 @@ use super::splats::Source;
 use crate::method::algorithm::Job;
 use crate::number::MapInline;
 use crate::splat::Tally;
+use crate::splat::record::little_endian;
 use std::mem::{offset_of, size_of};
 
 /// A visible splat in 128 bytes of `f32` and `u32`: all stages of the projection, see
@@ -117,11 +118,7 @@ impl GaussianRecord {
         put(&self.covariance.map_inline(f32::to_bits));
         put(&self.center.map_inline(f32::to_bits));
         put(&self.bounds);
-        let mut bytes = [0; Self::SIZE];
-        for (to, word) in bytes.as_chunks_mut().0.iter_mut().zip(words) {
-            *to = u32::to_le_bytes(word);
-        }
-        bytes
+        little_endian(&words)
     }
 }
 
