@@ -60,8 +60,8 @@ impl Block {
 
 /// The blocks of a tile.
 pub(super) struct Blocks {
-    pub(super) grid: BlockGrid,
-    pub(super) all: Vec<Block>,
+    grid: BlockGrid,
+    all: Vec<Block>,
 }
 
 impl Blocks {
@@ -78,6 +78,37 @@ impl Blocks {
     /// Blends splats in their order.
     pub(super) fn blend(&mut self, splats: &[GaussianSplat<f32>], limits: &Limits) {
         blend(self, splats, limits);
+    }
+
+    /// Calls `add` for every splat in order, with each block that its bounds touch and that blending
+    /// goes on in, and with the first pixel of the block.
+    #[inline(always)]
+    pub(super) fn each<S>(
+        &mut self,
+        splats: &[S],
+        bounds: impl Fn(&S) -> Rect,
+        mut add: impl FnMut(&S, &mut Block, (u32, u32)),
+    ) {
+        let rect = self.grid.rect;
+        let mut left = self.all.len();
+        for splat in splats {
+            let touched = bounds(splat).intersection(&rect);
+            let (first, last) =
+                ((touched.x0 - rect.x0) / SIDE, (touched.x1 - rect.x0).div_ceil(SIDE));
+            for row in (touched.y0 - rect.y0) / SIDE..(touched.y1 - rect.y0).div_ceil(SIDE) {
+                for column in first..last {
+                    let block = &mut self.all[(row * self.grid.columns + column) as usize];
+                    if !any(&block.alive) {
+                        continue;
+                    }
+                    add(splat, block, (rect.x0 + column * SIDE, rect.y0 + row * SIDE));
+                    left -= usize::from(!any(&block.alive));
+                }
+            }
+            if left == 0 {
+                break;
+            }
+        }
     }
 
     /// The blocks when all splats are blended.
@@ -119,31 +150,16 @@ impl Limits {
 vectorized!(
     fn blend(blocks: &mut Blocks, splats: &[GaussianSplat<f32>], limits: &Limits) {
         const FUSED: bool = target_cfg_f!(target_feature = "fma");
-        let rect = blocks.grid.rect;
-        let mut left = blocks.all.len();
-        for splat in splats {
-            let touched = splat.bounds.intersection(&rect);
-            let (first, last) =
-                ((touched.x0 - rect.x0) / SIDE, (touched.x1 - rect.x0).div_ceil(SIDE));
-            for row in (touched.y0 - rect.y0) / SIDE..(touched.y1 - rect.y0).div_ceil(SIDE) {
-                for column in first..last {
-                    let place = (row * blocks.grid.columns + column) as usize;
-                    let block = &mut blocks.all[place];
-                    if !any(&block.alive) {
-                        continue;
-                    }
-                    let corner = (rect.x0 + column * SIDE, rect.y0 + row * SIDE);
-                    let fragments = fragments::<FUSED>(splat, limits, corner, &block.alive);
-                    if let Some((alpha, takes)) = fragments {
-                        block.add(splat, limits, (&alpha, &takes), |_| splat.depth);
-                    }
-                    left -= usize::from(!any(&block.alive));
+        blocks.each(
+            splats,
+            |splat| splat.bounds,
+            |splat, block, corner| {
+                let fragments = fragments::<FUSED>(splat, limits, corner, &block.alive);
+                if let Some((alpha, takes)) = fragments {
+                    block.add(splat, limits, (&alpha, &takes), |_| splat.depth);
                 }
-            }
-            if left == 0 {
-                break;
-            }
-        }
+            },
+        );
     }
 );
 

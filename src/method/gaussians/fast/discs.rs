@@ -9,43 +9,25 @@ use crate::number::lanes::{LANES, Lanes, Mask, any, vectorized};
 use crate::splat::ray_disc::{RayDisc, RayRules};
 use multiversion::target::target_cfg_f;
 
-/// A splat, and its disc.
-pub(super) type Splat = (GaussianSplat<f32>, RayDisc<f32>);
-
 vectorized!(
     /// Blends discs in their order.
     pub(super) fn blend(
         blocks: &mut Blocks,
-        splats: &[Splat],
+        splats: &[(GaussianSplat<f32>, RayDisc<f32>)],
         rays: &RayRules<f32>,
         limits: &Limits,
     ) {
         const FUSED: bool = target_cfg_f!(target_feature = "fma");
-        let rect = blocks.grid.rect;
-        let mut left = blocks.all.len();
-        for splat in splats {
-            let touched = splat.0.bounds.intersection(&rect);
-            let (first, last) =
-                ((touched.x0 - rect.x0) / SIDE, (touched.x1 - rect.x0).div_ceil(SIDE));
-            for row in (touched.y0 - rect.y0) / SIDE..(touched.y1 - rect.y0).div_ceil(SIDE) {
-                for column in first..last {
-                    let place = (row * blocks.grid.columns + column) as usize;
-                    let block = &mut blocks.all[place];
-                    if !any(&block.alive) {
-                        continue;
-                    }
-                    let corner = (rect.x0 + column * SIDE, rect.y0 + row * SIDE);
-                    let own = fragments::<FUSED>(splat, (rays, limits), corner, &block.alive);
-                    if let Some((alpha, takes, depth)) = own {
-                        block.add(&splat.0, limits, (&alpha, &takes), |i| depth[i]);
-                    }
-                    left -= usize::from(!any(&block.alive));
+        blocks.each(
+            splats,
+            |(splat, _)| splat.bounds,
+            |(splat, disc), block, corner| {
+                let own = fragments::<FUSED>((splat, disc), (rays, limits), corner, &block.alive);
+                if let Some((alpha, takes, depth)) = own {
+                    block.add(splat, limits, (&alpha, &takes), |i| depth[i]);
                 }
-            }
-            if left == 0 {
-                break;
-            }
-        }
+            },
+        );
     }
 );
 
@@ -53,7 +35,7 @@ vectorized!(
 /// depths; none if no lane does.
 #[inline(always)]
 pub(super) fn fragments<const FUSED: bool>(
-    (splat, disc): &Splat,
+    (splat, disc): (&GaussianSplat<f32>, &RayDisc<f32>),
     (rays, limits): (&RayRules<f32>, &Limits),
     (x, y): (u32, u32),
     of: &Mask,

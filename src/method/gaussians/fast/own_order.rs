@@ -102,7 +102,7 @@ vectorized!(
                     found.map(|(alpha, takes)| (alpha, takes, depths(projector, solid, &u, &v)))
                 }
                 Beside::Disc(disc) => {
-                    let splat = &(near.splat, *disc);
+                    let splat = (&near.splat, disc);
                     discs::fragments::<FUSED>(splat, (&projector.rays, limits), corner, &own)
                 }
             };
