@@ -114,7 +114,7 @@ def render(
 
     scene: the name of a file or shape, as for `Scene.open`, or a function that makes the scene on a worker.
     client: a `dask.distributed.Client`.
-    regions: how many bands; four for each worker if absent, and at most one for each row.
+    regions: how many bands; four for each thread of the workers if absent, and at most one for each row.
 
     The other arguments are those of `splatref.render`, and so are the errors. Raises `RuntimeError` if a
     worker has another version of splatref, or if workers loaded different scenes. The times of the picture
@@ -125,7 +125,7 @@ def render(
     source = scene if callable(scene) else functools.partial(Scene.open, os.fspath(scene))
     job = _Job(uuid.uuid4().hex, __version__, source, camera, choices("render", method, settings, frame))
     size = client.submit(_size, job, pure=False).result()
-    count = 4 * max(1, len(client.scheduler_info(-1)["workers"])) if regions is None else regions
+    count = 4 * max(1, sum(client.nthreads().values())) if regions is None else regions
     if count < 1:
         raise ValueError(f"regions={count}; give at least 1")
     futures = client.map(_draw, list(_bands(size, min(count, size[1]))), job=job, pure=False)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import os
 import signal
-import time
 from pathlib import Path
 from typing import Any, Iterator
 
@@ -41,21 +40,17 @@ def test_every_division_has_the_bytes_of_the_whole(client: Any, method: str, reg
     assert joined.tally["drawn"] > 0 and joined.settings == whole.settings
 
 
-def test_a_worker_that_dies_changes_nothing(client: Any) -> None:
+def test_a_worker_that_dies_changes_nothing(client: Any, tmp_path: Path) -> None:
     def dying() -> sr.Scene:
         # The first worker that loads the scene ends, as a machine does that fails.
-        mark = Path(flag)
         if not mark.exists():
             mark.touch()
             os.kill(os.getpid(), signal.SIGKILL)
         return sr.Scene.open("torus", count=800)
 
-    flag = str(Path(os.environ.get("TMPDIR", "/tmp")) / f"splatref-dies-{os.getpid()}-{time.monotonic_ns()}")
-    try:
-        picture = cluster.render(dying, CAMERA, client=client, regions=7)
-        assert Path(flag).exists()
-    finally:
-        Path(flag).unlink(missing_ok=True)
+    mark = tmp_path / "died"
+    picture = cluster.render(dying, CAMERA, client=client, regions=7)
+    assert mark.exists()
     whole = sr.render(sr.Scene.open("torus", count=800), CAMERA)
     assert all(np.array_equal(picture[name], whole[name], equal_nan=True) for name in whole)
 
