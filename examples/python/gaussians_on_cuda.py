@@ -115,4 +115,6 @@ def main(name, suite):
 
 
 if __name__ == "__main__":
+    if len(sys.argv) != 3 or sys.argv[1] not in PROGRAMS:
+        sys.exit(f"give a program, one of {', '.join(PROGRAMS)}, and the folder of a suite")
     main(*sys.argv[1:])

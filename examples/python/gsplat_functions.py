@@ -77,4 +77,6 @@ def main(suite):
 
 
 if __name__ == "__main__":
-    main(*sys.argv[1:])
+    if len(sys.argv) != 2:
+        sys.exit("give the folder of a suite")
+    main(sys.argv[1])
