@@ -20,8 +20,16 @@ pub(crate) struct Splats<R> {
     shift: u32,
     /// Which splat has each place: its batch times the size of a run, and its index in the batch.
     order: Vec<u32>,
-    /// Runs of places: where each begins, and its bins.
-    bins: Vec<(usize, Bins)>,
+    /// The runs of places, each as long as a run of items.
+    runs: Vec<Run>,
+}
+
+/// A run of places.
+#[derive(Debug)]
+struct Run {
+    /// The bounds of the splats, side by side: the splats themselves lie far apart in memory.
+    bounds: Vec<Rect>,
+    bins: Bins,
 }
 
 /// The splats of a run of items, in the order of their indices.
@@ -70,11 +78,13 @@ impl<R: Exact> Splats<R> {
             batches.iter_mut().for_each(|batch| job.keep_touching(&mut batch.splats, bounds));
         }
         let order = ordered(&batches, shift, own, exec);
-        let mut all = Self { tally, batches, shift, order, bins: Vec::new() };
+        let mut all = Self { tally, batches, shift, order, runs: Vec::new() };
         let runs: Vec<usize> = (0..all.order.len()).step_by(size).collect();
-        all.bins = exec.ordered(runs, |first| {
-            let end = all.order.len().min(first + size);
-            (first, Bins::new(grid, end - first, |i| all.at(first + i).bounds))
+        all.runs = exec.ordered(runs, |first| {
+            let places = first..all.order.len().min(first + size);
+            let bounds: Vec<Rect> = places.map(|place| all.at(place).bounds).collect();
+            let bins = Bins::new(grid, bounds.len(), |i| bounds[i]);
+            Run { bounds, bins }
         });
         all
     }
@@ -106,18 +116,17 @@ impl<R: Exact> Splats<R> {
 
     /// How many splats may touch the tile that most may touch.
     pub(crate) fn most_in_a_tile(&self, grid: &Grid) -> usize {
-        let count = |tile| self.bins.iter().map(|(_, bins)| bins.count(tile)).sum();
+        let count = |tile| self.runs.iter().map(|run| run.bins.count(tile)).sum();
         (0..grid.len()).map(count).max().unwrap_or(0)
     }
 
     /// The places of the splats that may touch a rectangle in a tile, in their order.
     pub(crate) fn places(&self, tile: usize, rect: Rect) -> Vec<usize> {
         let mut places = Vec::new();
-        for (first, bins) in &self.bins {
+        for (run, Run { bounds, bins }) in self.runs.iter().enumerate() {
             bins.for_each(tile, |i| {
-                let place = first + i as usize;
-                if !self.at(place).bounds.intersection(&rect).is_empty() {
-                    places.push(place);
+                if !bounds[i as usize].intersection(&rect).is_empty() {
+                    places.push((run << self.shift) + i as usize);
                 }
             });
         }
