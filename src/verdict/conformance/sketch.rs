@@ -6,7 +6,7 @@
 
 use super::{Case, Draws};
 use crate::error::{Error, Result};
-use crate::frame::Exec;
+use crate::frame::{Exec, Plane};
 use crate::index::mipmap;
 use crate::method::Method;
 use crate::number::random::unit;
@@ -14,7 +14,7 @@ use crate::scene::cloud::half_axes;
 use crate::scene::gaussians::{Encoding, MAX_DEGREE, coefficients};
 use crate::scene::{
     Camera, Cloud, Environment, GaussianArrays, Gaussians, Lens, Light, Phong, Polylines, Pose,
-    Primitives, Scene, Surfels, Triangles,
+    Primitives, Scene, Surface, Surfels, Triangles,
 };
 use crate::setting::{Fields, Refused};
 use crate::source::{Shape, derive};
@@ -76,6 +76,8 @@ pub(super) struct Sketch {
     pub(super) lights: Vec<Light>,
     pub(super) material: Phong,
     pub(super) sky: bool,
+    /// Depth and colour of opaque geometry at a column and row.
+    pub(super) surface: Option<fn(u32, u32) -> (f32, [f32; 3])>,
     /// Whether surfels have colours, and whether they have opacities.
     pub(super) colored: bool,
     pub(super) veiled: bool,
@@ -111,6 +113,7 @@ impl Default for Sketch {
             lights: vec![Light::DEFAULT],
             material: Phong::default(),
             sky: false,
+            surface: None,
             colored: true,
             veiled: false,
             mipmaps: 0,
@@ -231,6 +234,11 @@ impl Sketch {
             if self.blobs.is_empty() { self.grouped(&method, exec)? } else { Surfels::none() };
         let gaussians = self.gaussians()?;
         let (camera, meshes) = (self.camera()?, self.meshes.clone());
+        let planes = |of: fn(u32, u32) -> (f32, [f32; 3])| {
+            let depth = Plane::from_pixels(self.size, |x, y| of(x, y).0);
+            Surface::new(depth, Plane::from_pixels(self.size, |x, y| of(x, y).1))
+        };
+        let surface = self.surface.map(planes).transpose()?;
         let scene = Scene {
             // Gaussians are not lit.
             lights: if gaussians.is_some() { Vec::new() } else { self.lights },
@@ -238,6 +246,7 @@ impl Sketch {
             environment: self.sky.then_some(Environment::Sky),
             primitives: primitives(self.meshes, exec)?,
             gaussians,
+            surface,
             ..Scene::unlit(rule, surfels)
         };
         Ok(Case { rule: rule.to_owned(), scene, meshes, camera, method })

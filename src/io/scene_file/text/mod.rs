@@ -109,6 +109,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
         lights: file.light.unwrap_or_else(|| vec![Light::DEFAULT]),
         material: file.material,
         environment,
+        surface: file.surface.as_deref().map(beside),
         method: file.method,
         groups: file.groups,
         output: file.output,
@@ -119,6 +120,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
 #[serde(deny_unknown_fields)]
 struct File {
     hierarchy: Option<PathBuf>,
+    surface: Option<PathBuf>,
     #[serde(default)]
     model: Vec<Model>,
     #[serde(default)]
