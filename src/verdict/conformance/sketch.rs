@@ -56,6 +56,9 @@ impl Blob {
     }
 }
 
+/// Depth and colour of a surface at a column and row.
+pub(super) type Opaque = fn(u32, u32) -> (f32, [f32; 3]);
+
 /// A scene, a camera and settings that are still to be changed.
 #[derive(Clone, Debug)]
 pub(super) struct Sketch {
@@ -76,8 +79,8 @@ pub(super) struct Sketch {
     pub(super) lights: Vec<Light>,
     pub(super) material: Phong,
     pub(super) sky: bool,
-    /// Depth and colour of opaque geometry at a column and row.
-    pub(super) surface: Option<fn(u32, u32) -> (f32, [f32; 3])>,
+    /// The opaque geometry that Gaussians are mixed with.
+    pub(super) surface: Option<Opaque>,
     /// Whether surfels have colours, and whether they have opacities.
     pub(super) colored: bool,
     pub(super) veiled: bool,
@@ -234,7 +237,7 @@ impl Sketch {
             if self.blobs.is_empty() { self.grouped(&method, exec)? } else { Surfels::none() };
         let gaussians = self.gaussians()?;
         let (camera, meshes) = (self.camera()?, self.meshes.clone());
-        let planes = |of: fn(u32, u32) -> (f32, [f32; 3])| {
+        let planes = |of: Opaque| {
             let depth = Plane::from_pixels(self.size, |x, y| of(x, y).0);
             Surface::new(depth, Plane::from_pixels(self.size, |x, y| of(x, y).1))
         };

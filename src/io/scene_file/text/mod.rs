@@ -90,11 +90,10 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
             *table = beside(table);
         }
     }
-    let mut environment = file.environment;
+    let (mut environment, mut camera) = (file.environment, file.camera);
     if let Some(EnvironmentChoice::File(map)) = &mut environment {
         *map = beside(map);
     }
-    let mut camera = file.camera;
     camera.views.iter_mut().for_each(|views| views.path = beside(&views.path));
     Ok(SceneFile {
         name: stem(path),
