@@ -79,6 +79,8 @@ def draw(torch, name, folder):
     (program, settable), described = PROGRAMS[name], json.loads((folder / "scene.json").read_text())
     usual = json.loads((folder.parent / "middle" / "scene.json").read_text())["settings"]
     camera, settings = described["camera"], described["settings"]
+    if described["surface"]:
+        return "the program tests no depths"
     unlike = {setting for setting in settings if settings[setting] != usual[setting]} - settable
     if name == "gsplat" and settings["compensation"] not in ("none", "ratio"):
         return "the program has no such compensation"

@@ -293,6 +293,7 @@ class Scene:
         harmonics: object,
         linear: bool = False,
         environment: Optional[Path] = None,
+        surface: Optional[Path] = None,
         name: str = "arrays",
         progress: Optional[bool] = None,
     ) -> Scene:
@@ -304,6 +305,8 @@ class Scene:
         opacities: (n,) from 0 to 1, not logits.
         harmonics: (n, k, 3), the k = 1, 4, 9 or 16 coefficients of degree 0 to 3.
         linear: whether colours are linear light; else they are sRGB, as programs train them.
+        surface: the name of an .exr with the depths Z and the colours of opaque geometry, drawn from the
+            camera of the picture, that the splats are mixed with.
         environment, name: as for surfels.
 
         Raises `ValueError`, which names the array, and `MemoryError`.
@@ -322,7 +325,8 @@ class Scene:
             (1, 4, 9, 16).index(h.shape[1]),
             linear,
         )
-        text = _surroundings([], None, environment)
+        text = "" if surface is None else f"surface = {toml('surface', os.path.abspath(os.fspath(surface)))}\n"
+        text += _surroundings([], None, environment)
         with calling(progress) as how:
             return cls._of(_splatref.Scene.of_gaussians(how, text, name, splats))
 

@@ -34,7 +34,8 @@ pub(crate) fn views(path: PathBuf) -> PyResult<usize> {
 
 /// A scene file with this text, and a model that does not count.
 pub(crate) fn parsed(text: &str, path: &Path) -> PyResult<SceneFile> {
-    let text = format!("[[model]]\nshape = \"sphere\"\n{text}");
+    // Behind the text, which may begin with keys above all tables.
+    let text = format!("{text}\n[[model]]\nshape = \"sphere\"\n");
     SceneFile::parse(&text, path).map_err(|error| named(error, &text))
 }
 

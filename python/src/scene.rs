@@ -7,8 +7,8 @@ use crate::error::raised;
 use numpy::{PyReadonlyArray1, PyReadonlyArray2, PyReadonlyArray3, PyUntypedArrayMethods};
 use pyo3::prelude::*;
 use splatref::frame::Exec;
-use splatref::io::environment;
 use splatref::io::scene_file::{EnvironmentChoice, Loaded, SceneFile};
+use splatref::io::{environment, surface};
 use splatref::memory;
 use splatref::scene::gaussians::{Encoding, UNDRAWABLE, coefficients};
 use splatref::scene::{self, Cloud, Environment, GaussianArrays, Gaussians, Groups};
@@ -189,7 +189,7 @@ impl Scene {
         Ok(Self { file, content, groups: Mutex::new(None), warnings: Vec::new(), dropped })
     }
 
-    /// Takes arrays of Gaussians. `text` has the environment as a scene file.
+    /// Takes arrays of Gaussians. `text` has the environment and the surface as a scene file.
     #[staticmethod]
     fn of_gaussians(
         py: Python<'_>,
@@ -207,8 +207,10 @@ impl Scene {
         let (scene, dropped) = call(py, &how, |exec, _| {
             let (gaussians, dropped) = Gaussians::new(arrays)?;
             let environment = environment(&file, exec)?;
-            let scene =
-                scene::Scene { environment, ..scene::Scene::of_gaussians(&file.name, gaussians) };
+            let surface = file.surface.as_deref().map(|path| surface::read(path, exec));
+            let surface = surface.transpose()?;
+            let bare = scene::Scene::of_gaussians(&file.name, gaussians);
+            let scene = scene::Scene { environment, surface, ..bare };
             let reasons = || format!("{dropped} Gaussians with {UNDRAWABLE}");
             Ok((scene, if dropped == 0 { String::new() } else { reasons() }))
         })?;

@@ -42,6 +42,10 @@ pub(super) struct SceneOptions {
     #[arg(long, value_name = "FILE.exr|sky", value_parser = environment,
         help_heading = "Environment")]
     environment: Option<EnvironmentChoice>,
+    /// Mix the splats with opaque geometry by depth: an EXR with Z and R, G, B that another method drew
+    /// from the same camera (method gaussians)
+    #[arg(long, value_name = "FILE.exr", help_heading = "Environment")]
+    surface: Option<PathBuf>,
 
     /// Choose the method
     #[arg(long, value_name = "NAME", value_parser = method, help = methods(),
@@ -97,6 +101,7 @@ impl SceneOptions {
             file.frame = frame;
         }
         replace(&mut file.environment, self.environment.clone());
+        replace(&mut file.surface, self.surface.clone());
         if let Some(opacity) = self.opacity {
             usage(check_opacity(opacity))?;
             file.all_models_mut().for_each(|model| model.opacity = Some(opacity));

@@ -47,6 +47,8 @@ pub(super) fn render(
     let place = |frame| to.place(file, Some(frame));
     let places = frames.clone().map(place).collect::<Result<Vec<_>>>()?;
     let mut ready = draw::ready(file, exec)?;
+    // What no later frame can have is found before the first is drawn.
+    ready.camera_at(frames.end - 1)?;
     to.check_state(&ready, file, &places)?;
     let mut seen = draw::seen(&ready, to.options)?;
     let mut times = Times::default();

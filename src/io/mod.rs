@@ -14,6 +14,7 @@
 //! - [`polygon`]: how the polygons of PLY and OBJ are cut into triangles.
 //! - [`texture`]: read textures of models.
 //! - [`environment`]: read environment maps from EXR files.
+//! - [`surface`]: read the opaque geometry of a view from EXR files.
 //! - [`hierarchy`]: write and read surfel approximations of a whole scene.
 //!
 //! Store pictures and compare them:
@@ -61,6 +62,7 @@ pub mod provenance;
 pub mod replace;
 pub mod scene_file;
 pub mod state;
+pub mod surface;
 pub mod texture;
 
 use std::path::Path;

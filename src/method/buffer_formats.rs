@@ -16,7 +16,8 @@
 //!   buffer holds. If the depths of several fragments round to one value, the first fragment stays.
 //!   This applies to the tests that a nearest fragment wins: visibility splatting, the depth-images
 //!   of [`mod@super::single_pass`], the pixels of [`mod@super::projection`], the discs of
-//!   [`mod@super::blue`] and the indices of [`mod@super::deferred`]. It does not apply to the tests
+//!   [`mod@super::blue`] and the indices of [`mod@super::deferred`]. The splats of
+//!   [`mod@super::gaussians`] are tested so against a surface, and an equal one is drawn. It does not apply to the tests
 //!   by epsilon, because they read a depth in `f32` from a buffer. Under the Voronoi depth test the
 //!   buffer holds z / n of \[ZP06, eq. 10\] and no depth.
 //! - Where fragments are *blended* into a buffer, the buffer is rounded after every fragment. The

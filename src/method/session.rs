@@ -218,10 +218,10 @@ impl<'a> Session<'a> {
     /// [`Session::define`] renders that next frame too, but does not advance the state.
     ///
     /// # Errors
-    /// [`crate::Error::Invalid`] if the camera is out of range, or if scene and settings together
-    /// break a condition of the method.
+    /// [`crate::Error::Invalid`] if the camera is out of range, if the scene has a surface of another
+    /// size than the picture, or if scene and settings together break a condition of the method.
     pub fn render(&mut self, camera: &Camera) -> Result<&Picture<f32>> {
-        camera.check()?;
+        self.check_camera(camera)?;
         let last = self.picture.take();
         let size = |picture: &Picture<f32>| [picture.frame.width, picture.frame.height];
         // A last picture of this size has already got the memory.
@@ -353,9 +353,15 @@ impl<'a> Session<'a> {
         test(&self.job(camera).expect("a camera that has been checked"))
     }
 
+    /// Checks that the camera is in range, and that the scene's surface has the size of its picture.
+    fn check_camera(&self, camera: &Camera) -> Result<()> {
+        camera.check()?;
+        self.scene.surface.as_ref().map_or(Ok(()), |surface| surface.check_size(camera.size()))
+    }
+
     /// The job of the whole picture, whatever region was set.
     pub(crate) fn whole_job<'j>(&'j self, camera: &'j Camera) -> Result<Job<'j>> {
-        camera.check()?;
+        self.check_camera(camera)?;
         let Self { scene, index, exec, .. } = self;
         Ok(Job::new(scene, index, camera, exec))
     }

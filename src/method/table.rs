@@ -271,14 +271,21 @@ impl Method {
     /// Checks that the method can draw everything in a scene.
     ///
     /// # Errors
-    /// [`Error::Invalid`] if the scene has Gaussians and the method does not draw them, if the scene
-    /// has primitives and the method draws surfels alone, or if the
+    /// [`Error::Invalid`] if the scene has Gaussians or a surface and the method does not draw them, if the
+    /// scene has primitives and the method draws surfels alone, or if the
     /// scene consists of objects, has not been made flat, and the method does not draw objects.
     pub fn check_scene(&self, scene: &Scene) -> Result<()> {
         if scene.gaussians.is_some() && !self.draws_gaussians() {
             return Err(Error::Invalid(format!(
                 "{} has 3D Gaussians, but the method {} draws surfels; use --method gaussians",
                 scene.name,
+                self.name()
+            )));
+        }
+        if scene.surface.is_some() && !self.draws_gaussians() {
+            return Err(Error::Invalid(format!(
+                "a surface is mixed with splats, but the method {} draws none; remove the surface, or use \
+                 --method gaussians",
                 self.name()
             )));
         }

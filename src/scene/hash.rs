@@ -48,6 +48,8 @@ impl Scene {
     ///   Gaussians: nothing if there are none; else a byte 9, then u64 count; position (3 f32 each),
     ///     scale (3 f32), rotation (x, y, z, w), opacity (f32); a byte for the degree, and one for the
     ///     encoding, 0 sRGB or 1 linear; the coefficients of each (3 f32 each)
+    ///   surface: nothing if there is none; else a byte 10, then width and height (u64), the depths (f32),
+    ///     and the colours (3 f32 each), row by row from the top left
     /// ```
     ///
     /// A list of primitives without vertices takes 17 bytes: a count of 0, the byte for colours, a
@@ -109,6 +111,12 @@ impl Scene {
         if let Some(gaussians) = &self.gaussians {
             hash.0.update([9]);
             hash.gaussians(gaussians);
+        }
+        if let Some(surface) = &self.surface {
+            hash.0.update([10]);
+            surface.size().into_iter().for_each(|side| hash.count(side as usize));
+            hash.floats(surface.depths().values().iter().copied());
+            hash.floats(surface.colors().values().iter().flatten().copied());
         }
         hash.finish()
     }

@@ -17,6 +17,7 @@
 //! - [`merge`]: join several models.
 //! - [`mipmap`]: prefiltered colours of surfels.
 //! - [`sides`]: how large surfels are drawn as point primitives.
+//! - [`surface`]: opaque geometry that splats are mixed with.
 //! - [`texture`]: textures, and their mean colours over ellipses.
 //! - [`transform`]: move, turn and scale a model.
 
@@ -37,6 +38,7 @@ pub mod mipmap;
 pub mod objects;
 pub mod sides;
 mod slerp;
+pub mod surface;
 pub mod surfels;
 pub mod texture;
 pub mod transform;
@@ -56,6 +58,7 @@ pub use light::{Light, Phong};
 pub use mipmap::Mipmap;
 pub use objects::{Geometry, Motion, Object, Objects};
 pub use sides::Sides;
+pub use surface::Surface;
 pub use surfels::Surfels;
 pub use texture::{Paint, Texture};
 pub use transform::Similarity;
@@ -88,6 +91,8 @@ pub struct Scene {
     pub gaussians: Option<Gaussians>,
     /// How large surfels are drawn as point primitives, if the view chose sizes.
     pub sides: Option<Sides>,
+    /// The opaque geometry of one view, which the method `gaussians` mixes with its splats by depth.
+    pub surface: Option<Surface>,
 }
 
 impl Scene {
@@ -117,6 +122,7 @@ impl Scene {
             objects: None,
             gaussians: None,
             sides: None,
+            surface: None,
         }
     }
 }

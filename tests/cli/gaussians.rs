@@ -255,3 +255,66 @@ fn what_cannot_be_converted_is_refused() {
     }
     assert_eq!(names(at.path()), ["g.glb", "g.ply", "p.ply"]);
 }
+
+/// Where the splats of [`ROWS`] and a sphere are seen.
+const VIEW: &[&str] =
+    &["--eye", "0.5,0.5,4", "--target", "0.25,0.25,0", "--fov", "40", "--size", "24x16"];
+
+#[test]
+fn splats_are_mixed_with_a_surface_in_whole_in_parts_and_by_a_scene_file() {
+    let at = TempDir::new().unwrap();
+    write(&at.path().join("g.ply"), &ROWS);
+    let sphere = ["render", "sphere", "--count", "400", "-o", "opaque.exr"];
+    succeeds(at.path(), &[&sphere, VIEW].concat());
+    let mixed = [&["--method", "gaussians", "--surface", "opaque.exr"], VIEW].concat();
+    let with = |first: &[&'static str]| [first, &mixed].concat();
+    let run = |first: &[&'static str]| succeeds(at.path(), &with(first));
+    run(&["render", "g.ply", "-o", "mixed.exr"]);
+    run(&["render", "g.ply", "-o", "bands.exr", "--bands", "3"]);
+    run(&["render", "g.ply", "-o", "a.exr", "--region", "0,0,24,7"]);
+    run(&["render", "g.ply", "-o", "b.exr", "--region", "0,7,24,16"]);
+    run(&["render", "g.ply", "-o", "few.exr", "--storage", "f16", "--depth-storage", "unorm16"]);
+    succeeds(at.path(), &["assemble", "a.exr", "b.exr", "-o", "parts.exr"]);
+    let text = "surface = \"opaque.exr\"\n[[model]]\nfile = \"g.ply\"\n[camera]\nsize = [24, 16]\n\
+                eye = [0.5, 0.5, 4]\ntarget = [0.25, 0.25, 0]\nfov = 40\n[method]\nname = \"gaussians\"\n";
+    fs::write(at.path().join("s.toml"), text).unwrap();
+    succeeds(at.path(), &["render", "s.toml", "-o", "file.exr"]);
+    for other in ["bands.exr", "parts.exr", "file.exr"] {
+        succeeds(at.path(), &["compare", "mixed.exr", other]);
+    }
+    let said = run(&["verify", "g.ply", "mixed.exr"]);
+    assert!(said.contains("\nright"), "{said}");
+    let said = run(&["verify", "g.ply", "a.exr", "--region", "0,0,24,7"]);
+    assert!(said.contains("\nright"), "{said}");
+    let bare = [&["verify", "g.ply", "mixed.exr", "--method", "gaussians"], VIEW].concat();
+    assert_eq!(splatref(at.path(), &bare).status.code(), Some(1));
+    let said = run(&["explain", "g.ply", "12", "8"]);
+    assert!(said.contains("behind the surface, skipped"), "{said}");
+    assert!(said.contains("\nthe surface: depth "), "{said}");
+}
+
+#[test]
+fn what_is_no_surface_is_refused_with_the_cure() {
+    let at = TempDir::new().unwrap();
+    write(&at.path().join("g.ply"), &ROWS);
+    succeeds(at.path(), &[&["render", "sphere", "--count", "400", "-o", "o.exr"], VIEW].concat());
+    let refused = |first: &[&'static str], code| {
+        let first = [first, &["--surface", "o.exr"], VIEW].concat();
+        let line = fails(at.path(), &first, code);
+        assert!(!line.trim().contains('\n'), "{line}");
+        line
+    };
+    let line = refused(&["render", "sphere", "--count", "400"], 1);
+    assert!(
+        line.contains("the method ewa draws none") && line.contains("--method gaussians"),
+        "{line}"
+    );
+    let splats = ["render", "g.ply", "--method", "gaussians"];
+    let other = [&splats[..], &["--surface", "o.exr", "--size", "12x8"]].concat();
+    let line = fails(at.path(), &other, 1);
+    assert!(line.contains("24 x 16 pixels, but the camera's picture has 12 x 8"), "{line}");
+    let line = refused(&[&splats[..], &["--turntable", "3"]].concat(), 2);
+    assert!(line.contains("a surface belongs to one view") && line.contains("--frame"), "{line}");
+    let line = fails(at.path(), &[&splats[..], &["--surface", "g.ply"]].concat(), 1);
+    assert!(line.contains("g.ply: "), "{line}");
+}

@@ -38,6 +38,7 @@ pub(super) fn text(rule: &Rule, case: &Case) -> Result<String> {
         "lights": scene.lights.iter().map(light).collect::<Vec<_>>(),
         "material": material(&scene.material),
         "environment": if scene.environment.is_some() { "sky" } else { "black" },
+        "surface": scene.surface.as_ref().map(|_| super::SURFACE),
     });
     let text = serde_json::to_string_pretty(&json);
     text.map(|text| text + "\n").map_err(|error| Error::Invalid(error.to_string()))

@@ -12,6 +12,7 @@
 //! | `colors.npy`, `opacities.npy`, `half_axes.npy` | if the scene has them: (n, 3), (n,), (n, 6) |
 //! | `prefiltered.npy` | prefiltered colours, if any: (n, 3 levels) |
 //! | `positions.npy`, `scales.npy`, `rotations.npy`, `opacities.npy`, `harmonics.npy` | Gaussians as arrays: (n, 3), (n, 3), quaternions (x, y, z, w) (n, 4), (n,), (n, 3 (degree + 1)^2) coefficient by coefficient |
+//! | `surface.exr` | the opaque geometry that splats are mixed with, if any: depths `Z`, colours `R`, `G`, `B` |
 //! | `members.npy` | `uint32` (m, 2): pairs of a surfel and a group, if the method draws groups |
 //! | `polygons.ply`, `ribbons.ply`, `tubes.ply` | the primitives, if any |
 //! | `polygons-positions.npy`, and so on | their vertices: positions, directions, radii, colors; and their corners as `uint32` |
@@ -30,7 +31,7 @@ use super::scene_file::{
 };
 use super::{exr, ply, png, provenance};
 use crate::error::{Error, Result};
-use crate::frame::Exec;
+use crate::frame::{Exec, Frame, Samples};
 use crate::method::Method;
 use crate::scene::gaussians::Encoding;
 use crate::scene::indexed::Indexed;
@@ -44,6 +45,8 @@ use std::path::Path;
 
 /// The file of the Gaussians, which holds every number as it is.
 const SPLATS: &str = "splats.glb";
+/// The file of the surface.
+const SURFACE: &str = "surface.exr";
 
 /// Writes the files of a case into a folder, which is made if it does not exist.
 ///
@@ -64,6 +67,13 @@ pub fn write(folder: &Path, rule: &Rule, case: &Case, exec: &Exec) -> Result<()>
     }
     for (cloud, draws) in &case.meshes {
         ply::write(&folder.join(format!("{}.ply", draws.word())), cloud)?;
+    }
+    if let Some(surface) = &case.scene.surface {
+        let [width, height] = surface.size();
+        let frame =
+            Frame::new(width, height).with("Z", Samples::Scalar(surface.depths().clone()))?;
+        let frame = frame.with("", Samples::Color(surface.colors().clone()))?;
+        exr::write(&folder.join(SURFACE), &frame, "")?;
     }
     let scene = folder.join("scene.toml");
     text(&scene, &scene_file(folder, case).text(&scene)?)?;
@@ -134,6 +144,7 @@ pub fn scene_file(folder: &Path, case: &Case) -> SceneFile {
         lights: case.scene.lights.clone(),
         material: case.scene.material,
         environment: case.scene.environment.is_some().then_some(EnvironmentChoice::Sky),
+        surface: case.scene.surface.is_some().then(|| folder.join(SURFACE)),
         method,
         ..scene
     }

@@ -75,6 +75,9 @@ fn specification(page: &mut String, case: &Case) -> std::fmt::Result {
     if scene.environment.is_some() {
         pages.push("`splatref::scene::environment`".into());
     }
+    if scene.surface.is_some() {
+        pages.push("`splatref::scene::surface`".into());
+    }
     let pages = pages.join(", ");
     writeln!(page, "The specification, in splatref's rustdoc: {pages}.\n")
 }
@@ -89,6 +92,10 @@ fn draw(page: &mut String, case: &Case, records: Option<&Records>) -> std::fmt::
     for (_, draws) in &case.meshes {
         let word = draws.word();
         writeln!(page, "| {word}.ply, {word}-*.npy | {word}; numbered after the surfels |")?;
+    }
+    if scene.surface.is_some() {
+        let what = "the opaque geometry that the splats are mixed with: depths Z, colours R, G, B";
+        writeln!(page, "| surface.exr | {what} |")?;
     }
     if scene.surfels.groups().is_some() {
         let what = "pairs of a surfel and a group that it is drawn into";

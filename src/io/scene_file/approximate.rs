@@ -81,6 +81,7 @@ impl SceneFile {
             geometries: Vec::new(),
             objects: Vec::new(),
             environment: None,
+            surface: None,
             ..self.clone()
         };
         let loaded = alone.load_polygons(&settings.properties, exec, progress)?;

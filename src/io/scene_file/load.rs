@@ -4,8 +4,8 @@ use super::model::{Colored, ModelParts, Purpose, check_draw, prefiltered, read};
 use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, offset, stem};
 use crate::error::Result;
 use crate::frame::Exec;
-use crate::io::environment;
 use crate::io::hierarchy::Hierarchy;
+use crate::io::{environment, surface};
 use crate::progress::Progress;
 use crate::scene::merge::{join, merge};
 use crate::scene::{Cloud, Counts, Dropped, Environment, Geometry, Light, Object, Objects};
@@ -70,7 +70,7 @@ impl SceneFile {
     /// # Errors
     /// The errors of these functions, with the file named:
     ///
-    /// - [`environment::read`], [`read_model`](super::read_model), [`crate::io::texture::paint`];
+    /// - [`environment::read`], [`surface::read`], [`read_model`](super::read_model), [`crate::io::texture::paint`];
     /// - [`crate::source::Shape::surfels`], [`crate::source::plant::apple_tree`];
     /// - [`crate::source::derive::surfels`], and its counterparts for polygons and lines;
     /// - [tables](super::places), [`Objects::new`] and [`crate::index::mipmap::build`].
@@ -136,10 +136,12 @@ impl SceneFile {
             Some(EnvironmentChoice::Sky) => Some(Environment::Sky),
             Some(EnvironmentChoice::File(path)) => Some(environment::read(path, exec)?),
         };
+        let surface = self.surface.as_deref().map(|path| surface::read(path, exec)).transpose()?;
         let scene = Scene {
             lights: self.lights.clone(),
             material: self.material,
             environment,
+            surface,
             ..Scene::unlit(&self.name, Surfels::none())
         };
         let (models, dropped, warnings) = (Vec::new(), Dropped::default(), Vec::new());

@@ -157,6 +157,8 @@ pub struct SceneFile {
     pub material: Phong,
     /// The surroundings of the scene; black if absent.
     pub environment: Option<EnvironmentChoice>,
+    /// The EXR with the opaque geometry of the view, see [`crate::io::surface::read`].
+    pub surface: Option<PathBuf>,
     /// The method and its settings.
     pub method: MethodChoice,
     /// How groups are made, for a method that draws groups.
@@ -326,6 +328,7 @@ impl SceneFile {
             lights: vec![Light::DEFAULT],
             material: Phong::default(),
             environment: None,
+            surface: None,
             method: MethodChoice::default(),
             groups: GroupChoice::default(),
             output: OutputSettings::default(),
@@ -348,8 +351,8 @@ impl SceneFile {
             EnvironmentChoice::Sky => None,
         });
         let cameras = self.camera.views.iter().map(|views| views.path.as_path());
-        let index = self.hierarchy.as_deref();
-        models.chain(tables).chain(environment).chain(cameras).chain(index)
+        let (index, surface) = (self.hierarchy.as_deref(), self.surface.as_deref());
+        models.chain(tables).chain(environment).chain(cameras).chain(index).chain(surface)
     }
 
     /// Whether this is a scene of objects.

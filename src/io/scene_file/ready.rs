@@ -122,8 +122,14 @@ impl Ready {
     /// The camera in a frame.
     ///
     /// # Errors
-    /// As [`Camera::new`].
+    /// As [`Camera::new`]; [`Error::Usage`] if the scene has a surface, which belongs to the view of one
+    /// frame, and this is another.
     pub fn camera_at(&self, frame: u32) -> Result<Camera> {
+        if self.loaded.scene.surface.is_some() && frame != self.frame {
+            let what = "a surface belongs to one view; draw frame by frame, each by --frame and with its \
+                        own surface";
+            return Err(Error::Usage(what.into()));
+        }
         self.path.as_ref().map_or(Ok(self.camera), |path| path.at(frame))
     }
 

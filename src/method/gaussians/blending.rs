@@ -7,7 +7,7 @@ use crate::composite::decide;
 use crate::composite::under::Under;
 use crate::frame::stencil::{Outcome, Stencil};
 use crate::frame::{NO_ID, Rect};
-use crate::method::buffer_formats::Buffers;
+use crate::method::buffer_formats::{Buffers, DepthKey};
 use crate::method::tiled::pixels;
 use crate::number::real::ordered_f64;
 use crate::number::{Exact, Real};
@@ -157,6 +157,8 @@ pub(crate) struct Blending<'a, R> {
     pub(crate) splats: &'a Splats<R>,
     pub(crate) rules: Rules<R>,
     pub(crate) buffers: Buffers,
+    /// What the test against the surface compares.
+    pub(crate) key: DepthKey,
 }
 
 /// A splat at a pixel: its place in the list, and its fragment.
@@ -169,8 +171,8 @@ impl<R: Exact> Blending<'_, R> {
         pixels(rect).map(|at| self.pixel(&places, at, |_, _, _| ())).collect()
     }
 
-    /// One pixel, from the splats that may touch it. `each` gets every fragment that is inside and
-    /// dense, with its weight; none if blending has ended before it.
+    /// One pixel, from the splats that may touch it. `each` gets every fragment that is inside, dense and
+    /// not behind the surface, with its weight; none if blending has ended before it.
     pub(crate) fn pixel(
         &self,
         places: &[usize],
@@ -192,13 +194,7 @@ impl<R: Exact> Blending<'_, R> {
         if self.source.settings.order == Order::Pixel {
             let mut listed = Vec::new();
             for &place in places {
-                let Some(mut fragment) = self.drawn(place, at) else { continue };
-                if let Some(Beside::Solid(solid)) = self.splats.beside(place) {
-                    let Solid { place: center, adjugate } = solid;
-                    let ray = self.source.projector.ray(at);
-                    fragment.depth = self.source.projector.deepest(adjugate, *center, ray);
-                }
-                listed.push((place, fragment));
+                listed.extend(self.drawn(place, at).map(|fragment| (place, fragment)));
             }
             // Stable, so that ties stay in the order of the indices.
             listed.sort_by_key(|(_, fragment)| ordered_f64(fragment.depth.to_f64()));
@@ -221,8 +217,33 @@ impl<R: Exact> Blending<'_, R> {
         if x < x0 || x >= x1 || y < y0 || y >= y1 {
             return None;
         }
-        let fragment = self.fragment(place, (x, y));
-        (fragment.inside && fragment.dense).then_some(fragment)
+        let mut fragment = self.fragment(place, (x, y));
+        if !(fragment.inside && fragment.dense) {
+            return None;
+        }
+        fragment.depth = self.depth(place, &fragment, (x, y));
+        (!self.hidden(fragment.depth, (x, y))).then_some(fragment)
+    }
+
+    /// The depth of a fragment, which an order of the pixel's own finds along the ray.
+    pub(crate) fn depth(&self, place: usize, fragment: &GaussianFragment<R>, at: (u32, u32)) -> R {
+        let projector = &self.source.projector;
+        match self.splats.beside(place) {
+            Some(Beside::Solid(solid)) => {
+                let Solid { place: center, adjugate } = solid;
+                projector.deepest(adjugate, *center, projector.ray(at))
+            }
+            _ => fragment.depth,
+        }
+    }
+
+    /// Whether a fragment of this depth is behind the surface.
+    #[inline(always)]
+    pub(crate) fn hidden(&self, depth: R, (x, y): (u32, u32)) -> bool {
+        self.source.surface().is_some_and(|surface| {
+            let opaque = R::from_f32(*surface.depths().at(x, y));
+            self.key.depth(depth) > self.key.depth(opaque)
+        })
     }
 
     /// The fragment of a splat at a pixel within its bounds.

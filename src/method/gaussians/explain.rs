@@ -21,6 +21,8 @@ pub struct GaussianReplay<R: Real> {
     pub fragments: Vec<FragmentAt<R>>,
     pixel_after: GaussianPixel<R>,
     rules: Rules<R>,
+    /// Depth and colour of the surface, if one is here.
+    surface: Option<(f32, [f32; 3])>,
 }
 
 /// A splat at the pixel.
@@ -51,7 +53,8 @@ pub fn explain<R: Exact>(
     let source = Source::<R>::new(job.scene, job.camera, settings);
     let splats = Splats::new(job, &job.grid(), &source);
     let rules = Rules::new(settings);
-    let blending = Blending { source, splats: &splats, rules, buffers: job.buffers };
+    let (buffers, key) = (job.buffers, job.key);
+    let blending = Blending { source, splats: &splats, rules, buffers, key };
     let places = splats.places(tile, rect);
     let at = |place: usize, fragment: &GaussianFragment<R>, weight| {
         let index = splats.at(place).index;
@@ -68,9 +71,14 @@ pub fn explain<R: Exact>(
         drawn.push(at(place, fragment, weight));
     });
     let skipped = places.iter().zip(&seen).filter(|(_, seen)| !**seen);
-    let skipped = skipped.map(|(&place, _)| at(place, &blending.fragment(place, pixel), None));
+    let skipped = skipped.map(|(&place, _)| {
+        let mut fragment = blending.fragment(place, pixel);
+        fragment.depth = blending.depth(place, &fragment, pixel);
+        at(place, &fragment, None)
+    });
     let fragments = drawn.iter().cloned().chain(skipped).collect();
-    Ok(GaussianReplay { pixel, fragments, pixel_after, rules })
+    let surface = source.surface().and_then(|surface| surface.at(pixel.0, pixel.1));
+    Ok(GaussianReplay { pixel, fragments, pixel_after, rules, surface })
 }
 
 impl<R: Exact> fmt::Display for GaussianReplay<R> {
@@ -79,11 +87,15 @@ impl<R: Exact> fmt::Display for GaussianReplay<R> {
         writeln!(f, "pixel ({x}, {y}): {} splats reach it", self.fragments.len())?;
         for fragment in &self.fragments {
             fragment.fmt_projection(f)?;
-            fragment.fmt_decisions(f, &self.rules)?;
+            fragment.fmt_decisions(f, &self.rules, self.surface)?;
         }
         let GaussianPixel { blend, expected, median, id, heaviest, count, .. } = self.pixel_after;
+        if let Some((depth, color)) = self.surface {
+            writeln!(f, "\nthe surface: depth {depth}, colour {color:?}")?;
+        }
         if count == 0 {
-            return writeln!(f, "\nthe pixel is empty");
+            let nothing = self.surface.map_or("the pixel is empty", |_| "no splat is before it");
+            return writeln!(f, "\n{nothing}");
         }
         writeln!(
             f,
@@ -140,9 +152,14 @@ impl<R: Exact> FragmentAt<R> {
     }
 
     /// Writes the decisions on its fragment.
-    fn fmt_decisions(&self, f: &mut fmt::Formatter<'_>, rules: &Rules<R>) -> fmt::Result {
+    fn fmt_decisions(
+        &self,
+        f: &mut fmt::Formatter<'_>,
+        rules: &Rules<R>,
+        surface: Option<(f32, [f32; 3])>,
+    ) -> fmt::Result {
         let n = |value: R| value.to_f64();
-        let GaussianFragment { power, alpha, inside, dense, .. } = self.fragment;
+        let GaussianFragment { power, alpha, depth: own, inside, dense } = self.fragment;
         if let Some(RayFragment { at: [u, v], rho3d, rho2d, depth, met, .. }) = self.met {
             let (u, v, rho3d, rho2d) = (n(u), n(v), n(rho3d), n(rho2d));
             writeln!(f, "  u {u}, v {v}, rho3d {rho3d}, rho2d {rho2d}, depth {}", n(depth))?;
@@ -159,6 +176,11 @@ impl<R: Exact> FragmentAt<R> {
         write!(f, ", alpha {} {sign} {}", n(alpha), n(rules.least))?;
         match self.weight {
             _ if !dense => writeln!(f, ": skipped"),
+            None if let Some((opaque, _)) = surface
+                && n(own) > f64::from(opaque) =>
+            {
+                writeln!(f, ", depth {} > {opaque}: behind the surface, skipped", n(own))
+            }
             None => writeln!(f, ": after the end, T would be below {}", n(rules.stop)),
             Some(weight) => writeln!(f, ", weight {}", n(weight)),
         }

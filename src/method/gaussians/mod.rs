@@ -48,6 +48,11 @@
 //!      fragment with q/2 < 0 is skipped, and one of a disc that the ray does not meet. Under `ellipse` one is skipped unless q/2 <= (k k) / 2.
 //!    - alpha = the lesser of o e^(-q/2) and [`Settings::most_alpha`]. A fragment is skipped unless
 //!      alpha >= [`Settings::least_alpha`].
+//!    - With a surface, a fragment is skipped where its depth > Z, the surface's depth at the pixel. So
+//!      a fragment at Z itself is drawn. `Decided:` the depth that is compared is the one of the planes:
+//!      t of the centre, whatever the order; under `pixel`, and of a disc, the depth at the pixel.
+//!      Buffers of few digits compare both depths as the depth buffer holds them. What is skipped counts
+//!      nowhere: not for the count, the ids, T, the early stop or the depths.
 //!    - T' = T (1 - alpha). If T' < [`Settings::stop`] (or T' = it, with [`Settings::stop_at`]), the
 //!      pixel is done, without this fragment. A stop of 0 never ends a pixel, not even where T' is 0.
 //!    - Else [`crate::composite::under`]: C += (T alpha) c, A += T alpha, T = T'. The other planes
@@ -56,8 +61,18 @@
 //! 4. **Display.** An environment is seen behind the layers: its light, in the space of blending,
 //!    times T is added to C, and the opacity becomes 1. Without one the opacity is 1 - T. If colours
 //!    were blended in sRGB, C is decoded: the plane of the picture holds linear light over black.
+//!    Where Z is finite, the surface's colour stands in the place of the environment's light. `Decided:`
+//!    if C is 0 and T is 1 there, the picture has the surface's colour itself, which encoding and
+//!    decoding would round. A pixel where Z is +inf is as without a surface.
 //!    A PNG is divided by the opacity, so that only where that is 1 it shows the values that were
 //!    blended.
+//!
+//! # A surface
+//!
+//! A [`Surface`](crate::scene::Surface) is opaque geometry that another pass drew from the same camera: a
+//! depth Z, linear, and a colour, linear light, at each pixel. Both are `f32` whatever the arithmetic.
+//! `Decided:` the planes of blending are those of the splats alone. The surface adds nothing to the
+//! expected and the median depth, because its own depth is at hand, and T says how much of it is seen.
 //!
 //! A scene stores its colours as [`Encoding`](crate::scene::gaussians::Encoding) says; surfels store
 //! linear light.

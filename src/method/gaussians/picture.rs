@@ -12,8 +12,8 @@ use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture};
 use crate::method::stage::{Keep, unknown};
 use crate::method::surface::{ALPHA, SHADED};
-use crate::method::tiled::Tiled;
-use crate::number::{Exact, Real, srgb};
+use crate::method::tiled::{Tiled, pixels};
+use crate::number::{Exact, MapInline, Real, srgb};
 use crate::scene::gaussians::Encoding;
 
 /// The definition, in any number type.
@@ -40,11 +40,11 @@ fn blend<R: Exact>(
     splats: &Splats<R>,
 ) -> Tiled<GaussianPixel<R>> {
     let rules = Rules::new(source.settings);
-    let blending = Blending { source, splats, rules, buffers: job.buffers };
+    let blending = Blending { source, splats, rules, buffers: job.buffers, key: job.key };
     Tiled::new(job, |tile, rect| blending.tile(tile, rect))
 }
 
-/// The planes of the picture: the layers before the environment, as linear light.
+/// The planes of the picture: the layers before the surface or the environment, as linear light.
 pub(super) fn display<R: Exact>(
     job: &Job<'_>,
     source: &Source<'_, R>,
@@ -54,10 +54,15 @@ pub(super) fn display<R: Exact>(
     let mut shown = color.clone();
     // A power a number is enough work to run in parallel.
     let Rect { x0, y0, .. } = job.window;
+    let (environment, surface) = (&job.scene.environment, source.surface());
     job.exec.ordered((y0..).zip(shown.rows_mut()).collect(), |(y, row): (u32, &mut [[R; 3]])| {
-        if let Some(environment) = &job.scene.environment {
+        if environment.is_some() || surface.is_some() {
             for (x, pixel) in (x0..).zip(&mut *row) {
-                let light = environment.radiance(source.projector.view.ray(x, y));
+                let around =
+                    || Some(environment.as_ref()?.radiance(source.projector.view.ray(x, y)));
+                let opaque = surface.and_then(|surface| surface.at(x, y));
+                let light = opaque.map(|(_, light)| light.map_inline(R::from_f32)).or_else(around);
+                let Some(light) = light else { continue };
                 *pixel = before(source, *pixel, *through.at(x - x0, y - y0), light);
             }
         }
@@ -65,8 +70,19 @@ pub(super) fn display<R: Exact>(
             srgb::decode(row.as_flattened_mut());
         }
     });
-    let closed = job.scene.environment.is_some();
-    let alpha = through.map(|&through| if closed { R::ONE } else { R::ONE - through });
+    let closed = environment.is_some();
+    let mut alpha = through.map(|&through| if closed { R::ONE } else { R::ONE - through });
+    if let Some(surface) = surface {
+        for (x, y) in pixels(job.window) {
+            let Some((_, light)) = surface.at(x, y) else { continue };
+            let i = (y - y0) as usize * job.window.columns() + (x - x0) as usize;
+            alpha.values_mut()[i] = R::ONE;
+            // Encoding and decoding again would round a colour that nothing was blended over.
+            if (color.values()[i], through.values()[i]) == ([R::ZERO; 3], R::ONE) {
+                shown.values_mut()[i] = light.map_inline(R::from_f32);
+            }
+        }
+    }
     [SHADED.triple(0, shown), ALPHA.scalar(0, alpha)]
 }
 

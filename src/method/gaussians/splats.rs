@@ -5,7 +5,7 @@ use super::{BlendSpace, ColorBounds, Order, Settings, Support};
 use crate::frame::Rect;
 use crate::number::{Exact, MapInline, Real, Vector2, Vector3, elementary, srgb};
 use crate::scene::gaussians::Encoding;
-use crate::scene::{Camera, Gaussians, Scene};
+use crate::scene::{Camera, Gaussians, Scene, Surface};
 use crate::shade::harmonics;
 use crate::splat::gaussian::{GaussianProjector, GaussianShape, ProjectedGaussian, Symmetric};
 use crate::splat::ray_disc::{RayDisc, axes_of_gaussian, axes_of_surfel};
@@ -105,6 +105,12 @@ impl<'a, R: Real> Source<'a, R> {
             size: camera.size(),
             space,
         }
+    }
+
+    /// The opaque geometry that splats are mixed with.
+    #[inline(always)]
+    pub(crate) fn surface(&self) -> Option<&'a Surface> {
+        self.scene.surface.as_ref()
     }
 
     /// How many items there are.

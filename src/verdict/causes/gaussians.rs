@@ -27,6 +27,9 @@ pub(super) fn mistakes(case: &Case<'_, '_>, settings: &Settings) -> Mistakes {
     all.extend(
         OTHER_RULES.iter().map(|(rule, what)| ((*what).to_owned(), Change::Supposed(*rule))),
     );
+    let of_surface = session.scene().surface.is_some().then_some(RULES_OF_SURFACE);
+    let of_surface = of_surface.into_iter().flatten();
+    all.extend(of_surface.map(|(rule, what)| (what.to_owned(), Change::Supposed(rule))));
     all.extend(scenes::mistakes(session, camera));
     all
 }
@@ -71,6 +74,14 @@ const OTHER_RULES: [(Supposed, &str); 11] = [
         Supposed::StopAfter,
         "blending ends after the fragment that takes the transmittance below the stop, not before it",
     ),
+];
+
+/// The same where splats are mixed with a surface.
+const RULES_OF_SURFACE: [(Supposed, &str); 4] = [
+    (Supposed::SurfaceIgnored, "the surface has no effect: neither its depths nor its colours"),
+    (Supposed::SurfaceNotTested, "splats behind the surface are drawn: there is no depth test"),
+    (Supposed::SurfaceWhole, "the surface's colour is not multiplied by the transmittance"),
+    (Supposed::SurfaceNotSeen, "the background is added where the surface's colour should be"),
 ];
 
 /// The settings, each at other values that programs have.

@@ -6,7 +6,7 @@
 
 use super::{Case, Draws};
 use crate::error::{Error, Result};
-use crate::frame::Exec;
+use crate::frame::{Exec, Plane};
 use crate::index::mipmap;
 use crate::method::Method;
 use crate::number::random::unit;
@@ -14,7 +14,7 @@ use crate::scene::cloud::half_axes;
 use crate::scene::gaussians::{Encoding, MAX_DEGREE, coefficients};
 use crate::scene::{
     Camera, Cloud, Environment, GaussianArrays, Gaussians, Lens, Light, Phong, Polylines, Pose,
-    Primitives, Scene, Surfels, Triangles,
+    Primitives, Scene, Surface, Surfels, Triangles,
 };
 use crate::setting::{Fields, Refused};
 use crate::source::{Shape, derive};
@@ -56,6 +56,9 @@ impl Blob {
     }
 }
 
+/// Depth and colour of a surface at a column and row.
+pub(super) type Opaque = fn(u32, u32) -> (f32, [f32; 3]);
+
 /// A scene, a camera and settings that are still to be changed.
 #[derive(Clone, Debug)]
 pub(super) struct Sketch {
@@ -76,6 +79,8 @@ pub(super) struct Sketch {
     pub(super) lights: Vec<Light>,
     pub(super) material: Phong,
     pub(super) sky: bool,
+    /// The opaque geometry that Gaussians are mixed with.
+    pub(super) surface: Option<Opaque>,
     /// Whether surfels have colours, and whether they have opacities.
     pub(super) colored: bool,
     pub(super) veiled: bool,
@@ -111,6 +116,7 @@ impl Default for Sketch {
             lights: vec![Light::DEFAULT],
             material: Phong::default(),
             sky: false,
+            surface: None,
             colored: true,
             veiled: false,
             mipmaps: 0,
@@ -231,6 +237,11 @@ impl Sketch {
             if self.blobs.is_empty() { self.grouped(&method, exec)? } else { Surfels::none() };
         let gaussians = self.gaussians()?;
         let (camera, meshes) = (self.camera()?, self.meshes.clone());
+        let planes = |of: Opaque| {
+            let depth = Plane::from_pixels(self.size, |x, y| of(x, y).0);
+            Surface::new(depth, Plane::from_pixels(self.size, |x, y| of(x, y).1))
+        };
+        let surface = self.surface.map(planes).transpose()?;
         let scene = Scene {
             // Gaussians are not lit.
             lights: if gaussians.is_some() { Vec::new() } else { self.lights },
@@ -238,6 +249,7 @@ impl Sketch {
             environment: self.sky.then_some(Environment::Sky),
             primitives: primitives(self.meshes, exec)?,
             gaussians,
+            surface,
             ..Scene::unlit(rule, surfels)
         };
         Ok(Case { rule: rule.to_owned(), scene, meshes, camera, method })

@@ -7,6 +7,8 @@
 //!
 //! - Whether a splat is drawn: near plane, determinant, bounds.
 //! - Whether a fragment is inside, dense enough, or behind the end of blending.
+//! - Whether a fragment is behind the surface: where the ball of its depth holds the surface's, widened
+//!   by the format of the client's depth test.
 //! - Whether a disc that meets rays shows at a pixel, or its low-pass filter. A disc that is nearly
 //!   edge-on is decided where rho3d certainly is greater than rho2d.
 //! - Which of two splats is in front. Two splats are in the order of their indices only if their keys
@@ -45,7 +47,7 @@ use crate::method::gaussians::picture::before;
 use crate::method::gaussians::splats::Source;
 use crate::method::surface::{ALPHA, ID, SHADED};
 use crate::number::ball::Profile;
-use crate::number::{Ball, MapInline, Real, srgb};
+use crate::number::{Ball, MapInline, Real, Truth, srgb};
 use crate::scene::Environment;
 use crate::scene::gaussians::Encoding;
 use crate::verdict::checks::{Report, input, inputs, number, triple, widened};
@@ -96,6 +98,7 @@ struct Judge<'a, P: Profile> {
     environment: Option<&'a Environment>,
     accumulator: Storage,
     supposed: Supposed,
+    depth_test: Storage,
 }
 
 impl<'a, P: Profile> Judge<'a, P> {
@@ -116,6 +119,7 @@ impl<'a, P: Profile> Judge<'a, P> {
             environment: job.scene.environment.as_ref(),
             accumulator: client.accumulator,
             supposed: client.supposed,
+            depth_test: client.depth_test,
         }
     }
 
@@ -132,7 +136,8 @@ impl<'a, P: Profile> Judge<'a, P> {
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
         let [blending, display] = marks;
         let mut counts = Counts::default();
-        let mut walker = Walker::new((&self.source, self.supposed), &self.splats, (tile, rect));
+        let rules = (&self.source, self.supposed, self.depth_test);
+        let mut walker = Walker::new(rules, &self.splats, (tile, rect));
         for y in rect.y0..rect.y1 {
             for (column, at) in counted(Rect { y0: y, y1: y + 1, ..rect }) {
                 let pixel = (y - rect.y0) as usize * rect.columns() + column;
@@ -208,15 +213,33 @@ impl<'a, P: Profile> Judge<'a, P> {
             .through
             .as_ref()
             .map_or_else(|| widened(own.through, lost(1.0)), |plane| input(plane, at));
-        let light = self.environment.map_or(color, |environment| {
+        let unseen = matches!(self.supposed, Supposed::SurfaceNotSeen | Supposed::SurfaceIgnored);
+        let surface = self.source.surface().filter(|_| !unseen);
+        let opaque = surface.and_then(|surface| surface.at(at.0, at.1));
+        let opaque = opaque.map(|(_, light)| light.map_inline(Ball::from_f32));
+        let behind = opaque.or_else(|| {
             let ray = self.source.projector.view.ray(at.0, at.1);
-            let twice = self.supposed == Supposed::BackgroundTwice;
-            let through = if twice { through + through } else { through };
-            before(&self.source, color, through, environment.enclosure(ray))
+            Some(self.environment?.enclosure(ray))
+        });
+        let light = behind.map_or(color, |behind| {
+            let through = match self.supposed {
+                Supposed::BackgroundTwice => through + through,
+                Supposed::SurfaceWhole if opaque.is_some() => Ball::ONE,
+                _ => through,
+            };
+            before(&self.source, color, through, behind)
         });
         let encoded = self.source.space == Encoding::Srgb;
-        let color = if encoded { light.map_inline(srgb::decoded) } else { light };
-        let alpha = if self.environment.is_some() { Ball::ONE } else { Ball::ONE - through };
+        let own = if encoded { light.map_inline(srgb::decoded) } else { light };
+        // A client may keep the surface's colour where it blends nothing over it, or encode and decode.
+        let [zero, one] = [Ball::ZERO, Ball::ONE];
+        let none = |part: &Ball<P>| part.le(zero).possibly() && part.ge(zero).possibly();
+        let untouched = through.ge(one).possibly() && color.iter().all(none);
+        let color = match opaque.filter(|_| untouched) {
+            Some(opaque) => [0, 1, 2].map_inline(|c| own[c].either(opaque[c])),
+            None => own,
+        };
+        let alpha = if behind.is_some() { Ball::ONE } else { Ball::ONE - through };
         Blend { color, alpha }
     }
 }

@@ -9,13 +9,15 @@ use crate::method::{Job, Method, Session};
 use crate::number::ball::Gpu;
 use crate::number::elementary::pow_f32;
 use crate::number::random::unit;
-use crate::number::{Ball, Exact, Truth};
+use crate::number::srgb::{decoded, encoded};
+use crate::number::{Ball, Exact, Real, Truth};
 use crate::scene::gaussians::{Encoding, GaussianArrays, Gaussians};
-use crate::scene::{Camera, Lens, Pose, Scene};
+use crate::scene::{Camera, Lens, Pose, Scene, Surface};
 use crate::setting::Words;
 use crate::source::Shape;
 use crate::splat::gaussian::{GaussianKernel, ProjectedGaussian};
 use crate::splat::ray_disc::DiscRule;
+use crate::verdict::causes::likely_cause;
 use crate::verdict::client::{Client, Rounding};
 use crate::verdict::supposed::Supposed;
 use crate::verdict::{Doubt, Outcome, Verdict};
@@ -408,4 +410,111 @@ fn an_edge_on_disc_is_decided_and_wrong_discs_are_found() {
     for other in [settings(DiscRule::Ray, 0.0), settings(DiscRule::Ray, 1.0), Settings::INRIA] {
         assert_eq!(judge(&draw(&scene, other)).outcome(), Outcome::Wrong, "{other:?}");
     }
+}
+
+/// A plane that cuts through the cloud, and nothing opaque in some columns.
+fn cut([width, height]: [u32; 2]) -> Surface {
+    let depth = |x: u32, y: u32| {
+        if x % 8 == 7 { f32::INFINITY } else { 2.0 + 0.05 * x as f32 - 0.03 * y as f32 }
+    };
+    let color = |x, y| [0.75, 0.01 * x as f32, 0.02 * y as f32];
+    let size = [width, height];
+    Surface::new(Plane::from_pixels(size, depth), Plane::from_pixels(size, color)).unwrap()
+}
+
+#[test]
+fn pictures_with_a_surface_are_right_in_every_number_and_order() {
+    let (camera, exec) = (camera(48, 32), Exec::sequential());
+    for (name, settings) in Settings::WORDS {
+        let scene = Scene { surface: Some(cut([48, 32])), ..cloud(400, 0.05, 0.7) };
+        let session = Session::new(&scene, (*settings).into(), &exec).unwrap();
+        let narrow = Client::from(&session.define::<f32>(&camera, true).unwrap().frame);
+        let wide = session.define::<f64>(&camera, true).unwrap().frame.to_f32();
+        for client in [narrow, Client::from(&wide).rounded()] {
+            let verdict = session.verify(&camera, &client, Verdict::BUDGET).unwrap();
+            let (outcome, undecided) = (verdict.outcome(), verdict.undecided);
+            assert_eq!(outcome, Outcome::Right, "{name}: {undecided} undecided");
+        }
+    }
+}
+
+/// A splat whose depth and the surface's are equal but for rounding may be drawn or not.
+#[test]
+fn a_depth_at_the_surface_is_left_open_and_one_beside_it_is_not() {
+    let (camera, exec) = (camera(48, 32), Exec::sequential());
+    let aside = (Vec3::new(3.0, 0.0, -0.4).normalize() * 0.05, 0.3);
+    let arrays = GaussianArrays {
+        position: vec![aside.0],
+        scale: vec![Vec3::splat(aside.1)],
+        rotation: vec![[0.0, 0.0, 0.0, 1.0]],
+        opacity: vec![0.9],
+        degree: 0,
+        harmonics: vec![Vec3::X],
+        encoding: Encoding::Srgb,
+    };
+    let bare = Scene::of_gaussians("one", Gaussians::new(arrays).unwrap().0);
+    let with = |depth: f32| {
+        let color = Plane::filled(48, 32, [0.25, 0.5, 0.75]);
+        let surface = Surface::new(Plane::filled(48, 32, depth), color).unwrap();
+        Scene { surface: Some(surface), ..bare.clone() }
+    };
+    let draw = |scene: &Scene| {
+        let session = Session::new(scene, Settings::INRIA.into(), &exec).unwrap();
+        session.define::<f32>(&camera, true).unwrap().frame
+    };
+    let frame = draw(&with(10.0));
+    let own = frame.scalar("Z").unwrap().values().iter().fold(f32::INFINITY, |a, b| a.at_most(*b));
+    // Half an ulp or so apart, and a thousandth apart.
+    for (near, open) in [(1.0 / 16_777_216.0, true), (1e-3, false)] {
+        let [before, behind] = [own * (1.0 - near), own * (1.0 + 2.0 * near)].map(with);
+        for (scene, other) in [(&before, &behind), (&behind, &before)] {
+            let session = Session::new(scene, Settings::INRIA.into(), &exec).unwrap();
+            let outcome = |frame: &Frame<f32>| {
+                session.verify(&camera, &Client::from(frame), 1.0).unwrap().outcome()
+            };
+            assert_eq!(outcome(&draw(scene)), Outcome::Right);
+            let swapped = if open { Outcome::Right } else { Outcome::Wrong };
+            assert_eq!(outcome(&draw(other)), swapped, "{near}");
+        }
+    }
+}
+
+#[test]
+fn mistakes_with_a_surface_have_their_names() {
+    let (camera, exec) = (camera(48, 32), Exec::sequential());
+    let scene = Scene { surface: Some(cut([48, 32])), ..cloud(60, 0.2, 0.3) };
+    let session = Session::new(&scene, Settings::INRIA.into(), &exec).unwrap();
+    let alone = Scene { surface: None, ..scene.clone() };
+    let alone = Session::new(&alone, Settings::INRIA.into(), &exec).unwrap();
+    let right = session.define::<f32>(&camera, true).unwrap().frame;
+    let ignored = alone.define::<f32>(&camera, true).unwrap().frame;
+    // Clients that keep their blended colours, and one that hands in its picture alone.
+    let picture = |of: &dyn Fn(usize) -> [f32; 3]| {
+        let plane = Plane::from_values(48, 32, (0..48 * 32).map(of).collect());
+        Frame::new(48, 32).with("", Samples::Color(plane)).unwrap()
+    };
+    let surface = scene.surface.as_ref().unwrap();
+    let shown = |frame: &Frame<f32>, factor: &dyn Fn(f32) -> f32| {
+        let (blended, through) = (frame.color("blended").unwrap(), frame.scalar("T").unwrap());
+        picture(&|i| {
+            let (color, seen) = (blended.values()[i], factor(through.values()[i]));
+            let light = surface.colors().values()[i];
+            [0, 1, 2].map(|k| decoded(color[k] + seen * encoded(light[k])))
+        })
+    };
+    for (frame, words) in [
+        (shown(&ignored, &|through| through), "there is no depth test"),
+        (ignored, "the surface has no effect"),
+        (shown(&right, &|_| 1.0), "not multiplied by the transmittance"),
+        (shown(&right, &|_| 0.0), "the background is added"),
+    ] {
+        let client = Client::from(&frame);
+        let verdict = session.verify(&camera, &client, Verdict::BUDGET).unwrap();
+        assert_eq!(verdict.outcome(), Outcome::Wrong, "{words}");
+        let cause = likely_cause(&session, &camera, &client, &verdict).unwrap();
+        assert!(cause.as_ref().is_some_and(|cause| cause.contains(words)), "{words}: {cause:?}");
+    }
+    let client = Client::from(&shown(&right, &|through| through));
+    let verdict = session.verify(&camera, &client, Verdict::BUDGET).unwrap();
+    assert_eq!(verdict.outcome(), Outcome::Right);
 }

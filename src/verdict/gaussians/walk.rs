@@ -13,6 +13,7 @@ use crate::number::{Ball, MapInline, Real, Truth};
 use crate::splat::ray_disc::RayFragment;
 use crate::verdict::Doubt;
 use crate::verdict::checks::widened;
+use crate::verdict::client::Storage;
 use crate::verdict::supposed::Supposed;
 
 /// A fragment that may be drawn.
@@ -39,18 +40,20 @@ pub(super) struct Walker<'a, P: Profile> {
     source: &'a Source<'a, Ball<P>>,
     splats: &'a PossibleSplats<P>,
     supposed: Supposed,
+    /// What the client's test against the surface compares.
+    depth_test: Storage,
     rules: Rules<Ball<P>>,
     places: Vec<usize>,
 }
 
 impl<'a, P: Profile> Walker<'a, P> {
     pub(super) fn new(
-        (source, supposed): (&'a Source<'a, Ball<P>>, Supposed),
+        (source, supposed, depth_test): (&'a Source<'a, Ball<P>>, Supposed, Storage),
         splats: &'a PossibleSplats<P>,
         part: (usize, Rect),
     ) -> Self {
         let (rules, places) = (Rules::new(source.settings), splats.places(part));
-        Self { source, splats, supposed, rules, places }
+        Self { source, splats, supposed, depth_test, rules, places }
     }
 
     /// What may be at a pixel.
@@ -108,12 +111,28 @@ impl<'a, P: Profile> Walker<'a, P> {
             }
             _ => depth,
         };
+        let drawn = drawn & self.before_surface(depth, at);
+        if !drawn.possibly() {
+            return None;
+        }
         let key = if self.source.settings.order == Order::Pixel { depth } else { own.key };
         Some(Possible { splat, alpha, drawn, key, depth })
     }
 }
 
 impl<P: Profile> Walker<'_, P> {
+    /// Whether a fragment of this depth is not behind the surface.
+    fn before_surface(&self, depth: Ball<P>, (x, y): (u32, u32)) -> Three {
+        if matches!(self.supposed, Supposed::SurfaceNotTested | Supposed::SurfaceIgnored) {
+            return true.into();
+        }
+        match self.source.surface().and_then(|surface| surface.at(x, y)) {
+            // The surface has its bits from a file, so only the fragment's depth is open.
+            Some((opaque, _)) => self.depth_test.tested(depth).le(Ball::exact(opaque.into())),
+            None => true.into(),
+        }
+    }
+
     /// The fragment of a splat at a pixel within its bounds.
     fn fragment(&self, splat: &PossibleSplat<P>, at: (u32, u32)) -> GaussianFragment<Ball<P>> {
         let own = &splat.splat;

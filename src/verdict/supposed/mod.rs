@@ -106,6 +106,14 @@ pub(crate) enum Supposed {
     BackgroundTwice,
     /// Covariances of Gaussians may be rounded to half floats.
     HalfCovariance,
+    /// The surface has no effect.
+    SurfaceIgnored,
+    /// Gaussians behind the surface are drawn.
+    SurfaceNotTested,
+    /// The surface's colour is not multiplied by the transmittance.
+    SurfaceWhole,
+    /// What is seen behind Gaussians is the background, where there is a surface too.
+    SurfaceNotSeen,
 }
 
 impl Supposed {

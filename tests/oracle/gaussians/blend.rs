@@ -169,7 +169,24 @@ impl Model<'_> {
             return None;
         }
         let depth = met.map_or_else(|| self.depth(splat, at), |met| met.depth);
-        Some(Fragment { splat, alpha, depth, sure: sure && !near })
+        sure &= !near;
+        if let Some((opaque, _)) = self.opaque(at) {
+            let behind = depth.value - f64::from(opaque);
+            let near = tips(behind, opaque.into(), depth.condition);
+            sure &= !near;
+            if behind > 0.0 && !near {
+                return None;
+            }
+        }
+        Some(Fragment { splat, alpha, depth, sure })
+    }
+
+    /// Depth and colour of the surface at a pixel.
+    pub(crate) fn opaque(&self, [x, y]: [f64; 2]) -> Option<(f32, [f32; 3])> {
+        let surface = self.scene.surface.as_ref()?;
+        let i = y as usize * self.camera.width as usize + x as usize;
+        let depth = surface.depths().values()[i];
+        (depth != f32::INFINITY).then(|| (depth, surface.colors().values()[i]))
     }
 
     /// q by the adjugate of V over its determinant.

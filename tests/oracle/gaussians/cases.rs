@@ -8,7 +8,9 @@ use splatref::frame::Plane;
 use splatref::method::gaussians::{BlendSpace, ColorBounds, Order, Settings, Support};
 use splatref::scene::environment::Map;
 use splatref::scene::gaussians::{Encoding, coefficients};
-use splatref::scene::{Camera, Environment, GaussianArrays, Gaussians, Lens, Pose, Scene, Surfels};
+use splatref::scene::{
+    Camera, Environment, GaussianArrays, Gaussians, Lens, Pose, Scene, Surface, Surfels,
+};
 use splatref::splat::gaussian::{Clamp, Compensation, GaussianKernel};
 use splatref::splat::ray_disc::DiscRule;
 
@@ -316,8 +318,44 @@ fn discs() -> Vec<Case<Settings>> {
     all
 }
 
+/// Depths about those of the splats, and nothing opaque in a third of the pixels.
+pub(crate) fn opaque([width, height]: [u32; 2], seed: u64) -> Surface {
+    let (mut dice, count) = (Dice(seed), (width * height) as usize);
+    let mut depth = || if dice.below(3) == 0 { f32::INFINITY } else { dice.within(1.5, 5.5) };
+    let depths = (0..count).map(|_| depth()).collect();
+    let colors = (0..count).map(|_| [(); 3].map(|()| dice.within(0.0, 1.5))).collect();
+    let depths = Plane::from_values(width, height, depths);
+    Surface::new(depths, Plane::from_values(width, height, colors)).expect("a surface")
+}
+
+/// Every preset, every order and every space of blending, mixed with a surface.
+fn mixed() -> Vec<Case<Settings>> {
+    let mut all = Vec::new();
+    for (p, (name, preset)) in PRESETS.into_iter().enumerate() {
+        let seed = 500 + 4 * p as u64;
+        let others = [
+            preset,
+            Settings { order: Order::Steps, stop: 0.25, ..preset },
+            Settings { order: Order::Pixel, blend: BlendSpace::Linear, ..preset },
+            Settings { order: Order::Distance, blend: BlendSpace::Srgb, ..preset },
+        ];
+        for (settings, seed) in others.into_iter().zip(seed..) {
+            let scene = match seed % 4 {
+                1 => surfels(24, true, seed),
+                2 => surrounded(random(30, 1, Encoding::Linear, seed)),
+                _ => random(40, 1, Encoding::Srgb, seed),
+            };
+            let scene = Scene { surface: Some(opaque(SIZE, seed)), ..scene };
+            let what = format!("{name}, {:?}, {:?}, a surface", settings.order, settings.blend);
+            all.push(case(what, scene, camera(p % 3 == 1, SIZE), settings));
+        }
+    }
+    all
+}
+
 pub(crate) fn all() -> Vec<Case<Settings>> {
     let mut all = by_preset();
+    all.extend(mixed());
     all.extend(discs());
     all.extend(by_setting());
     all.extend(limits());

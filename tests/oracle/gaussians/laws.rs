@@ -6,11 +6,12 @@ use crate::oracle::kit::draw::Drawing;
 use crate::oracle::kit::planes::{digest, index, number, numbers, pixels, plane, value};
 use crate::oracle::kit::scene::ahead;
 use glam::{Mat4, Quat, Vec3};
-use splatref::frame::{Exec, Frame};
-use splatref::method::gaussians::{Order, Settings};
+use splatref::frame::{Exec, Frame, Plane};
+use splatref::method::gaussians::{BlendSpace, Order, Settings};
 use splatref::number::Exact;
+use splatref::scene::environment::Map;
 use splatref::scene::gaussians::Encoding;
-use splatref::scene::{GaussianArrays, Lens, Scene};
+use splatref::scene::{Camera, Environment, GaussianArrays, Lens, Scene, Surface};
 
 const SIZE: [u32; 2] = [33, 17];
 
@@ -174,7 +175,8 @@ fn the_sign_of_a_quaternion_changes_no_bit() {
 fn threads_and_tiles_leave_no_trace() {
     let one = Exec::new(1, 16).expect("in range");
     for (p, (name, settings)) in PRESETS.into_iter().enumerate() {
-        let scene = cases::random(60, 1, Encoding::Srgb, 40 + p as u64);
+        let mut scene = cases::random(60, 1, Encoding::Srgb, 40 + p as u64);
+        scene.surface = (p % 2 == 0).then(|| cases::opaque([67, 37], p as u64));
         let camera = cases::camera(p == 3, [67, 37]);
         let drawing = Drawing::new(&scene, &camera, settings);
         let bits = |exec: &Exec| {
@@ -197,6 +199,115 @@ fn the_fast_path_has_the_bits_of_the_plain_one() {
         for made in &fast.planes {
             let same = plane(&plain, &made.name) == &made.samples;
             assert!(same, "plane '{}' of {}", made.name, case.name);
+        }
+    }
+}
+
+/// One depth at every pixel, in colours that differ or in this one.
+fn wall(depth: f32, color: Option<[f32; 3]>) -> Surface {
+    let mut dice = Dice(12);
+    let mut pixel = || color.unwrap_or_else(|| [(); 3].map(|()| dice.within(0.0, 1.5)));
+    let [width, height] = SIZE;
+    let colors = (0..width * height).map(|_| pixel()).collect();
+    let depths = Plane::filled(width, height, depth);
+    Surface::new(depths, Plane::from_values(width, height, colors)).expect("a surface")
+}
+
+/// The digests of all planes in both numbers and by the fast path.
+fn all_bits(scene: &Scene, camera: &Camera, settings: Settings) -> [Vec<u8>; 3] {
+    let drawing = Drawing::new(scene, camera, settings);
+    [
+        digest(&drawing.frame::<f32>()),
+        digest(&drawing.frame::<f64>()),
+        digest(&drawing.fast().frame),
+    ]
+}
+
+#[test]
+fn a_surface_that_is_nowhere_changes_nothing() {
+    for (p, (name, settings)) in PRESETS.into_iter().enumerate() {
+        let mut scene = cases::random(40, 1, Encoding::Srgb, 110 + p as u64);
+        scene.environment = (p % 2 == 0).then_some(Environment::Sky);
+        let camera = cases::camera(p == 3, SIZE);
+        let bare = all_bits(&scene, &camera, settings);
+        scene.surface = Some(wall(f32::INFINITY, None));
+        assert!(all_bits(&scene, &camera, settings) == bare, "{name}");
+    }
+}
+
+#[test]
+fn a_surface_before_everything_is_the_picture() {
+    fn check<R: Exact>(frame: &Frame<R>, surface: &Surface, name: &str) {
+        for (i, color) in surface.colors().values().iter().enumerate() {
+            assert_eq!(value(frame, "", i), color.map(f64::from), "{name}, pixel {i}");
+            let empty = [number(frame, "T", i), number(frame, "A", i), number(frame, "count", i)];
+            assert_eq!(empty, [1.0, 1.0, 0.0], "{name}, pixel {i}");
+            assert_eq!(number(frame, "Z", i), f64::INFINITY, "{name}, pixel {i}");
+        }
+    }
+    for (p, (name, settings)) in PRESETS.into_iter().enumerate() {
+        let mut scene = cases::random(40, 1, Encoding::Srgb, 120 + p as u64);
+        let surface = wall(0.0, None);
+        scene.surface = Some(surface.clone());
+        let camera = cases::camera(p == 3, SIZE);
+        let drawing = Drawing::new(&scene, &camera, settings);
+        check(&drawing.frame::<f32>(), &surface, name);
+        check(&drawing.frame::<f64>(), &surface, name);
+        check(&drawing.fast().frame, &surface, name);
+    }
+}
+
+/// In linear light, where an environment is not rounded by encoding and decoding.
+#[test]
+fn a_surface_behind_everything_is_an_environment_of_its_colour() {
+    let color = [0.25, 0.75, 0.125];
+    let map = Map::new(Plane::filled(8, 4, color)).expect("a map");
+    for (p, (name, settings)) in PRESETS.into_iter().enumerate() {
+        let settings = Settings { blend: BlendSpace::Linear, ..settings };
+        let mut scene = cases::random(40, 1, Encoding::Srgb, 130 + p as u64);
+        scene.environment = Some(Environment::Map(map.clone()));
+        let camera = cases::camera(p == 3, SIZE);
+        let around = all_bits(&scene, &camera, settings);
+        (scene.environment, scene.surface) = (None, Some(wall(1e30, Some(color))));
+        assert!(all_bits(&scene, &camera, settings) == around, "{name}");
+    }
+}
+
+/// Where splats have one depth each, a wall leaves the picture of those that are not behind it.
+#[test]
+fn a_wall_leaves_out_the_splats_behind_it() {
+    let camera = cases::camera(false, SIZE);
+    let row = camera.view_from_world.row(2).as_dvec4();
+    let some = |arrays: &GaussianArrays, keep: &dyn Fn(Vec3) -> bool| {
+        let all = || (0..arrays.position.len()).filter(|i| keep(arrays.position[*i]));
+        GaussianArrays {
+            position: all().map(|i| arrays.position[i]).collect(),
+            scale: all().map(|i| arrays.scale[i]).collect(),
+            rotation: all().map(|i| arrays.rotation[i]).collect(),
+            opacity: all().map(|i| arrays.opacity[i]).collect(),
+            harmonics: all().map(|i| arrays.harmonics[i]).collect(),
+            ..arrays.clone()
+        }
+    };
+    for (p, (name, settings)) in PRESETS.into_iter().take(4).enumerate() {
+        let arrays = cases::arrays(40, 0, 140 + p as u64);
+        let depth = |at: Vec3| -row.dot(at.as_dvec3().extend(1.0));
+        let mut depths: Vec<f64> = arrays.position.iter().map(|at| depth(*at)).collect();
+        depths.sort_by(f64::total_cmp);
+        // Between two splats, where no rounding reaches.
+        let gap = |i: &usize| depths[*i + 1] - depths[*i];
+        let widest = (15..25).max_by(|a, b| gap(a).total_cmp(&gap(b))).expect("a gap");
+        let at = 0.5 * (depths[widest] + depths[widest + 1]);
+        let before = cases::scene_of(some(&arrays, &|own| depth(own) < at));
+        let mixed = Scene { surface: Some(wall(at as f32, None)), ..cases::scene_of(arrays) };
+        let [a, b] = [&before, &mixed].map(|scene| {
+            let drawing = Drawing::new(scene, &camera, settings);
+            (drawing.frame::<f64>(), drawing.fast().frame)
+        });
+        for plane in ["blended", "T", "Z", "Z.expected", "Z.median", "count"] {
+            let same = self::plane(&a.0, plane) == self::plane(&b.0, plane)
+                && self::plane(&a.1, plane) == self::plane(&b.1, plane);
+            assert!(same, "{name}: '{plane}'");
         }
     }
 }

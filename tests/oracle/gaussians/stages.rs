@@ -68,8 +68,12 @@ impl<R: Exact> Check<'_, R> {
         let mut light = truth.color;
         let one = Conditioned::exact(1.0);
         let mut alpha = one - truth.through;
-        if let Some(environment) = &model.scene.environment {
-            let mut behind = radiance(environment, world_ray(&model.eye, center), 4.0 * step);
+        let opaque = model.opaque(center.map(f64::floor));
+        let opaque = opaque.map(|(_, color)| color.map(|c| Conditioned::exact(c.into())));
+        let around = model.scene.environment.as_ref();
+        let around =
+            around.map(|around| radiance(around, world_ray(&model.eye, center), 4.0 * step));
+        if let Some(mut behind) = opaque.or(around) {
             if srgb {
                 behind = behind.map(|light| transferred(true, light, step));
             }
@@ -78,6 +82,11 @@ impl<R: Exact> Check<'_, R> {
         }
         if srgb {
             light = light.map(|light| transferred(false, light, step));
+        }
+        // What nothing was blended over is not encoded and decoded again.
+        let untouched = truth.through.value == 1.0 && truth.color.iter().all(|c| c.value == 0.0);
+        if let Some(opaque) = opaque.filter(|_| untouched) {
+            light = opaque;
         }
         self.color("", light);
         self.number("A", alpha);

@@ -67,6 +67,7 @@ taken! {
         "gaussians_mip_f64",
         "gaussians_rays",
         "gaussians_steps",
+        "gaussians_surface",
     ];
     single_pass::Settings, SinglePass: [
         "zp06_identity_sphere",

@@ -51,7 +51,10 @@ impl Shared<'_> {
         let pixels: Vec<Pixel> = all().map(|at| self.pixel(&splats, at)).collect();
         let colors = all().zip(&pixels).map(|(at, pixel)| self.display(pixel, at)).collect();
         let covered = self.scene.environment.is_some();
-        let opacity = |pixel: &Pixel| if covered { 1.0 } else { 1.0 - pixel.through };
+        let opacities = all().zip(&pixels).map(|(at, pixel)| {
+            if covered || self.opaque(at).is_some() { 1.0 } else { 1.0 - pixel.through }
+        });
+        let opacities = Samples::Scalar(self.plane(opacities.collect()));
         let expected = |pixel: &Pixel| match pixel.alpha > 0.0 {
             true => pixel.moment / pixel.alpha,
             false => f32::INFINITY,
@@ -72,7 +75,7 @@ impl Shared<'_> {
             ("heaviest", ids(&|pixel| pixel.heaviest)),
             ("count", Samples::Count(self.plane(pixels.iter().map(|p| p.count).collect()))),
             ("", Samples::Color(self.plane(colors))),
-            ("A", numbers(&opacity)),
+            ("A", opacities),
         ];
         let mut frame = Frame::new(width, height);
         for (name, samples) in planes {
@@ -208,7 +211,18 @@ impl Shared<'_> {
             Order::Pixel => self.deepest(splat, at),
             _ => splat.depth,
         };
+        if self.opaque(at).is_some_and(|(opaque, _)| depth > opaque) {
+            return None;
+        }
         Some(Fragment { splat, alpha, depth })
+    }
+
+    /// Depth and colour of the surface at a pixel.
+    fn opaque(&self, (x, y): (u32, u32)) -> Option<(f32, [f32; 3])> {
+        let (surface, [width, _]) = (self.scene.surface.as_ref()?, self.size);
+        let i = (y * width + x) as usize;
+        let depth = surface.depths().values()[i];
+        (depth != f32::INFINITY).then(|| (depth, surface.colors().values()[i]))
     }
 
     /// q/2.
@@ -257,8 +271,10 @@ impl Shared<'_> {
     /// What is seen: the layers before the environment, as linear light.
     fn display(&self, pixel: &Pixel, (x, y): (u32, u32)) -> [f32; 3] {
         let mut color = pixel.color;
-        if let Some(environment) = &self.scene.environment {
-            let light = environment.radiance(self.ray(x, y));
+        let opaque = self.opaque((x, y)).map(|(_, color)| color);
+        let environment = self.scene.environment.as_ref();
+        let around = || environment.map(|environment| environment.radiance(self.ray(x, y)));
+        if let Some(light) = opaque.or_else(around) {
             let light = if self.space == Encoding::Srgb { light.map(encoded) } else { light };
             let times = if self.how.has(Bug::BackgroundTwice) { 2.0 } else { 1.0 };
             color = [0, 1, 2].map(|c| color[c] + times * pixel.through * light[c]);

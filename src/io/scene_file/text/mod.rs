@@ -90,11 +90,10 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
             *table = beside(table);
         }
     }
-    let mut environment = file.environment;
+    let (mut environment, mut camera) = (file.environment, file.camera);
     if let Some(EnvironmentChoice::File(map)) = &mut environment {
         *map = beside(map);
     }
-    let mut camera = file.camera;
     camera.views.iter_mut().for_each(|views| views.path = beside(&views.path));
     Ok(SceneFile {
         name: stem(path),
@@ -109,6 +108,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
         lights: file.light.unwrap_or_else(|| vec![Light::DEFAULT]),
         material: file.material,
         environment,
+        surface: file.surface.as_deref().map(beside),
         method: file.method,
         groups: file.groups,
         output: file.output,
@@ -119,6 +119,7 @@ pub(super) fn parse(text: &str, path: &Path) -> Result<SceneFile> {
 #[serde(deny_unknown_fields)]
 struct File {
     hierarchy: Option<PathBuf>,
+    surface: Option<PathBuf>,
     #[serde(default)]
     model: Vec<Model>,
     #[serde(default)]

@@ -18,6 +18,7 @@ use std::path::{Path, PathBuf};
 #[derive(serde::Serialize)]
 struct Tables {
     hierarchy: Option<PathBuf>,
+    surface: Option<PathBuf>,
     model: Option<Vec<RawModel>>,
     geometry: Option<Vec<RawModel>>,
     object: Option<Vec<RawObject>>,
@@ -51,6 +52,7 @@ impl Tables {
             objects.iter().map(|object| RawObject::from_object(object, geometries, place));
         Ok(Self {
             hierarchy: hierarchy.as_deref().map(|folder| place.path(folder)),
+            surface: file.surface.as_deref().map(|exr| place.path(exr)),
             model: some(models.iter().map(|model| RawModel::from_model(model, place))),
             geometry: some(geometries.iter().map(|one| RawModel::of_geometry(one, place))),
             object: some(objects),

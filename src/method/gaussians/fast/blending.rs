@@ -8,6 +8,7 @@ use crate::method::gaussians::splats::GaussianSplat;
 use crate::number::Real;
 use crate::number::elementary::exp_f32_in_range;
 use crate::number::lanes::{LANES, Lanes, Mask, any, each, mask, select, select_u32, vectorized};
+use crate::scene::Surface;
 use multiversion::target::target_cfg_f;
 
 /// The pixels of a block, row by row.
@@ -62,17 +63,23 @@ impl Block {
 pub(super) struct Blocks {
     grid: BlockGrid,
     all: Vec<Block>,
+    /// The depths of the surface in each block; empty without one.
+    opaque: Vec<Lanes>,
 }
 
 impl Blocks {
-    pub(super) fn new(rect: Rect) -> Self {
+    pub(super) fn new(rect: Rect, surface: Option<&Surface>) -> Self {
         let grid = BlockGrid::new(rect);
         let mut all = vec![Block::EMPTY; grid.len()];
         // Lanes beyond the edge of the picture never begin, so that they hold up no block.
         for (block, pixels) in all.iter_mut().enumerate() {
             pixels.alive = inside(rect, grid.corner(block));
         }
-        Self { grid, all }
+        let depths = |surface| {
+            (0..grid.len()).map(|block| opaque(surface, rect, grid.corner(block))).collect()
+        };
+        let opaque = surface.map_or_else(Vec::new, depths);
+        Self { grid, all, opaque }
     }
 
     /// Blends splats in their order.
@@ -81,13 +88,13 @@ impl Blocks {
     }
 
     /// Calls `add` for every splat in order, with each block that its bounds touch and that blending
-    /// goes on in, and with the first pixel of the block.
+    /// goes on in, with the depths of the surface there, and with the first pixel of the block.
     #[inline(always)]
     pub(super) fn each<S>(
         &mut self,
         splats: &[S],
         bounds: impl Fn(&S) -> Rect,
-        mut add: impl FnMut(&S, &mut Block, (u32, u32)),
+        mut add: impl FnMut(&S, (&mut Block, Option<&Lanes>), (u32, u32)),
     ) {
         let rect = self.grid.rect;
         let mut left = self.all.len();
@@ -97,11 +104,13 @@ impl Blocks {
                 ((touched.x0 - rect.x0) / SIDE, (touched.x1 - rect.x0).div_ceil(SIDE));
             for row in (touched.y0 - rect.y0) / SIDE..(touched.y1 - rect.y0).div_ceil(SIDE) {
                 for column in first..last {
-                    let block = &mut self.all[(row * self.grid.columns + column) as usize];
+                    let index = (row * self.grid.columns + column) as usize;
+                    let block = &mut self.all[index];
                     if !any(&block.alive) {
                         continue;
                     }
-                    add(splat, block, (rect.x0 + column * SIDE, rect.y0 + row * SIDE));
+                    let opaque = self.opaque.get(index);
+                    add(splat, (block, opaque), (rect.x0 + column * SIDE, rect.y0 + row * SIDE));
                     left -= usize::from(!any(&block.alive));
                 }
             }
@@ -153,8 +162,9 @@ vectorized!(
         blocks.each(
             splats,
             |splat| splat.bounds,
-            |splat, block, corner| {
-                let fragments = fragments::<FUSED>(splat, limits, corner, &block.alive);
+            |splat, (block, opaque), corner| {
+                let seen = before(&block.alive, opaque, |_| splat.depth);
+                let fragments = fragments::<FUSED>(splat, limits, corner, &seen);
                 if let Some((alpha, takes)) = fragments {
                     block.add(splat, limits, (&alpha, &takes), |_| splat.depth);
                 }
@@ -169,6 +179,24 @@ pub(super) fn inside(rect: Rect, (x, y): (u32, u32)) -> Mask {
         let (column, row) = (i as u32 % SIDE, i as u32 / SIDE);
         x + column < rect.x1 && y + row < rect.y1
     })
+}
+
+/// The depths of the surface in a block of a tile from this pixel on; +inf beside the tile.
+pub(super) fn opaque(surface: &Surface, rect: Rect, (x, y): (u32, u32)) -> Lanes {
+    each(|i| {
+        let (column, row) = (x + i as u32 % SIDE, y + i as u32 / SIDE);
+        let inside = column < rect.x1 && row < rect.y1;
+        if inside { *surface.depths().at(column, row) } else { f32::INFINITY }
+    })
+}
+
+/// The lanes among `of` in which a fragment is not behind the surface.
+#[inline(always)]
+pub(super) fn before(of: &Mask, opaque: Option<&Lanes>, depth: impl Fn(usize) -> f32) -> Mask {
+    match opaque {
+        Some(opaque) => each(|i| if depth(i) > opaque[i] { 0 } else { of[i] }),
+        None => *of,
+    }
 }
 
 /// The alphas of a splat in a block from this pixel on, and the lanes among `of` that take them; none

@@ -1,6 +1,6 @@
 //! Blend discs that meet the rays of pixels into the blocks of a tile.
 
-use super::blending::{Blocks, Limits, alphas};
+use super::blending::{Blocks, Limits, alphas, before};
 use crate::frame::Rect;
 use crate::method::fast::tile::SIDE;
 use crate::method::gaussians::splats::GaussianSplat;
@@ -21,9 +21,10 @@ vectorized!(
         blocks.each(
             splats,
             |(splat, _)| splat.bounds,
-            |(splat, disc), block, corner| {
+            |(splat, disc), (block, opaque), corner| {
                 let own = fragments::<FUSED>((splat, disc), (rays, limits), corner, &block.alive);
                 if let Some((alpha, takes, depth)) = own {
+                    let takes = before(&takes, opaque, |i| depth[i]);
                     block.add(splat, limits, (&alpha, &takes), |i| depth[i]);
                 }
             },

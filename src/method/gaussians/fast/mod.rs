@@ -3,7 +3,8 @@
 //! A tile gathers its splats in their order. Each splat is blended into the blocks that it may touch;
 //! a block whose pixels are all done is left out, and the tile ends when all of its blocks are. In an
 //! order of each pixel's own, a block lists all fragments first, and each pixel then sorts its own.
-//! Discs that meet rays evaluate the definition's own function in each lane.
+//! Discs that meet rays evaluate the definition's own function in each lane. With a surface, each block
+//! has its depths, and a lane leaves out what is behind its own.
 
 mod blending;
 mod discs;
@@ -46,7 +47,8 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
         })?;
     }
     let rules = Rules::new(settings);
-    let blending = Blending { source, splats: &splats, rules, buffers: Buffers::F32 };
+    let (buffers, key) = (Buffers::F32, job.key);
+    let blending = Blending { source, splats: &splats, rules, buffers, key };
     let mut target = Target::new(job.size(), pool);
     let tiles = target.cut(&grid, job);
     job.exec.ordered(tiles, |mut tile| {
@@ -57,7 +59,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
         } else if own {
             tile.store(&own_order::blend(&blending, &places, rect));
         } else {
-            let mut blocks = Blocks::new(rect);
+            let mut blocks = Blocks::new(rect, blending.source.surface());
             blend(&blending, &places, &mut blocks);
             tile.store(blocks.finished());
         }

@@ -1,6 +1,6 @@
 //! Blend a tile in an order of each pixel's own.
 
-use super::blending::{Block, Limits, fragments, inside};
+use super::blending::{Block, Limits, before, fragments, inside, opaque};
 use super::discs;
 use crate::frame::Rect;
 use crate::method::fast::tile::{BlockGrid, SIDE};
@@ -50,8 +50,10 @@ pub(super) fn blend(blending: &Blending<'_, f32>, places: &[usize], rect: Rect) 
     let blocks = (0..grid.len()).map(|block| {
         let mut pixels = Block::EMPTY;
         lists.iter_mut().for_each(Vec::clear);
-        let place = (rect, grid.corner(block));
-        list(&mut lists, &all, (&limits, &blending.source.projector), place);
+        let corner = grid.corner(block);
+        let surface = blending.source.surface().map(|surface| opaque(surface, rect, corner));
+        let rules = (&limits, &blending.source.projector);
+        list(&mut lists, &all, rules, (rect, corner, surface.as_ref()));
         for (i, list) in lists.iter_mut().enumerate() {
             if !list.is_empty() {
                 pixels.set(i, blended(blending, &all, list));
@@ -85,7 +87,7 @@ vectorized!(
         lists: &mut [Vec<Fragment>; LANES],
         all: &[Near<'_>],
         (limits, projector): (&Limits, &GaussianProjector<f32>),
-        (rect, corner): (Rect, (u32, u32)),
+        (rect, corner, opaque): (Rect, (u32, u32), Option<&Lanes>),
     ) {
         const FUSED: bool = target_cfg_f!(target_feature = "fma");
         let own = inside(rect, corner);
@@ -107,6 +109,7 @@ vectorized!(
                 }
             };
             let Some((alpha, takes, depth)) = found else { continue };
+            let takes = before(&takes, opaque, |i| depth[i]);
             for i in 0..LANES {
                 if takes[i] != 0 {
                     let (depth, alpha) = (depth[i], alpha[i]);

@@ -1,10 +1,12 @@
 use super::super::Support;
 use super::*;
-use crate::frame::Exec;
+use crate::frame::{Exec, Frame};
+use crate::method::buffer_formats::{DepthBuffer, Formats};
 use crate::method::{Method, Session};
+use crate::number::Real;
 use crate::number::random::unit;
 use crate::scene::gaussians::{Encoding, GaussianArrays, Gaussians, coefficients};
-use crate::scene::{Camera, Environment, Lens, Pose, Scene};
+use crate::scene::{Camera, Environment, Lens, Pose, Scene, Surface};
 use crate::setting::Words;
 use crate::splat::gaussian::GaussianKernel;
 use crate::splat::ray_disc::DiscRule;
@@ -55,6 +57,19 @@ fn cameras() -> Vec<Camera> {
     ]
 }
 
+/// Depths around those of the splats in some pixels, one of them exactly where a third of the splats
+/// are, and nothing opaque in others.
+fn surface(size: [u32; 2], seed: u64) -> Surface {
+    let number = |x: u32, y: u32, k: u64| unit(seed, 1000 * u64::from(y) + 4 * u64::from(x) + k);
+    let depth = |x, y| match (x + y) % 3 {
+        0 => f32::INFINITY,
+        1 => 10.0 * number(x, y, 0),
+        _ => 4.5,
+    };
+    let color = |x, y| [1, 2, 3].map(|k| 2.0 * number(x, y, k));
+    Surface::new(Plane::from_pixels(size, depth), Plane::from_pixels(size, color)).unwrap()
+}
+
 #[test]
 fn every_pixel_has_the_bits_of_the_definition() {
     for (number, (_, preset)) in Settings::WORDS.iter().enumerate() {
@@ -71,6 +86,7 @@ fn every_pixel_has_the_bits_of_the_definition() {
             scene.environment = (k == 1).then_some(Environment::Sky);
             for (exec, camera) in [8, 16, 64, 32].into_iter().zip(cameras()) {
                 let exec = Exec::new(2, exec).unwrap();
+                scene.surface = (k % 2 == 0).then(|| surface(camera.size(), k as u64));
                 let method = Method::Gaussians(settings);
                 let mut session = Session::new(&scene, method, &exec).unwrap();
                 let definition = session.define::<f32>(&camera, false).unwrap().frame;
@@ -81,5 +97,28 @@ fn every_pixel_has_the_bits_of_the_definition() {
                 }
             }
         }
+    }
+}
+
+/// A splat that is behind a surface by less than a step of a depth buffer of 16 bits.
+#[test]
+fn a_depth_buffer_of_few_digits_draws_what_it_cannot_tell_apart() {
+    let (camera, exec) = (cameras().remove(1), Exec::sequential());
+    let mut scene = scene(1, 0, 2);
+    let draw = |scene: &Scene, depth| {
+        let mut session = Session::new(scene, Settings::INRIA.into(), &exec).unwrap();
+        let formats = Formats { depth, ..Formats::WHOLE };
+        session.emulate(&camera, formats, true).unwrap().frame
+    };
+    let drawn = |frame: &Frame<f32>| frame.count("count").unwrap().values().iter().any(|&n| n > 0);
+    let bare = draw(&scene, DepthBuffer::F32);
+    let depth = bare.scalar("Z").unwrap().values().iter().fold(f32::INFINITY, |a, b| a.at_most(*b));
+    let [width, height] = camera.size();
+    for (nearer, expected) in [(1e-6, [false, true]), (0.1, [false, false]), (0.0, [true, true])] {
+        let depths = Plane::filled(width, height, depth * (1.0 - nearer));
+        let colors = Plane::filled(width, height, [0.5; 3]);
+        scene.surface = Some(Surface::new(depths, colors).unwrap());
+        let all = [DepthBuffer::F32, DepthBuffer::Unorm16].map(|format| draw(&scene, format));
+        assert_eq!(all.map(|frame| drawn(&frame)), expected, "{nearer}");
     }
 }

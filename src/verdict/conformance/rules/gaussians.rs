@@ -43,6 +43,16 @@ fn stack(s: &mut Sketch, layers: u8, opacity: f32) {
     }
 }
 
+/// A surface whose depth grows from this one on, and which no splat touches at a pixel's centre.
+fn slope(x: u32, y: u32, from: f32) -> (f32, [f32; 3]) {
+    (from + 0.0413 * x as f32, [0.75, 0.5, 0.02 * y as f32])
+}
+
+/// A surface of one depth in the left half of the picture.
+fn half(x: u32, depth: f32) -> (f32, [f32; 3]) {
+    (if x < 24 { depth } else { f32::INFINITY }, [0.75, 0.5, 0.125])
+}
+
 /// Two splats of which the nearer by depth is the farther by distance.
 fn apart(s: &mut Sketch) {
     s.blob([2.0, 1.2, 0.1], [0.9; 3]);
@@ -577,6 +587,40 @@ pub(super) const ROWS: &[Row] = &[
             s.sky = true;
         },
         otherwise: |s| s.sky = false,
+    },
+    Row {
+        name: "surface-cuts",
+        tests: "A splat is drawn where the depth of its centre is at most the surface's: a slope cuts \
+                through the splats.",
+        of: OF,
+        draw: |s| {
+            three(s);
+            s.surface = Some(|x, y| slope(x, y, 7.01));
+        },
+        otherwise: |s| s.surface = Some(|x, y| slope(x, y, 9.01)),
+    },
+    Row {
+        name: "surface-seen",
+        tests: "The surface's colour is seen behind the splats, as much as they let through, and the \
+                environment where there is no surface.",
+        of: OF,
+        draw: |s| {
+            three(s);
+            s.sky = true;
+            s.surface = Some(|x, _| half(x, 20.0));
+        },
+        otherwise: |s| s.surface = None,
+    },
+    Row {
+        name: "surface-hides",
+        tests: "A splat behind the surface counts nowhere: not in the transmittance, the ids or the \
+                count.",
+        of: OF,
+        draw: |s| {
+            three(s);
+            s.surface = Some(|x, _| half(x, 2.0));
+        },
+        otherwise: |s| s.surface = Some(|x, _| half(x, 20.0)),
     },
     Row {
         name: "orthographic",
