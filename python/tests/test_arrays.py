@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+from pathlib import Path
 from typing import Any
 
 import numpy as np
@@ -215,6 +216,20 @@ def test_gaussians_are_drawn_and_judged() -> None:
     assert wrong.outcome == "wrong"
     with pytest.raises(ValueError, match="use method gaussians"):
         sr.render(scene, camera, method="ewa")
+
+
+def test_gaussians_are_mixed_with_a_surface(tmp_path: Path) -> None:
+    camera = sr.Camera(eye=(0, 0, 9), target=(0, 0, 0), size=(48, 32))
+    opaque = sr.render(sr.Scene(**sphere()), camera)
+    opaque.save(tmp_path / "opaque.exr")
+    bare, mixed = gaussians(), gaussians(surface=tmp_path / "opaque.exr", environment="sky")
+    picture = sr.render(mixed, camera, method="gaussians")
+    assert (picture["A"] == 1).all() and np.isfinite(opaque["Z"]).any()
+    assert (picture["count"] <= sr.render(bare, camera, method="gaussians")["count"]).all()
+    untouched = np.isfinite(opaque["Z"]) & (picture["count"] == 0)
+    assert (picture["RGB"][untouched] == opaque["RGB"][untouched]).all()
+    assert sr.verify(mixed, camera, dict(picture), method="gaussians").outcome == "right"
+    assert sr.verify(bare, camera, dict(picture), method="gaussians").outcome == "wrong"
 
 
 def test_arrays_of_gaussians_that_do_not_fit_are_named() -> None:
