@@ -78,7 +78,7 @@ pub(crate) const SHADED: PlaneRow = PlaneRow::new(
 pub(crate) const ALPHA: PlaneRow = PlaneRow::new(
     "A",
     Scalar,
-    "opacity of the picture in [0, 1]; 1 where the environment is seen, 0 where nothing is",
+    "opacity of the picture in [0, 1]; 1 where the environment or a surface behind splats is seen, 0 where nothing is",
 )
 .when(Always);
 
