@@ -14,6 +14,7 @@
 //! - [`polygon`]: how the polygons of PLY and OBJ are cut into triangles.
 //! - [`texture`]: read textures of models.
 //! - [`environment`]: read environment maps from EXR files.
+//! - [`blocks`]: write surfels in spatial order, and read those that a view needs.
 //! - [`hierarchy`]: write and read surfel approximations of a whole scene.
 //!
 //! Store pictures and compare them:
@@ -35,6 +36,7 @@
 //! - `checksum`: notice damage in files of this crate.
 //! - [`replace`]: write files that are complete or absent.
 
+pub mod blocks;
 pub mod cameras;
 mod checksum;
 pub mod client;

@@ -9,6 +9,7 @@
 //! - [`coordinates`]: where points are in a texture.
 //! - `degenerate`: which points cannot be surfels.
 //! - [`environment`]: the light that surrounds a scene.
+//! - [`excerpt`]: some surfels of a larger scene.
 //! - [`gaussians`]: 3D Gaussians, which one method draws.
 //! - [`groups`]: which surfels share a depth-image.
 //! - [`hash`]: the identity of a scene.
@@ -27,6 +28,7 @@ pub mod cloud;
 pub mod coordinates;
 mod degenerate;
 pub mod environment;
+pub mod excerpt;
 pub mod gaussians;
 pub mod groups;
 pub mod hash;
@@ -48,6 +50,7 @@ pub use cloud::{Cloud, Property};
 pub use coordinates::Coordinates;
 pub use degenerate::Dropped;
 pub use environment::Environment;
+pub use excerpt::Excerpt;
 pub use gaussians::{GaussianArrays, Gaussians};
 pub use groups::Groups;
 pub(crate) use groups::MAX_GROUPS;
@@ -88,6 +91,8 @@ pub struct Scene {
     pub gaussians: Option<Gaussians>,
     /// How large surfels are drawn as point primitives, if the view chose sizes.
     pub sides: Option<Sides>,
+    /// Which surfels of a larger scene these are, if they are not all.
+    pub excerpt: Option<Excerpt>,
 }
 
 impl Scene {
@@ -95,6 +100,12 @@ impl Scene {
     #[must_use]
     pub fn lit(name: &str, surfels: Surfels) -> Self {
         Self { lights: vec![Light::DEFAULT], ..Self::unlit(name, surfels) }
+    }
+
+    /// How many surfels the scene has, those that were not loaded included.
+    #[must_use]
+    pub fn surfel_count(&self) -> u64 {
+        self.excerpt.as_ref().map_or(self.surfels.len() as u64, Excerpt::total)
     }
 
     /// Makes a scene of 3D Gaussians, which have no lights.
@@ -117,6 +128,7 @@ impl Scene {
             objects: None,
             gaussians: None,
             sides: None,
+            excerpt: None,
         }
     }
 }
