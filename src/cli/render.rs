@@ -109,6 +109,16 @@ impl Args {
         })
     }
 
+    /// Reads what the picture or the region needs of a folder of blocks. Each band reads its own part.
+    fn read_part(&self, ready: &mut Ready, exec: &Exec) -> Result<()> {
+        if self.bands.is_none()
+            && let Some(part) = progress::during("loading", || ready.part(self.region, exec))?
+        {
+            ready.loaded.scene = part;
+        }
+        Ok(())
+    }
+
     /// The frames to render as a sequence; `None` for one picture.
     fn sequence(&self, file: &SceneFile) -> Result<Option<Range<u32>>> {
         let frames = match &self.frames {
@@ -144,12 +154,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let mut ready = draw::ready_in_parts(&file, &exec)?;
     destination.check_state(&ready, &file, std::slice::from_ref(&picture))?;
     destination.check_region(&ready.camera)?;
-    // Each band reads its own part.
-    if args.bands.is_none()
-        && let Some(part) = progress::during("loading", || ready.part(args.region, &exec))?
-    {
-        ready.loaded.scene = part;
-    }
+    args.read_part(&mut ready, &exec)?;
     let (mut session, made) = draw::session(&ready, &args.options, &exec)?;
     if let Some(count) = args.bands {
         let to = (&destination, picture.as_path());
