@@ -170,6 +170,7 @@ fn ends<const N: usize>(numbers: [f64; N]) -> [f64; 2] {
 mod tests {
     use super::*;
     use crate::composite::decide;
+    use crate::number::elementary;
     use crate::scene::{Lens, Pose, Projection};
     use crate::splat::project::project;
     use crate::splat::{Disc, Fate, Kernel, Outline, Projector, Shared, fragment};
@@ -188,6 +189,11 @@ mod tests {
         let p = view.transform_point3(position);
         let d = if camera.projection == Projection::Perspective { -p } else { Vec3::Z };
         view.inverse().transform_vector3(d).normalize()
+    }
+
+    /// A power of ten.
+    fn ten(power: f32) -> f32 {
+        elementary::exp(f64::from(power) * std::f64::consts::LN_10) as f32
     }
 
     fn vector(scale: f32) -> impl Strategy<Value = Vec3> {
@@ -225,9 +231,9 @@ mod tests {
                 let ray = to_eye(&camera, position);
                 let side = normal.cross(ray);
                 prop_assume!(side.length() > 0.1);
-                normal = (side.normalize() + ray * 10.0_f32.powf(power)).normalize();
+                normal = (side.normalize() + ray * ten(power)).normalize();
             }
-            let radius = 10.0_f32.powf(radius);
+            let radius = ten(radius);
             let u = normal.any_orthonormal_vector() * radius;
             let tangents = long.map(|long| [u, normal.cross(u) * long]);
             let reach = tangents.map_or(f64::from(radius), |[u, v]| {

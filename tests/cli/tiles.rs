@@ -68,7 +68,14 @@ fn file_folder_regions_and_bands_give_one_file() {
             assert!(read("file.exr") == read("joined.exr"), "{more:?} {} regions", regions.len());
         }
     }
-    // A region reads a part of the folder, and an option of models all of it.
+}
+
+#[test]
+fn the_folder_stands_for_the_file() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    torus(at, 6000);
+    let read = |name: &str| fs::read(at.join(name)).unwrap();
     let said =
         succeeds(at, &["render", "tiled/torus", "--size", "90x100", "--region", "0,30,20,40"]);
     assert!(said.contains("6000 surfels") && said.contains("surfels, which may be seen"), "{said}");

@@ -27,6 +27,9 @@ fn tiled(at: &Path, name: &str) -> Tiled {
     tile(&at.join(format!("{name}.ply")), &at.join("tiled").join(name)).unwrap()
 }
 
+/// A change of a file.
+type Change = fn(&mut Cloud);
+
 /// Surfels with every attribute, in no spatial order, some of which are no surfels.
 fn cloud(count: usize) -> Cloud {
     let mut cloud = Shape::Torus.surfels(count, 0).unwrap().into_cloud();
@@ -82,7 +85,7 @@ fn pictures(scene: &Scene, ready: &Ready, region: Rect) -> [Frame<f32>; 4] {
 fn a_part_draws_every_bit_of_the_whole() {
     let at = TempDir::new().unwrap();
     for (name, change) in [
-        ("all", (|_| ()) as fn(&mut Cloud)),
+        ("all", (|_| ()) as Change),
         ("bare", |c| (c.color, c.opacity, c.tangents) = (None, None, None)),
     ] {
         let mut cloud = cloud(9000);
@@ -188,7 +191,7 @@ fn what_a_file_lacks_is_derived_once() {
         c.radius = None;
         c.color = None;
     };
-    let changes: [fn(&mut Cloud); 4] =
+    let changes: [Change; 4] =
         [|c| c.normal = None, |c| c.radius = None, |c| (c.normal, c.radius) = (None, None), quad];
     for change in changes {
         let mut cloud = Shape::Sphere.surfels(400, 0).unwrap().into_cloud();
@@ -212,7 +215,7 @@ fn what_a_file_lacks_is_derived_once() {
 fn what_cannot_be_tiled_is_refused_with_the_reason() {
     let at = TempDir::new().unwrap();
     let path = at.path().join("a.ply");
-    let cases: [(fn(&mut Cloud), &str); 3] = [
+    let cases: [(Change, &str); 3] = [
         (|c| c.radius = Some(vec![0.0; c.position.len()]), "none of its points"),
         (
             |c| {
