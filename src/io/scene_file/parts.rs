@@ -13,7 +13,7 @@ use crate::source::derive::{Derived, Origin};
 use std::path::Path;
 
 impl SceneFile {
-    /// As [`SceneFile::ready`]. But if the scene is one folder of [blocks](crate::io::blocks), as it
+    /// As [`SceneFile::ready`]. But if the scene is one folder of [blocks], as it
     /// is in the folder, and each pixel of the method depends on its own fragments alone, then nothing
     /// of the folder is read yet except its index: call [`Ready::part`] before you draw.
     ///
@@ -23,7 +23,7 @@ impl SceneFile {
         self.ready_for(Purpose::Parts, exec, progress)
     }
 
-    /// Writes the surfels of a model into a folder of [blocks](crate::io::blocks), in spatial order. The
+    /// Writes the surfels of a model into a folder of [blocks], in spatial order. The
     /// parent of the folder must exist. Blocks that are already there are replaced as a whole.
     ///
     /// A complete binary little-endian PLY of vertices with normals, radii and float coordinates is
