@@ -58,6 +58,14 @@ pub(crate) fn try_ask(
     ))
 }
 
+/// How many bytes more may be held.
+pub(crate) fn left() -> u64 {
+    match LIMIT.load(Ordering::Relaxed) {
+        u64::MAX => u64::MAX,
+        limit => limit.saturating_sub(held()),
+    }
+}
+
 /// How many digits after the point tell two numbers of bytes apart, in words.
 fn digits_apart(one: u64, other: u64) -> usize {
     (1..9).find(|&digits| in_words(one, digits) != in_words(other, digits)).unwrap_or(9)

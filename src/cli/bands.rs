@@ -2,11 +2,12 @@
 
 use super::destination::Destination;
 use super::{Ended, Ending, progress, report};
-use splatref::Error;
-use splatref::frame::{Exec, Rect};
+use splatref::frame::{Exec, Frame, Rect};
 use splatref::io::scene_file::{OutputSettings, Ready};
 use splatref::io::{exr, provenance};
 use splatref::method::Session;
+use splatref::scene::Camera;
+use splatref::{Error, Result};
 use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
@@ -14,12 +15,13 @@ use std::time::Instant;
 /// Draws a picture in about `count` bands of rows into the file `picture`.
 pub(super) fn render(
     session: &mut Session<'_>,
-    Ready { loaded, camera, method, .. }: &Ready,
+    ready: &Ready,
     (to, picture): (&Destination<'_>, &Path),
     (output, count): (OutputSettings, u32),
     exec: &Exec,
 ) -> Ended {
     let start = Instant::now();
+    let Ready { loaded, camera, method, .. } = ready;
     to.make_folder()?;
     let text = provenance::text(&loaded.scene, session.groups(), camera, method, output);
     let steps = progress::Steps::new("rendering");
@@ -27,14 +29,10 @@ pub(super) fn render(
     let mut draw = |band: Rect| {
         steps.show("bands", band.y0.into(), camera.height.into());
         bands += 1;
-        session.set_region(Some(band))?;
-        let drawn = match output.draw(session, camera)? {
-            Cow::Owned(picture) => Some(picture),
-            // The session holds it, and is going to draw the next band in other memory.
-            Cow::Borrowed(_) => None,
-        };
-        let drawn = drawn.or_else(|| session.take_picture());
-        drawn.map(|drawn| drawn.frame).ok_or_else(|| Error::Invalid("no band was drawn".into()))
+        match ready.part(Some(band), exec)? {
+            Some(part) => drawn(&mut Session::new(&part, *method, exec)?, camera, band, output),
+            None => drawn(session, camera, band, output),
+        }
     };
     let rows = camera.height.div_ceil(count);
     let how = (output.compression, exec);
@@ -49,4 +47,21 @@ pub(super) fn render(
     report::time("bands", vec![start.elapsed()]);
     report::line("file", picture.display());
     Ok(Ending::Good)
+}
+
+/// Draws a band.
+fn drawn(
+    session: &mut Session<'_>,
+    camera: &Camera,
+    band: Rect,
+    output: OutputSettings,
+) -> Result<Frame<f32>> {
+    session.set_region(Some(band))?;
+    let drawn = match output.draw(session, camera)? {
+        Cow::Owned(picture) => Some(picture),
+        // The session holds it, and is going to draw the next band in other memory.
+        Cow::Borrowed(_) => None,
+    };
+    let drawn = drawn.or_else(|| session.take_picture());
+    drawn.map(|drawn| drawn.frame).ok_or_else(|| Error::Invalid("no band was drawn".into()))
 }

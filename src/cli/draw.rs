@@ -14,6 +14,19 @@ pub(super) fn ready(file: &SceneFile, exec: &Exec) -> Result<Ready> {
     let steps = progress::Steps::new("loading");
     let ready = file.ready(exec, &|what, done, of| steps.show(what, done, of))?;
     drop(steps);
+    warned(file, ready)
+}
+
+/// Loads a scene of which each part of a picture may read its own surfels, with progress.
+pub(super) fn ready_in_parts(file: &SceneFile, exec: &Exec) -> Result<Ready> {
+    let steps = progress::Steps::new("loading");
+    let ready = file.ready_in_parts(exec, &|what, done, of| steps.show(what, done, of))?;
+    drop(steps);
+    warned(file, ready)
+}
+
+/// Prints what is to be doubted about a scene.
+fn warned(file: &SceneFile, ready: Ready) -> Result<Ready> {
     warn(&file.without_effect()?);
     warn(&ready.loaded.warnings);
     Ok(ready)

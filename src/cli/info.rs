@@ -20,7 +20,7 @@ Examples:
   splatref info bunny.ply
   splatref info out/cluster.exr")]
 pub(super) struct Args {
-    /// A .ply, .obj, .las, .laz, .e57, .glb, .gltf, .splat or .spz, a scene .toml, an .exr, or a folder that "splatref surfels" wrote
+    /// A .ply, .obj, .las, .laz, .e57, .glb, .gltf, .splat or .spz, a scene .toml, an .exr, or a folder that "splatref tile" or "splatref surfels" wrote
     file: PathBuf,
 }
 
@@ -39,6 +39,7 @@ pub(super) fn run(args: &Args) -> Ended {
             points(&args.file)?;
         }
         FileKind::Toml => scene(&args.file)?,
+        FileKind::Blocks => scene(&args.file)?,
         FileKind::Exr => picture(&args.file)?,
     }
     Ok(Ending::Good)
@@ -108,7 +109,7 @@ fn points(path: &Path) -> Result<()> {
 }
 
 fn scene(path: &Path) -> Result<()> {
-    let file = SceneFile::read(path)?;
+    let file = SceneFile::open(path)?;
     for model in file.all_models() {
         line("source", source(model));
     }

@@ -37,6 +37,7 @@ mod stdout;
 mod study;
 mod suite;
 mod surfels;
+mod tile;
 mod tried;
 mod verify;
 mod words;
@@ -82,6 +83,8 @@ enum Command {
     Render(render::Args),
     /// Join the parts of a picture that `render --region` wrote
     Assemble(assemble::Args),
+    /// Store the surfels of a scene in spatial order, to draw scenes larger than memory
+    Tile(tile::Args),
     /// Check that the pictures under golden/ are reproduced, bit for bit
     Golden(golden::Args),
     /// Compare two pictures, plane by plane: EXR, PNG or NPY
@@ -131,6 +134,7 @@ pub(crate) fn run() -> ExitCode {
     let outcome = match cli.command {
         Command::Render(args) => render::run(&args),
         Command::Assemble(args) => assemble::run(&args),
+        Command::Tile(args) => tile::run(&args),
         Command::Golden(args) => golden::run(&args),
         Command::Compare(args) => compare::run(&args),
         Command::Verify(args) => verify::run(&args),

@@ -30,7 +30,7 @@ Examples:
   splatref render bunny.ply --size 4096x4096 --region 0,0,4096,512 -o parts/0.exr
   splatref render bunny.ply --write-depth png --depth-as t,1000 -o bunny.exr")]
 pub(super) struct Args {
-    /// A .ply, .obj, .las, .laz, .e57, .glb, .gltf, .splat or .spz, a scene .toml, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster,
+    /// A .ply, .obj, .las, .laz, .e57, .glb, .gltf, .splat or .spz, a scene .toml, a folder of `tile` or `surfels`, or a shape: sphere, torus, checkerboard, sheets, staircase, cluster,
     /// or tree (with --method pyramid)
     #[arg(default_value = "cluster", hide_default_value = false)]
     scene: PathBuf,
@@ -109,6 +109,16 @@ impl Args {
         })
     }
 
+    /// Reads what the picture or the region needs of a folder of blocks. Each band reads its own part.
+    fn read_part(&self, ready: &mut Ready, exec: &Exec) -> Result<()> {
+        if self.bands.is_none()
+            && let Some(part) = progress::during("loading", || ready.part(self.region, exec))?
+        {
+            ready.loaded.scene = part;
+        }
+        Ok(())
+    }
+
     /// The frames to render as a sequence; `None` for one picture.
     fn sequence(&self, file: &SceneFile) -> Result<Option<Range<u32>>> {
         let frames = match &self.frames {
@@ -141,9 +151,10 @@ pub(super) fn run(args: &Args) -> Ended {
     }
     let picture = destination.place(&file, None)?;
     let preview = picture.with_extension("png");
-    let ready = draw::ready(&file, &exec)?;
+    let mut ready = draw::ready_in_parts(&file, &exec)?;
     destination.check_state(&ready, &file, std::slice::from_ref(&picture))?;
     destination.check_region(&ready.camera)?;
+    args.read_part(&mut ready, &exec)?;
     let (mut session, made) = draw::session(&ready, &args.options, &exec)?;
     if let Some(count) = args.bands {
         let to = (&destination, picture.as_path());

@@ -34,7 +34,7 @@ pub(super) fn scene(loaded: &Loaded) {
     if let (Some(gaussians), Some(report)) = (&scene.gaussians, &loaded.gaussians) {
         return gaussians_of(scene, gaussians, report);
     }
-    let (name, all) = (&scene.name, content(scene.surfels.len() as u64, scene.primitives.counts()));
+    let (name, all) = (&scene.name, content(scene.surfel_count(), scene.primitives.counts()));
     match loaded.models.as_slice() {
         [one] => line("scene", format!("{name}: {all}, {}", origin(one))),
         several => {
@@ -46,6 +46,9 @@ pub(super) fn scene(loaded: &Loaded) {
         }
     }
     loaded.models.iter().for_each(colored);
+    if scene.excerpt.is_some() && !scene.surfels.is_empty() {
+        line("  read", format!("{} surfels, which may be seen", scene.surfels.len()));
+    }
     line("  dropped", dropped(&loaded.dropped, loaded.dropped_primitives));
     offset(scene.offset);
     bounds(scene.bounds());
@@ -199,7 +202,7 @@ pub(super) fn bounds((low, high): (Vec3, Vec3)) {
 
 /// Prints the median radius, if there are surfels.
 pub(super) fn radius(surfels: &Surfels) {
-    if !surfels.is_empty() {
+    if surfels.median_radius() > 0.0 {
         median(surfels.median_radius());
     }
 }

@@ -15,6 +15,7 @@
 //! - [`texture`]: read textures of models.
 //! - [`environment`]: read environment maps from EXR files.
 //! - [`surface`]: read the opaque geometry of a view from EXR files.
+//! - [`blocks`]: write surfels in spatial order, and read those that a view needs.
 //! - [`hierarchy`]: write and read surfel approximations of a whole scene.
 //!
 //! Store pictures and compare them:
@@ -36,6 +37,7 @@
 //! - `checksum`: notice damage in files of this crate.
 //! - [`replace`]: write files that are complete or absent.
 
+pub mod blocks;
 pub mod cameras;
 mod checksum;
 pub mod client;

@@ -43,7 +43,7 @@ pub fn text(
         number = output.number.word(),
         formats = formats(output.formats),
         name = toml::Value::String(scene.name.clone()),
-        surfels = scene.surfels.len(),
+        surfels = scene.surfel_count(),
         offset = offset(scene.offset),
         hash = scene.sha256(),
         method = method.name(),

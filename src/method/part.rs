@@ -1,9 +1,10 @@
 //! Judge a part of a picture: only what may touch it needs a projection.
 
 use crate::frame::Rect;
-use crate::number::{MapInline, Vector3};
+use crate::number::{MapInline, Real, Vector3};
 use crate::scene::Camera;
 use crate::splat::View;
+use glam::Vec3;
 
 /// A part of a picture.
 #[derive(Clone, Copy, Debug)]
@@ -30,6 +31,7 @@ impl Part<'_> {
 }
 
 /// Finds what may touch a part. This takes a fraction of the time of a projection.
+#[derive(Clone, Copy)]
 pub(crate) struct Nearby<'a> {
     part: Part<'a>,
     view: View<f64>,
@@ -63,13 +65,232 @@ impl<'a> Nearby<'a> {
             let at = center + focal * along * m;
             [at - half, at + half]
         };
-        let [x0, x1] = side(view.fx, p.x, view.cx);
-        let [y0, y1] = side(view.fy, -p.y, view.cy);
-        part.pieces.iter().any(|(_, rect)| {
+        self.meets(side(view.fx, p.x, view.cx), side(view.fy, -p.y, view.cy))
+    }
+
+    /// Whether any splat of `ewa`, `peeling` or `blue` may touch the part, in `f32` or `f64`, if the
+    /// centres lie in a box of the world and the surfels reach at most `reach` in the world. `false`
+    /// is a proof that none does:
+    ///
+    /// 1. In view space the box is spanned by its eight corners. A number that is linear in the
+    ///    position, such as the depth t, has its extremes at corners. So has x/t where all t > 0: for
+    ///    every c the set x - c t >= 0 is a half space, and meets the box in a corner or not at all.
+    /// 2. `f32` places a centre at most e beside its exact place, where e is 2^-20 times the greatest
+    ///    sum |m0 x| + |m1 y| + |m2 z| + |m3| of a row: its roundings are at most 2^-22 of that.
+    /// 3. No centre is drawn unless t > near. If all t + e <= near, there is no splat.
+    /// 4. Let r = reach + e. Unless t > 4 r and t > 1000 e at all corners, the box may touch.
+    ///    Otherwise let u be the exact x/t of a centre. Its place in `f32` is within
+    ///    fx (1 + |u|) e / (t - e) of fx u, and the outline, exact or linearized at the centre, reaches
+    ///    at most fx (1 + |u|) reach t / ((t - e) (t - r)) farther, then `skirt`. Both together are
+    ///    below 1.01 h, with h = fx (1 + |u|) r / (t - r). Corners bound h, as it grows with |u| and
+    ///    falls with t. A square of `blue` reaches less than h.
+    /// 5. The test whether a pixel is inside is rounded too. In the terms of
+    ///    [`Footprint`](crate::splat::Footprint), |v dy| <= k and |ux dx + uy dy| <= k hold up to a few
+    ///    ulp of each term, with xx yy - xy xy = area area. So |dx| <= k (area + |xy|) / sqrt(yy), at
+    ///    most sqrt(2) k sqrt(xx) = 1.42 times the exact reach, however thin the ellipse is. A ray that
+    ///    is cast compares with k w, and w is rounded by 2^-22 (|wx dx| + |wy dy|). While |g| is at
+    ///    least 2^-18 r/t, this and the growth of w with r/t < 1/4 leave it below 2.9 times. The factor
+    ///    here is 3.
+    /// 6. Other roundings move an end by less than 2^-20 of its distance from the principal point, and
+    ///    [`SLACK`] is more than that in a picture of at most 2^16 pixels.
+    ///
+    /// Under an orthographic camera, x takes the place of x/t, and 1 that of 1/t.
+    ///
+    /// `Decided:` a disc with |g| below 2^-18 r/t is within a millionth of a radian of edge-on, and
+    /// covers no pixel in exact numbers, except on the line itself. With cast rays the nearness of its
+    /// plane is rounding noise in `f32`; what it then draws beyond three times its own length is not
+    /// looked for.
+    pub(crate) fn holds_any(&self, [low, high]: [Vec3; 2], reach: f64) -> bool {
+        let corner = |i: usize| {
+            let pick = |axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] };
+            Vec3::new(pick(0), pick(1), pick(2))
+        };
+        self.holds_hull(std::array::from_fn::<_, 8, _>(corner), reach)
+    }
+
+    /// [`Nearby::holds_any`] for one splat.
+    pub(crate) fn holds_one(&self, position: Vec3, reach: f64) -> bool {
+        self.holds_hull([position], reach)
+    }
+
+    /// [`Nearby::holds_any`] for the hull of these points.
+    fn holds_hull<const N: usize>(&self, corners: [Vec3; N], reach: f64) -> bool {
+        let Self { part, view, skirt } = self;
+        let farthest = corners.iter().fold(Vec3::ZERO, |most, p| most.max(p.abs()));
+        let farthest = farthest.to_array().map_inline(f64::from);
+        let corners = corners.map_inline(|p| view.point(Vector3::from_glam(p)));
+        let [least, most] = ends(corners.map_inline(|p| -p.z));
+        let sum =
+            |row: &[f64; 4]| (0..3).map(|i| row[i].abs() * farthest[i]).sum::<f64>() + row[3].abs();
+        let off = ends(view.rows.each_ref().map_inline(sum))[1] / f64::from(1 << 20);
+        if most + off <= view.near {
+            return false;
+        }
+        let reach = reach * part.spread + off;
+        if view.perspective && !(least > 4.0 * reach && least > 1000.0 * off) {
+            return true;
+        }
+        let side = |focal: f64, along: [f64; N], center: f64| {
+            let steep = along.iter().fold(0.0, |most: f64, u| most.at_least(u.abs()));
+            let wide = if view.perspective { (1.0 + steep) / (least - reach) } else { 1.0 };
+            // Squares have the side of the greater focal length.
+            let half = 3.0 * view.fx.abs().at_least(view.fy.abs()) * reach * wide + skirt;
+            let [a, b] = ends(along.map_inline(|u| center + focal * u));
+            [a - half, b + half]
+        };
+        let slope = |of: fn(&Vector3<f64>) -> f64| {
+            corners.map_inline(|p| if view.perspective { of(&p) / -p.z } else { of(&p) })
+        };
+        self.meets(side(view.fx, slope(|p| p.x), view.cx), side(view.fy, slope(|p| -p.y), view.cy))
+    }
+
+    /// Whether a rectangle meets the part.
+    fn meets(&self, [x0, x1]: [f64; 2], [y0, y1]: [f64; 2]) -> bool {
+        self.part.pieces.iter().any(|(_, rect)| {
             let [left, top, right, bottom] =
                 [rect.x0, rect.y0, rect.x1, rect.y1].map_inline(f64::from);
             // Written so that a NaN touches.
             !(x1 < left || x0 > right || y1 < top || y0 > bottom)
         })
+    }
+}
+
+/// The least and the greatest number; NaN if there is one.
+fn ends<const N: usize>(numbers: [f64; N]) -> [f64; 2] {
+    numbers.iter().fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], &n| {
+        // Comparisons with NaN are false, so a NaN replaces a number, and stays.
+        [
+            if low.is_nan() || n >= low { low } else { n },
+            if high.is_nan() || n <= high { high } else { n },
+        ]
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::composite::decide;
+    use crate::number::elementary;
+    use crate::scene::{Lens, Pose, Projection};
+    use crate::splat::project::project;
+    use crate::splat::{Disc, Fate, Kernel, Outline, Projector, Shared, fragment};
+    use glam::DVec3;
+    use proptest::prelude::*;
+
+    /// A camera of 40 x 30 pixels near the origin, which lies at `far`.
+    fn camera(lens: Lens, far: DVec3, eye: DVec3) -> Camera {
+        let pose = Pose { eye: far + eye, target: far, up: DVec3::new(0.3, 1.0, 0.2) };
+        Camera::new(40, 30, pose, lens).unwrap()
+    }
+
+    /// The direction from a position to the eye.
+    fn to_eye(camera: &Camera, position: Vec3) -> Vec3 {
+        let view = camera.view_from_world;
+        let p = view.transform_point3(position);
+        let d = if camera.projection == Projection::Perspective { -p } else { Vec3::Z };
+        view.inverse().transform_vector3(d).normalize()
+    }
+
+    /// A power of ten.
+    fn ten(power: f32) -> f32 {
+        elementary::exp(f64::from(power) * std::f64::consts::LN_10) as f32
+    }
+
+    fn vector(scale: f32) -> impl Strategy<Value = Vec3> {
+        prop::array::uniform3(-scale..scale).prop_map(Vec3::from_array)
+    }
+
+    proptest! {
+        // Each case tests 1,200 pixels.
+        #![proptest_config(ProptestConfig::with_cases(3000))]
+
+        /// Draws a surfel by the definition in `f32`, and looks for each of its pixels.
+        #[test]
+        fn no_box_with_a_surfel_that_draws_a_pixel_is_left_out(
+            (outline, low_pass) in (
+                prop::sample::select(vec![Outline::Affine, Outline::Perspective, Outline::RayCast]),
+                prop::sample::select(vec![0.0_f32, 0.25, 16.0]),
+            ),
+            cutoff in prop::sample::select(vec![0.25_f32, 2.0, 4.0]),
+            lens in prop::sample::select(vec![
+                Lens::FieldOfView(40.0), Lens::FieldOfView(150.0), Lens::Orthographic(2.0),
+            ]),
+            far in prop::sample::select(vec![0.0, 1e3, 1e6]),
+            (eye, position) in (vector(3.0), vector(2.0)),
+            (normal, edge_on) in (vector(1.0), prop::option::of(-7.0_f32..-1.0)),
+            (radius, long) in (-3.0_f32..0.5, prop::option::of(0.1_f32..3.0)),
+            (before, after) in (vector(0.4), vector(0.4)),
+        ) {
+            prop_assume!(eye.length() > 0.3 && normal.length() > 0.1);
+            let far = DVec3::splat(far);
+            let camera = camera(lens, far, eye.as_dvec3());
+            let position = (position.as_dvec3() + far).as_vec3();
+            let mut normal = normal.normalize();
+            if let Some(power) = edge_on {
+                // As far from edge-on as a power of ten says.
+                let ray = to_eye(&camera, position);
+                let side = normal.cross(ray);
+                prop_assume!(side.length() > 0.1);
+                normal = (side.normalize() + ray * ten(power)).normalize();
+            }
+            let radius = ten(radius);
+            let u = normal.any_orthonormal_vector() * radius;
+            let tangents = long.map(|long| [u, normal.cross(u) * long]);
+            let reach = tangents.map_or(f64::from(radius), |[u, v]| {
+                (u.as_dvec3().length_squared() + v.as_dvec3().length_squared()).sqrt()
+            });
+            let disc = Disc::<f32> {
+                position: Vector3::from_glam(position),
+                normal: Vector3::from_glam(normal),
+                radius,
+                tangents: tangents.map(|pair| pair.map(Vector3::from_glam)),
+            };
+            let kernel = Kernel { outline, cutoff, low_pass };
+            let view = View::<f32>::new(&camera);
+            let (splat, reasons) = project(&Projector::new(view, &kernel, false), &disc, 0);
+            if reasons.fate() != Fate::Visible {
+                return Ok(());
+            }
+            // Nearer to edge-on, cast rays are noise.
+            let p = view.point(disc.position);
+            let (g, t) = (to_eye(&camera, position).dot(normal).abs(), -p.z);
+            let noise = outline == Outline::RayCast && f64::from(g) * f64::from(1 << 18) < reach / f64::from(t);
+            if noise {
+                return Ok(());
+            }
+            let around = [position - before.abs(), position + after.abs()];
+            let shared = Shared::new(&view, &kernel);
+            let skirt = f64::from(cutoff) * f64::from(low_pass).sqrt();
+            for (x, y) in (0..30).flat_map(|y| (0..40).map(move |x| (x, y))) {
+                let (q, _) = fragment(&shared, &splat.footprint, (x, y));
+                if splat.bounds.contains(x, y) && decide::inside(q, shared.limit) {
+                    let pieces = [(0, Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 })];
+                    let part = Part { pieces: &pieces, spread: 1.0 };
+                    let nearby = Nearby::new(part, &camera, skirt);
+                    prop_assert!(nearby.holds_any(around, reach), "pixel {x} {y}");
+                    prop_assert!(nearby.holds_one(position, reach), "pixel {x} {y} alone");
+                }
+            }
+        }
+    }
+
+    #[test]
+    fn what_is_far_beside_or_behind_is_left_out() {
+        let camera = camera(Lens::FieldOfView(40.0), DVec3::ZERO, DVec3::new(0.0, 0.0, 4.0));
+        let holds = |region: Rect, middle: Vec3| {
+            let pieces = [(0, region)];
+            let nearby = Nearby::new(Part { pieces: &pieces, spread: 1.0 }, &camera, 1.0);
+            nearby.holds_any([middle - 0.1, middle + 0.1], 0.01)
+        };
+        let whole = Rect::of_size([40, 30]);
+        assert!(holds(whole, Vec3::ZERO));
+        assert!(!holds(whole, Vec3::new(0.0, 0.0, 4.5)), "behind the eye");
+        assert!(holds(whole, Vec3::new(0.0, 0.0, 4.0)), "around the eye");
+        for beside in [Vec3::X, -Vec3::X, Vec3::Y, -Vec3::Y] {
+            assert!(!holds(whole, 3.0 * beside));
+        }
+        let corner = Rect { x0: 0, y0: 0, x1: 8, y1: 8 };
+        assert!(!holds(corner, Vec3::ZERO) && holds(corner, Vec3::new(-1.4, 0.9, 0.0)));
+        assert!(holds(corner, Vec3::NAN), "nobody knows where it is");
     }
 }

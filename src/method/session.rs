@@ -293,6 +293,9 @@ impl<'a> Session<'a> {
 
     /// The ids of the surfels, which a verdict numbers by their order, whichever the method.
     pub(crate) fn numbers(&self) -> Option<Names<'_>> {
+        if let Some(excerpt) = &self.scene.excerpt {
+            return Some(Names::Excerpt(excerpt));
+        }
         let objects = self.scene.objects.as_ref().filter(|_| self.scene.primitives.is_empty());
         objects.map(Names::new)
     }

@@ -252,6 +252,23 @@ impl Method {
         })
     }
 
+    /// How far the splats of the method reach beyond what [`Nearby::holds_any`] takes for their surfels,
+    /// in pixels. `None` if a pixel may depend on surfels elsewhere: on the groups of all surfels, for
+    /// instance.
+    ///
+    /// [`Nearby::holds_any`]: super::part::Nearby::holds_any
+    pub(crate) fn skirt(&self) -> Option<f64> {
+        match self {
+            Self::Ewa(_) | Self::Peeling(_) => {
+                let kernel = self.splats()?.kernel;
+                Some(f64::from(kernel.cutoff) * f64::from(kernel.low_pass).sqrt())
+            }
+            // A square is at least a pixel wide.
+            Self::Blue(_) => Some(0.5),
+            _ => None,
+        }
+    }
+
     /// Checks that the method can draw a part of a picture alone.
     ///
     /// # Errors

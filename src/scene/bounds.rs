@@ -9,9 +9,10 @@ impl Scene {
     /// origin if the scene is empty.
     #[must_use]
     pub fn bounds(&self) -> (Vec3, Vec3) {
-        match &self.gaussians {
-            Some(gaussians) => gaussians.bounds(),
-            None => corners(&self.surfels, &self.primitives),
+        match (&self.gaussians, &self.excerpt) {
+            (Some(gaussians), _) => gaussians.bounds(),
+            (None, Some(excerpt)) => excerpt.bounds,
+            (None, None) => corners(&self.surfels, &self.primitives),
         }
     }
 

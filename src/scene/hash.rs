@@ -61,14 +61,19 @@ impl Scene {
     /// whether it is [flat](mod@crate::source::flatten) or not.
     #[must_use]
     pub fn sha256(&self) -> String {
-        let mut hash = Hasher(Sha256::new());
-        hash.0.update(b"splatref scene 1\n");
         let none = (Surfels::none(), Primitives::default());
         let (surfels, primitives) = match &self.objects {
             None => (&self.surfels, &self.primitives),
             Some(_) => (&none.0, &none.1),
         };
-        hash.surfels(surfels);
+        let mut hash = match &self.excerpt {
+            Some(excerpt) => Hasher(excerpt.hash.clone()),
+            None => {
+                let mut hash = Hasher(begin(surfels.len() as u64));
+                hash.surfels(surfels);
+                hash
+            }
+        };
         hash.count(self.lights.len());
         for light in &self.lights {
             let (kind, place, color) = match *light {
@@ -145,6 +150,43 @@ impl Groups {
     }
 }
 
+/// How many attributes of surfels are hashed one after the other.
+pub(crate) const ATTRIBUTES: usize = 6;
+
+/// Begins the hash of a scene of so many surfels. Then come the [`ATTRIBUTES`], each as its [`head`]
+/// and its [`part`]s: in one part, or in several in the order of the surfels.
+pub(crate) fn begin(count: u64) -> Sha256 {
+    let hash = Sha256::new().chain_update(b"splatref scene 1\n");
+    hash.chain_update(count.to_le_bytes())
+}
+
+/// What is hashed before the values of an attribute: whether there are any, unless there must be.
+/// `there` is of colours, opacities and tangents.
+pub(crate) fn head(hash: &mut Sha256, attribute: usize, there: [bool; 3]) {
+    if let Some(&there) = attribute.checked_sub(3).and_then(|i| there.get(i)) {
+        hash.update([u8::from(there)]);
+    }
+}
+
+/// Hashes the values of an attribute of some surfels.
+pub(crate) fn part(hash: &mut Sha256, attribute: usize, surfels: &Surfels) {
+    let vectors = |hash: &mut Sha256, all: &[Vec3]| {
+        let numbers = all.iter().flat_map(Vec3::to_array);
+        numbers.for_each(|value| hash.update(value.to_le_bytes()));
+    };
+    let numbers = |hash: &mut Sha256, all: &[f32]| {
+        all.iter().for_each(|value| hash.update(value.to_le_bytes()));
+    };
+    match attribute {
+        0 => vectors(hash, surfels.position()),
+        1 => vectors(hash, surfels.normal()),
+        2 => numbers(hash, surfels.radius()),
+        3 => vectors(hash, surfels.color().unwrap_or_default()),
+        4 => numbers(hash, surfels.opacity().unwrap_or_default()),
+        _ => vectors(hash, surfels.tangents().unwrap_or_default().as_flattened()),
+    }
+}
+
 /// Feeds numbers, as bytes, into a hash.
 struct Hasher(Sha256);
 
@@ -157,14 +199,14 @@ impl Hasher {
         values.into_iter().for_each(|value| self.0.update(value.to_le_bytes()));
     }
 
+    /// The surfels, after their count.
     fn surfels(&mut self, surfels: &Surfels) {
-        self.count(surfels.len());
-        self.floats(surfels.position().iter().flat_map(Vec3::to_array));
-        self.floats(surfels.normal().iter().flat_map(Vec3::to_array));
-        self.floats(surfels.radius().iter().copied());
-        self.optional(surfels.color(), |c| c.to_array());
-        self.optional(surfels.opacity(), |&o| [o]);
-        self.optional(surfels.tangents(), |[u, v]| [u.x, u.y, u.z, v.x, v.y, v.z]);
+        let there =
+            [surfels.color().is_some(), surfels.opacity().is_some(), surfels.tangents().is_some()];
+        for attribute in 0..ATTRIBUTES {
+            head(&mut self.0, attribute, there);
+            part(&mut self.0, attribute, surfels);
+        }
     }
 
     fn mipmap(&mut self, surfels: &Surfels) {
@@ -197,6 +239,7 @@ impl Hasher {
             // stands for them.
             Some(source) => self.0.update(source),
             None => objects.geometries().iter().for_each(|geometry| {
+                self.count(geometry.surfels.len());
                 self.surfels(&geometry.surfels);
                 self.primitives(&geometry.primitives);
             }),

@@ -9,6 +9,7 @@
 //! - [`coordinates`]: where points are in a texture.
 //! - `degenerate`: which points cannot be surfels.
 //! - [`environment`]: the light that surrounds a scene.
+//! - [`excerpt`]: some surfels of a larger scene.
 //! - [`gaussians`]: 3D Gaussians, which one method draws.
 //! - [`groups`]: which surfels share a depth-image.
 //! - [`hash`]: the identity of a scene.
@@ -28,6 +29,7 @@ pub mod cloud;
 pub mod coordinates;
 mod degenerate;
 pub mod environment;
+pub mod excerpt;
 pub mod gaussians;
 pub mod groups;
 pub mod hash;
@@ -50,6 +52,7 @@ pub use cloud::{Cloud, Property};
 pub use coordinates::Coordinates;
 pub use degenerate::Dropped;
 pub use environment::Environment;
+pub use excerpt::Excerpt;
 pub use gaussians::{GaussianArrays, Gaussians};
 pub use groups::Groups;
 pub(crate) use groups::MAX_GROUPS;
@@ -93,6 +96,8 @@ pub struct Scene {
     pub sides: Option<Sides>,
     /// The opaque geometry of one view, which the method `gaussians` mixes with its splats by depth.
     pub surface: Option<Surface>,
+    /// Which surfels of a larger scene these are, if they are not all.
+    pub excerpt: Option<Excerpt>,
 }
 
 impl Scene {
@@ -100,6 +105,12 @@ impl Scene {
     #[must_use]
     pub fn lit(name: &str, surfels: Surfels) -> Self {
         Self { lights: vec![Light::DEFAULT], ..Self::unlit(name, surfels) }
+    }
+
+    /// How many surfels the scene has, those that were not loaded included.
+    #[must_use]
+    pub fn surfel_count(&self) -> u64 {
+        self.excerpt.as_ref().map_or(self.surfels.len() as u64, Excerpt::total)
     }
 
     /// Makes a scene of 3D Gaussians, which have no lights.
@@ -123,6 +134,7 @@ impl Scene {
             gaussians: None,
             sides: None,
             surface: None,
+            excerpt: None,
         }
     }
 }

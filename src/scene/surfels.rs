@@ -82,6 +82,16 @@ impl Surfels {
     /// # Errors
     /// [`Error::Invalid`] as [`Surfels::new`], except if nothing is left.
     pub fn new_or_none(cloud: Cloud, exec: &Exec) -> Result<(Self, Dropped)> {
+        let (mut surfels, dropped) = Self::checked(cloud, exec)?;
+        if !surfels.is_empty() {
+            (surfels.median_radius, surfels.bounding_sphere) =
+                exec.join(|| lower_median(surfels.radius.clone()), || surfels.sphere(exec));
+        }
+        Ok((surfels, dropped))
+    }
+
+    /// [`Surfels::new_or_none`] without the median radius and the bounding sphere.
+    fn checked(cloud: Cloud, exec: &Exec) -> Result<(Self, Dropped)> {
         let n = cloud.position.len();
         let Cloud { position, normal, radius, color, opacity, tangents, mipmap, groups, .. } =
             cloud;
@@ -109,7 +119,7 @@ impl Surfels {
             return Ok((Self::none(), dropped));
         }
         let radius = retain(radius, &keep);
-        let mut surfels = Self {
+        let surfels = Self {
             median_radius: 0.0,
             bounding_sphere: (DVec3::ZERO, 0.0),
             position: retain(position, &keep),
@@ -126,8 +136,6 @@ impl Surfels {
             }),
             groups: groups.map(|g| g.retain(&keep)),
         };
-        (surfels.median_radius, surfels.bounding_sphere) =
-            exec.join(|| lower_median(surfels.radius.clone()), || surfels.sphere(exec));
         Ok((surfels, dropped))
     }
 
@@ -147,6 +155,26 @@ impl Surfels {
             median_radius: 0.0,
             bounding_sphere: (DVec3::ZERO, 0.0),
         }
+    }
+
+    /// Surfels of a whole that has this median radius and this bounding sphere. `None` if a point of
+    /// the cloud cannot be a surfel. Of no points, the result has the empty arrays of the cloud.
+    ///
+    /// # Errors
+    /// As [`Surfels::new`], except if nothing is left.
+    pub(crate) fn part_of(
+        cloud: Cloud,
+        median_radius: f32,
+        bounding_sphere: (DVec3, f64),
+        exec: &Exec,
+    ) -> Result<Option<Self>> {
+        if cloud.position.is_empty() {
+            let there = [cloud.color.is_some(), cloud.opacity.is_some(), cloud.tangents.is_some()];
+            let arrays = Arrays::new(there, 0);
+            return Ok(Some(arrays.into_surfels(median_radius, bounding_sphere)));
+        }
+        let (surfels, dropped) = Self::checked(cloud, exec)?;
+        Ok((dropped.total() == 0).then_some(Self { median_radius, bounding_sphere, ..surfels }))
     }
 
     /// Picks the surfels with these ascending indices; an index without a surfel is left out.
@@ -335,7 +363,7 @@ impl Surfels {
     }
 
     /// The largest distance from a point to a surfel plus its reach; 0 if there is none.
-    pub(super) fn reach(&self, center: DVec3) -> f64 {
+    pub(crate) fn reach(&self, center: DVec3) -> f64 {
         self.reach_of(0..self.len(), center)
     }
 

@@ -29,6 +29,7 @@ mod reports;
 mod sequence;
 mod study;
 mod surfels;
+mod tiles;
 mod verify;
 
 use splatref::frame::image::{Image, Values};

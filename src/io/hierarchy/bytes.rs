@@ -8,26 +8,26 @@ pub(super) type Hash = [u8; 32];
 
 /// A growing buffer of bytes.
 #[derive(Default)]
-pub(super) struct Writer(pub(super) Vec<u8>);
+pub(in crate::io) struct Writer(pub(in crate::io) Vec<u8>);
 
 impl Writer {
-    pub(super) fn bytes(&mut self, bytes: &[u8]) {
+    pub(in crate::io) fn bytes(&mut self, bytes: &[u8]) {
         self.0.extend_from_slice(bytes);
     }
 
-    pub(super) fn words(&mut self, words: &[u32]) {
+    pub(in crate::io) fn words(&mut self, words: &[u32]) {
         words.iter().for_each(|word| self.bytes(&word.to_le_bytes()));
     }
 
-    pub(super) fn long(&mut self, long: u64) {
+    pub(in crate::io) fn long(&mut self, long: u64) {
         self.bytes(&long.to_le_bytes());
     }
 
-    pub(super) fn float(&mut self, float: f32) {
+    pub(in crate::io) fn float(&mut self, float: f32) {
         self.bytes(&float.to_le_bytes());
     }
 
-    pub(super) fn vector(&mut self, v: Vec3) {
+    pub(in crate::io) fn vector(&mut self, v: Vec3) {
         v.to_array().into_iter().for_each(|float| self.float(float));
     }
 
@@ -37,7 +37,7 @@ impl Writer {
         self.bytes(text.as_bytes());
     }
 
-    pub(super) fn double(&mut self, double: f64) {
+    pub(in crate::io) fn double(&mut self, double: f64) {
         self.bytes(&double.to_le_bytes());
     }
 }
@@ -65,10 +65,10 @@ pub(super) fn check_magic(bytes: &[u8], magic: &[u8; 16], what: &str) -> Reason<
 }
 
 /// Bytes, read from the front.
-pub(super) struct Reader<'a>(pub(super) &'a [u8]);
+pub(in crate::io) struct Reader<'a>(pub(in crate::io) &'a [u8]);
 
 impl Reader<'_> {
-    pub(super) fn take<const N: usize>(&mut self) -> Reason<[u8; N]> {
+    pub(in crate::io) fn take<const N: usize>(&mut self) -> Reason<[u8; N]> {
         let (first, rest) = self.0.split_first_chunk::<N>().ok_or("the file is truncated")?;
         self.0 = rest;
         Ok(*first)
@@ -80,11 +80,11 @@ impl Reader<'_> {
         String::from_utf8(split.0.to_vec()).map_err(|_| "a name is not UTF-8".into())
     }
 
-    pub(super) fn word(&mut self) -> Reason<u32> {
+    pub(in crate::io) fn word(&mut self) -> Reason<u32> {
         self.take().map(u32::from_le_bytes)
     }
 
-    pub(super) fn words<const N: usize>(&mut self) -> Reason<[u32; N]> {
+    pub(in crate::io) fn words<const N: usize>(&mut self) -> Reason<[u32; N]> {
         let mut words = [0; N];
         for word in &mut words {
             *word = self.word()?;
@@ -92,23 +92,23 @@ impl Reader<'_> {
         Ok(words)
     }
 
-    pub(super) fn long(&mut self) -> Reason<u64> {
+    pub(in crate::io) fn long(&mut self) -> Reason<u64> {
         self.take().map(u64::from_le_bytes)
     }
 
-    pub(super) fn float(&mut self) -> Reason<f32> {
+    pub(in crate::io) fn float(&mut self) -> Reason<f32> {
         self.take().map(f32::from_le_bytes)
     }
 
-    pub(super) fn vector(&mut self) -> Reason<Vec3> {
+    pub(in crate::io) fn vector(&mut self) -> Reason<Vec3> {
         Ok(Vec3::new(self.float()?, self.float()?, self.float()?))
     }
 
-    fn double(&mut self) -> Reason<f64> {
+    pub(in crate::io) fn double(&mut self) -> Reason<f64> {
         self.take().map(f64::from_le_bytes)
     }
 
-    pub(super) fn position(&mut self) -> Reason<DVec3> {
+    pub(in crate::io) fn position(&mut self) -> Reason<DVec3> {
         Ok(DVec3::new(self.double()?, self.double()?, self.double()?))
     }
 

@@ -220,7 +220,7 @@
 
 mod bounds;
 mod build;
-mod bytes;
+pub(in crate::io) mod bytes;
 mod gather;
 mod index;
 mod kind;

@@ -99,6 +99,7 @@ mod order;
 mod properties;
 mod rows;
 mod slabs;
+mod stream;
 mod strips;
 #[cfg(test)]
 mod tests;
@@ -112,6 +113,7 @@ pub use order::write_ordered;
 pub(in crate::io) use properties::check_properties;
 pub(in crate::io) use properties::number;
 pub use properties::properties;
+pub(in crate::io) use stream::Stream;
 pub use write::write;
 
 use crate::error::{Error, Result};

@@ -36,9 +36,9 @@ impl From<String> for Error {
 
 /// A file that begins with vertices of one length, and holds all of them.
 pub(super) struct Start {
-    header: PlyHeader,
-    layout: Layout,
-    rows: Rows,
+    pub(super) header: PlyHeader,
+    pub(super) layout: Layout,
+    pub(super) rows: Rows,
     options: ReadOptions,
 }
 

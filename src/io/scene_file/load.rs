@@ -4,6 +4,7 @@ use super::model::{Colored, ModelParts, Purpose, check_draw, prefiltered, read};
 use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, offset, stem};
 use crate::error::Result;
 use crate::frame::Exec;
+use crate::io::blocks::Blocks;
 use crate::io::hierarchy::Hierarchy;
 use crate::io::{environment, surface};
 use crate::progress::Progress;
@@ -31,6 +32,8 @@ pub struct Loaded {
     pub warnings: Vec<String>,
     /// The hierarchy from which views read what they need.
     pub(super) unread: Option<Hierarchy>,
+    /// The folder of blocks from which parts of a picture read what they need.
+    pub(super) blocks: Option<Blocks>,
 }
 
 /// A report on a loaded model of 3D Gaussians.
@@ -87,13 +90,14 @@ impl SceneFile {
     }
 
     /// [`SceneFile::load`] to find out what the scene contains. It reads the index and the bounds
-    /// of a hierarchy, and no file of a node. Everything equals the result of [`SceneFile::load`],
-    /// except surfels and primitives of the hierarchy's geometries.
+    /// of a hierarchy, and no file of a node; and of a folder of [blocks](crate::io::blocks) only the
+    /// index, where [`SceneFile::ready_in_parts`] would. Everything equals the result of
+    /// [`SceneFile::load`], except surfels and primitives that were not read.
     ///
     /// # Errors
     /// As [`SceneFile::load`], and as [`Hierarchy::outlined`].
     pub fn load_outlined(&self, exec: &Exec, progress: Progress<'_>) -> Result<Loaded> {
-        self.load_for(Purpose::View, exec, progress)
+        self.load_for(Purpose::Parts, exec, progress)
     }
 
     /// [`SceneFile::load`] to choose [candidates](mod@crate::source::candidates). Every model is
@@ -153,14 +157,21 @@ impl SceneFile {
             gaussians: None,
             warnings,
             unread: None,
+            blocks: None,
         };
         if let Some((model, path)) = gaussians {
             loaded.read_gaussians(model, path)?;
             return Ok(loaded);
         }
+        if purpose == Purpose::Parts
+            && let Some(blocks) = self.blocks()?
+        {
+            loaded.read_index(blocks, self.models[0].source.name(), exec)?;
+            return Ok(loaded);
+        }
         match (hierarchy, objects) {
             (Some(hierarchy), _) => {
-                let view = purpose == Purpose::View;
+                let view = matches!(purpose, Purpose::View | Purpose::Parts);
                 of_hierarchy(hierarchy, view, &mut loaded, exec, progress)?;
             }
             (None, None) => self.load_models(&mut loaded, purpose, exec, progress)?,
@@ -358,7 +369,7 @@ fn in_order(geometry: Geometry) -> Result<Geometry> {
 }
 
 /// Whether the surfels of a model are unchanged from their source.
-fn is_as_read(model: &Model) -> bool {
+pub(super) fn is_as_read(model: &Model) -> bool {
     let Model { color, opacity, transform, .. } = model;
     color.is_none() && opacity.is_none() && *transform == Similarity::IDENTITY
 }

@@ -94,6 +94,7 @@ mod model;
 mod objects;
 mod offset;
 mod open;
+mod parts;
 pub mod places;
 mod ready;
 #[cfg(test)]
@@ -194,7 +195,7 @@ pub struct Model {
 /// The source of a model.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Source {
-    /// A PLY, OBJ, LAS, LAZ or E57 file.
+    /// A PLY, OBJ, LAS, LAZ or E57 file, or a folder of [blocks](crate::io::blocks).
     File {
         /// The path of the file.
         path: PathBuf,

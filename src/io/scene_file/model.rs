@@ -76,6 +76,8 @@ pub(super) enum Purpose<'a> {
     Scene,
     /// To draw views, each of which reads only what it needs of a hierarchy.
     View,
+    /// To draw parts of a view, each of which reads only what it needs of a folder of blocks too.
+    Parts,
     /// To choose candidates: vertices of polygons keep their opacities and these properties.
     Candidates(&'a [String]),
 }
@@ -84,7 +86,10 @@ pub(super) enum Purpose<'a> {
 pub(super) fn check_draw(model: &Model, purpose: Purpose<'_>) -> Result<()> {
     model.draw.check(&model.source).map_err(Error::Invalid)?;
     if let Source::File { path, color_range: Some(_), .. } = &model.source
-        && matches!(FileKind::from_extension(path)?, FileKind::Obj | FileKind::E57)
+        && matches!(
+            FileKind::from_extension(path)?,
+            FileKind::Obj | FileKind::E57 | FileKind::Blocks
+        )
     {
         let what = "color_range applies to a PLY, a LAS or a LAZ; remove it";
         return Err(Error::format(path, what));

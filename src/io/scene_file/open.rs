@@ -3,6 +3,7 @@
 use super::{DEFAULT_COUNT, SceneFile, Source};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::io::blocks::Blocks;
 use crate::io::hierarchy::Hierarchy;
 use crate::io::ply::ReadOptions;
 use crate::io::{extension, input, las, obj, ply};
@@ -33,6 +34,8 @@ pub enum FileKind {
     E57,
     /// 3D Gaussians: glTF, GLB, .splat and SPZ. A PLY may hold them too.
     Gaussians,
+    /// A folder of [blocks](crate::io::blocks).
+    Blocks,
     /// A scene file.
     Toml,
     /// A picture.
@@ -43,13 +46,14 @@ pub enum FileKind {
 /// read, see [`crate::io::texture::paint`]. An OBJ takes no options, and an E57 no colour range.
 ///
 /// # Errors
-/// As [`obj::read`], [`las::read`], `e57::read` and [`ply::read_with`]; [`Error::Format`] for files of
+/// As [`obj::read`], [`las::read`], `e57::read`, [`Blocks::read`] and [`ply::read_with`]; [`Error::Format`] for files of
 /// 3D Gaussians.
 pub fn read_model(path: &Path, options: &ReadOptions, exec: &Exec) -> Result<Cloud> {
     match FileKind::from_extension(path) {
         Ok(FileKind::Obj) => obj::read(path),
         Ok(FileKind::Las) => las::read(path, options),
         Ok(FileKind::E57) => e57(path, options),
+        Ok(FileKind::Blocks) => Blocks::open(path)?.read(),
         Ok(FileKind::Gaussians) => Err(Error::format(
             path,
             "the file holds 3D Gaussians, which only `--method gaussians` draws; give a point cloud \
@@ -80,9 +84,9 @@ fn e57(path: &Path, _: &ReadOptions) -> Result<Cloud> {
 pub fn read_properties(path: &Path, names: &[String], cloud: &mut Cloud) -> Result<()> {
     let there = std::mem::take(&mut cloud.properties);
     cloud.properties = match FileKind::from_extension(path) {
-        Ok(FileKind::Obj | FileKind::Las | FileKind::E57 | FileKind::Gaussians) => {
-            names.iter().map(|name| named(path, name, &there)).collect::<Result<_>>()?
-        }
+        Ok(
+            FileKind::Obj | FileKind::Las | FileKind::E57 | FileKind::Gaussians | FileKind::Blocks,
+        ) => names.iter().map(|name| named(path, name, &there)).collect::<Result<_>>()?,
         Ok(FileKind::Ply | FileKind::Toml | FileKind::Exr) | Err(_) => {
             ply::properties(path, names)?
         }
@@ -112,9 +116,9 @@ pub(super) fn read_number(path: &Path, name: &str, cloud: &Cloud) -> Result<(Vec
         return Ok((cloud.position.iter().map(|p| p[axis]).collect(), cloud.offset[axis]));
     }
     let property = match FileKind::from_extension(path) {
-        Ok(FileKind::Obj | FileKind::Las | FileKind::E57 | FileKind::Gaussians) => {
-            named(path, name, &cloud.properties)?
-        }
+        Ok(
+            FileKind::Obj | FileKind::Las | FileKind::E57 | FileKind::Gaussians | FileKind::Blocks,
+        ) => named(path, name, &cloud.properties)?,
         Ok(FileKind::Ply | FileKind::Toml | FileKind::Exr) | Err(_) => ply::number(path, name)?,
     };
     Ok((property.values, 0.0))
@@ -125,7 +129,7 @@ impl FileKind {
     #[must_use]
     pub fn is_model(self) -> bool {
         match self {
-            Self::Ply | Self::Obj | Self::Las | Self::E57 | Self::Gaussians => true,
+            Self::Ply | Self::Obj | Self::Las | Self::E57 | Self::Gaussians | Self::Blocks => true,
             Self::Toml | Self::Exr => false,
         }
     }
@@ -143,6 +147,7 @@ impl FileKind {
             Some("gltf" | "glb" | "splat" | "spz") => Ok(Self::Gaussians),
             Some("toml") => Ok(Self::Toml),
             Some("exr") => Ok(Self::Exr),
+            _ if Blocks::is_in(path) => Ok(Self::Blocks),
             _ => Err(Error::Usage(match input::no_file(path) {
                 Some(what) => format!("{}: {what}", path.display()),
                 None => format!(
@@ -206,7 +211,7 @@ impl SceneFile {
     }
 
     /// Opens a scene by its name: a shape, `tree`, a file of a model, a scene .toml or the folder of
-    /// a [hierarchy](crate::io::hierarchy). This example gets from a name to a picture in memory:
+    /// a [hierarchy](crate::io::hierarchy) or of [blocks](crate::io::blocks). This example gets from a name to a picture in memory:
     /// ```
     /// use splatref::frame::{Exec, Samples};
     /// use splatref::io::scene_file::SceneFile;
@@ -237,16 +242,19 @@ impl SceneFile {
             return Ok(Self::of_hierarchy(path));
         }
         match FileKind::from_extension(path)? {
-            FileKind::Ply | FileKind::Obj | FileKind::Las | FileKind::E57 | FileKind::Gaussians => {
-                Ok(Self::of_model(Source::File {
-                    path: path.to_owned(),
-                    radius: None,
-                    prefix: None,
-                    texture: None,
-                    color_range: None,
-                    color_by: None,
-                }))
-            }
+            FileKind::Ply
+            | FileKind::Obj
+            | FileKind::Las
+            | FileKind::E57
+            | FileKind::Gaussians
+            | FileKind::Blocks => Ok(Self::of_model(Source::File {
+                path: path.to_owned(),
+                radius: None,
+                prefix: None,
+                texture: None,
+                color_range: None,
+                color_by: None,
+            })),
             FileKind::Toml => Self::read(path),
             FileKind::Exr => Err(Error::Usage(format!(
                 "{}: an EXR is a picture, not a scene; `splatref info` describes it",

@@ -45,8 +45,18 @@ impl SceneFile {
     /// [`crate::Error::Invalid`] if a setting is out of range or unknown to the method, or if the
     /// method cannot draw the scene.
     pub fn ready(&self, exec: &Exec, progress: Progress<'_>) -> Result<Ready> {
+        self.ready_for(Purpose::View, exec, progress)
+    }
+
+    /// [`SceneFile::ready`], loaded for a purpose.
+    pub(super) fn ready_for(
+        &self,
+        purpose: Purpose<'_>,
+        exec: &Exec,
+        progress: Progress<'_>,
+    ) -> Result<Ready> {
         self.check_drawing()?;
-        self.placed(self.load_for(Purpose::View, exec, progress)?, exec, progress)
+        self.placed(self.load_for(purpose, exec, progress)?, exec, progress)
     }
 
     /// Says what was chosen, but changes no picture of the method: one line each.

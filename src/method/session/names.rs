@@ -4,42 +4,58 @@ use crate::error::{Error, Result};
 use crate::frame::{Frame, NO_ID, Plane, Samples};
 use crate::method::record::wide_id;
 use crate::method::stage::{Holds, Stage};
+use crate::scene::Excerpt;
 use crate::scene::objects::{Ids, Objects};
 
 /// The ids of the drawn surfels, ascending. A surfel's index is its place in this order. Methods
 /// that draw surfels one by one, and every verdict, use these indices.
-pub(crate) struct Names<'a> {
-    ids: &'a Ids,
-    /// The drawn ids of objects with levels of detail. Without levels of detail, all ids are drawn.
-    drawn: Option<Vec<u64>>,
+pub(crate) enum Names<'a> {
+    /// Every surfel of the objects is drawn.
+    All(&'a Ids),
+    /// Of objects with levels of detail, these ids are drawn.
+    Drawn(&'a Ids, Vec<u64>),
+    /// Surfels of a larger scene, whose ids are their indices there.
+    Excerpt(&'a Excerpt),
 }
 
 impl<'a> Names<'a> {
     pub(super) fn new(objects: &'a Objects) -> Self {
-        let drawn = objects.have_detail().then(|| objects.drawn_ids());
-        Self { ids: objects.ids(), drawn }
+        let ids = objects.ids();
+        match objects.have_detail() {
+            true => Self::Drawn(ids, objects.drawn_ids()),
+            false => Self::All(ids),
+        }
+    }
+
+    /// Whether ids have 40 bits.
+    fn is_wide(&self) -> bool {
+        match self {
+            Self::All(ids) | Self::Drawn(ids, _) => ids.is_wide(),
+            Self::Excerpt(_) => false,
+        }
     }
 
     /// The lowest 32 bits of the id of the surfel with this index.
     pub(super) fn id(&self, index: u32) -> Option<u32> {
-        let id = match &self.drawn {
-            Some(drawn) => drawn.get(index as usize).copied(),
-            None => self.ids.nth(index.into()),
-        };
-        id.map(|id| id as u32)
+        match self {
+            Self::All(ids) => ids.nth(index.into()).map(|id| id as u32),
+            Self::Drawn(_, drawn) => drawn.get(index as usize).map(|id| *id as u32),
+            Self::Excerpt(excerpt) => excerpt.ids().get(index as usize).copied(),
+        }
     }
 
     /// The number of drawn surfels with lower ids.
     fn index(&self, id: u64) -> Option<u32> {
-        match &self.drawn {
-            Some(drawn) => drawn.binary_search(&id).ok().map(|index| index as u32),
-            None => self.ids.rank(id).map(|rank| rank as u32),
+        match self {
+            Self::All(ids) => ids.rank(id).map(|rank| rank as u32),
+            Self::Drawn(_, drawn) => drawn.binary_search(&id).ok().map(|index| index as u32),
+            Self::Excerpt(excerpt) => excerpt.index(id),
         }
     }
 
     /// The id by which a verdict calls the surfel with this index, if 32 bits hold the whole id.
     pub(super) fn told(&self, index: u32) -> Option<u32> {
-        if self.ids.is_wide() { None } else { self.id(index) }
+        if self.is_wide() { None } else { self.id(index) }
     }
 
     /// Replaces indices by ids.
@@ -49,7 +65,7 @@ impl<'a> Names<'a> {
 
     /// Replaces ids by indices. An id that no surfel has becomes an index that no surfel has.
     pub(super) fn number<R>(&self, frame: &mut Frame<R>) -> Result<()> {
-        if self.ids.is_wide() {
+        if self.is_wide() {
             let what = "ids have 40 bits, but planes of ids hold 32 of them, which do not identify \
                         the surfel";
             return Err(Error::Invalid(what.into()));
@@ -61,7 +77,7 @@ impl<'a> Names<'a> {
     /// Replaces ids by indices in a client's planes. Planes of ids of 40 bits without the planes of
     /// their highest 8 bits are left out, because 32 bits do not identify the surfel.
     pub(crate) fn number_given<R>(&self, frame: &mut Frame<R>, stages: &[Stage]) -> Result<()> {
-        if !self.ids.is_wide() {
+        if !self.is_wide() {
             return self.number(frame);
         }
         let high: Vec<(String, Plane<u8>)> = frame
