@@ -57,6 +57,13 @@ impl<R: Real> Mean<R> {
         mean.clamped(self.least(a), self.greatest(a)) + R::ZERO
     }
 
+    /// [`Mean::average`], called and not compiled into each place that averages, because in balls it
+    /// takes 5 kB.
+    #[inline(never)]
+    pub(crate) fn average_called(&self, a: [R; 4]) -> R {
+        self.average(a)
+    }
+
     /// The least value that takes part; +inf if there are none.
     #[inline(always)]
     #[must_use]

@@ -56,22 +56,42 @@ impl Bins {
     /// Sorts `count` bounds into the tiles of a grid; each of them touches the grid's window.
     #[must_use]
     pub fn new(grid: &Grid, count: usize, bounds: impl Fn(usize) -> Rect) -> Self {
-        let placed = |i: usize| place(grid.touched(&bounds(i)));
-        // Count first; a level is made when the first item is listed in it.
+        Self::sorted(grid, count, &|first, some| {
+            for (i, own) in some.iter_mut().enumerate() {
+                *own = bounds(first + i);
+            }
+        })
+    }
+
+    /// [`Bins::new`], compiled once. `bounds` writes the bounds of as many items as it is given
+    /// places for, from an item on.
+    fn sorted(grid: &Grid, count: usize, bounds: &dyn Fn(usize, &mut [Rect])) -> Self {
+        /// Bounds that are kept at a time: 4 kB.
+        const SOME: usize = 256;
+        let mut some = [Rect::default(); SOME];
         let mut levels: [Option<Level>; LEVELS] = Default::default();
-        for i in 0..count {
-            let (shift, cells) = placed(i);
-            let level = levels[shift as usize].get_or_insert_with(|| Level::new(grid, shift));
-            each_cell(level.columns, &cells, |cell| level.starts[cell + 2] += 1);
+        // Count first; a level is made when the first item is listed in it.
+        for first in (0..count).step_by(SOME) {
+            let some = &mut some[..SOME.min(count - first)];
+            bounds(first, some);
+            for bounds in some {
+                let (shift, cells) = place(grid.touched(bounds));
+                let level = levels[shift as usize].get_or_insert_with(|| Level::new(grid, shift));
+                each_cell(level.columns, &cells, |cell| level.starts[cell + 2] += 1);
+            }
         }
         for level in levels.iter_mut().flatten() {
             level.sum();
         }
         // Fill in ascending order.
-        for i in 0..count {
-            let (shift, cells) = placed(i);
-            if let Some(level) = &mut levels[shift as usize] {
-                level.put(&cells, i as u32);
+        for first in (0..count).step_by(SOME) {
+            let some = &mut some[..SOME.min(count - first)];
+            bounds(first, some);
+            for (i, bounds) in some.iter().enumerate() {
+                let (shift, cells) = place(grid.touched(bounds));
+                if let Some(level) = &mut levels[shift as usize] {
+                    level.put(&cells, (first + i) as u32);
+                }
             }
         }
         Self { columns: grid.columns, levels: levels.into_iter().flatten().collect() }

@@ -104,7 +104,11 @@ impl Exec {
         jobs: Vec<J>,
         run: impl Fn(J) -> T + Sync + Send,
     ) -> Vec<T> {
-        let slots: Vec<_> = jobs.into_iter().map(|job| Mutex::new(Slot::Job(job))).collect();
+        // Two plain loops, because chains of iterators are compiled for each kind of jobs and results.
+        let mut slots = Vec::with_capacity(jobs.len());
+        for job in jobs {
+            slots.push(Mutex::new(Slot::Job(job)));
+        }
         // One thread goes through the same closure, because a second call of `run` would be compiled again.
         self.each(slots.len(), &|i| {
             let slot = || slots[i].lock().unwrap_or_else(PoisonError::into_inner);
@@ -115,13 +119,15 @@ impl Exec {
                 *slot() = Slot::Result(result);
             }
         });
-        let done = slots.into_iter().map(|slot| slot.into_inner());
-        // Every slot has a result here, because a job that panics makes `each` panic.
-        done.filter_map(|slot| match slot.unwrap_or_else(PoisonError::into_inner) {
-            Slot::Result(result) => Some(result),
-            Slot::Job(_) | Slot::Empty => None,
-        })
-        .collect()
+        let mut results = Vec::with_capacity(slots.len());
+        for slot in slots {
+            // Every slot has a result here, because a job that panics makes `each` panic.
+            if let Slot::Result(result) = slot.into_inner().unwrap_or_else(PoisonError::into_inner)
+            {
+                results.push(result);
+            }
+        }
+        results
     }
 
     /// Runs `run` for each index below `count`, in parallel. `run` is not a type parameter, because a

@@ -14,6 +14,7 @@
 )]
 
 use super::disc_lanes::DiscLanes;
+use super::shape::{COVARIANCE, Covariance, PLACED, PlacedDisc};
 use super::{FOOTPRINT, Footprint, Projector, Reasons, Splat};
 use crate::frame::Rect;
 use crate::number::ball::{BallLanes, Common, Profile, Three};
@@ -38,14 +39,11 @@ pub(crate) fn affine_surfels<P: Profile>(
     range: (Range<usize>, Option<&[usize]>),
     draw: &mut dyn FnMut(usize, Option<Splat<Ball<P>>>),
 ) {
-    match surfels.tangents() {
-        None => in_lanes::<false, P>(projector, surfels, range, draw),
-        Some(_) => in_lanes::<true, P>(projector, surfels, range, draw),
-    }
+    in_lanes(projector, surfels, range, draw);
 }
 
 vectorized_avx2!(
-    fn in_lanes<const TANGENTS: bool, P: Profile>(
+    fn in_lanes<P: Profile>(
         projector: &Projector<Ball<Common<P>>>,
         surfels: &Surfels,
         (range, list): (Range<usize>, Option<&[usize]>),
@@ -61,16 +59,18 @@ vectorized_avx2!(
         let picture = [projector.view.width, projector.view.height].map_inline(|n| n.middle as u32);
         let seen = match list {
             Some(list) => list.to_vec(),
-            None => seen::<TANGENTS, P>(&projector, surfels, range),
+            None => seen(&projector, surfels, range),
         };
         for some in seen.chunks(LANES) {
             // The last lanes may repeat one surfel.
             let one = |i: usize| (some[i.min(some.len() - 1)], 1.0);
-            let discs = DiscLanes::<TANGENTS>::new(surfels, one);
+            let shapes = ShapeLanes::new(&projector, surfels, one);
             // -- Project
             let mut splats = SplatLanes::<Common<P>>::new();
             for i in 0..LANES {
-                let (f, b, truths, reasons) = projector.affine_disc(&discs.get(i));
+                let (placed, shape) = shapes.get(i);
+                let reach = shapes.reach.get(i);
+                let (f, b, truths, reasons) = projector.affine_shape(&placed, &shape, reach);
                 splats.known[i] = known(&f, &b, picture, truths[1], &reasons);
                 splats.put(i, f, &b, truths[0]);
             }
@@ -89,23 +89,97 @@ vectorized_avx2!(
 /// The surfels of a range, whose length is a multiple of [`LANES`], that may be seen: they are not
 /// certainly out of sight and not certainly turned away. Only these get a shape.
 #[inline(always)]
-fn seen<const TANGENTS: bool, P: Profile>(
+fn seen<P: Profile>(
     projector: &Projector<Ball<Common<P>>>,
     surfels: &Surfels,
     range: Range<usize>,
 ) -> Vec<usize> {
     let mut seen = Vec::with_capacity(range.len());
     for first in range.step_by(LANES) {
-        let discs = DiscLanes::<TANGENTS>::new(surfels, |i| (first + i, 1.0));
+        let discs = DiscLanes::<true>::new(surfels, |i| (first + i, 1.0));
+        let reach = reach(surfels, &discs);
         let mut unseen = [0_u32; LANES];
         for i in 0..LANES {
             let disc = discs.get(i);
             let placed = projector.place(disc.position, disc.normal);
-            unseen[i] = u32::from(projector.unseen(&placed, disc.reach()).any().certainly());
+            unseen[i] = u32::from(projector.unseen(&placed, reach.get(i)).any().certainly());
         }
         seen.extend((0..LANES).filter(|i| unseen[*i] == 0).map(|i| first + i));
     }
     seen
+}
+
+/// The radius of the bounding sphere in each lane.
+///
+/// Discs and ellipses have a loop each, because a choice within one loop would not vectorize. All other
+/// loops are the same for both.
+#[inline(always)]
+fn reach<P: Profile>(surfels: &Surfels, discs: &DiscLanes<true>) -> BallLanes<P> {
+    let mut reach = BallLanes::ZERO;
+    if surfels.tangents().is_some() {
+        (0..LANES).for_each(|i| reach.put(i, discs.get(i).reach()));
+    } else {
+        (0..LANES).for_each(|i| reach.put(i, discs.get(i).radius));
+    }
+    reach
+}
+
+/// [`LANES`] placed surfels with their shapes; each number is a vector.
+struct ShapeLanes<P: Profile> {
+    placed: [BallLanes<P>; PLACED],
+    shape: [BallLanes<P>; COVARIANCE],
+    reach: BallLanes<P>,
+}
+
+impl<P: Profile> ShapeLanes<P> {
+    #[inline(always)]
+    fn new(
+        projector: &Projector<Ball<P>>,
+        surfels: &Surfels,
+        item: impl Fn(usize) -> (usize, f32),
+    ) -> Self {
+        let discs = DiscLanes::<true>::new(surfels, item);
+        let reach = reach(surfels, &discs);
+        let mut lanes =
+            Self { placed: [BallLanes::ZERO; PLACED], shape: [BallLanes::ZERO; COVARIANCE], reach };
+        for i in 0..LANES {
+            let disc = discs.get(i);
+            put(&mut lanes.placed, i, projector.place(disc.position, disc.normal).numbers());
+        }
+        if surfels.tangents().is_some() {
+            for i in 0..LANES {
+                let placed = PlacedDisc::of_numbers(get(&lanes.placed, i));
+                let shape = projector.covariance(&placed, &discs.get(i));
+                put(&mut lanes.shape, i, shape.numbers());
+            }
+        } else {
+            for i in 0..LANES {
+                let placed = PlacedDisc::of_numbers(get(&lanes.placed, i));
+                put(&mut lanes.shape, i, projector.disc(&placed, discs.get(i).radius).numbers());
+            }
+        }
+        lanes
+    }
+
+    #[inline(always)]
+    fn get(&self, i: usize) -> (PlacedDisc<Ball<P>>, Covariance<Ball<P>>) {
+        let placed = PlacedDisc::of_numbers(get(&self.placed, i));
+        (placed, Covariance::of_numbers(get(&self.shape, i)))
+    }
+}
+
+/// The numbers of a lane.
+#[inline(always)]
+fn get<P: Profile, const N: usize>(lanes: &[BallLanes<P>; N], i: usize) -> [Ball<P>; N] {
+    std::array::from_fn(|field| lanes[field].get(i))
+}
+
+/// Replaces the numbers of a lane.
+#[inline(always)]
+fn put<P: Profile, const N: usize>(lanes: &mut [BallLanes<P>; N], i: usize, numbers: [Ball<P>; N]) {
+    for (lane, number) in lanes.iter_mut().zip(numbers) {
+        lane.put(i, number);
+    }
 }
 
 /// Classifies a surfel.
@@ -150,9 +224,7 @@ impl<P: Profile> SplatLanes<P> {
 
     #[inline(always)]
     fn put(&mut self, i: usize, f: Footprint<Ball<P>>, b: &Rect, back: Three) {
-        for (lanes, number) in self.numbers.iter_mut().zip(f.numbers()) {
-            lanes.put(i, number);
-        }
+        put(&mut self.numbers, i, f.numbers());
         let pixels = &mut self.bounds;
         (pixels[0][i], pixels[1][i], pixels[2][i], pixels[3][i]) = (b.x0, b.y0, b.x1, b.y1);
         self.back[0][i] = u32::from(back.certainly());
@@ -162,7 +234,7 @@ impl<P: Profile> SplatLanes<P> {
 
     #[inline(always)]
     fn get<Q: Profile<Terms = P::Terms>>(&self, i: usize, surfel: u32) -> Splat<Ball<Q>> {
-        let numbers = std::array::from_fn(|field| self.numbers[field].get(i).rounding_as());
+        let numbers = get(&self.numbers, i).map_inline(Ball::rounding_as);
         let pixel = |field: usize| self.bounds[field][i];
         let back = |field: usize| self.back[field][i] != 0;
         Splat {

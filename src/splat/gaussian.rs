@@ -196,9 +196,13 @@ fn squared<R: Real>(axes: &[[R; 3]; 3], factors: [R; 3]) -> Symmetric<R> {
     let row = |i: usize| {
         Vector3::new(axes[i][0] * factors[0], axes[i][1] * factors[1], axes[i][2] * factors[2])
     };
-    let [x, y, z] = [row(0), row(1), row(2)];
-    [x.dot(x), x.dot(y), x.dot(z), y.dot(y), y.dot(z), z.dot(z)]
+    let rows = [0, 1, 2].map_inline(row);
+    PAIRS.map_inline(|(i, j): (usize, usize)| rows[i].dot(rows[j]))
 }
+
+/// Row and column of each number of a [`Symmetric`]. A loop over these is compiled once, which matters
+/// where numbers are balls.
+const PAIRS: [(usize, usize); 6] = [(0, 0), (0, 1), (0, 2), (1, 1), (1, 2), (2, 2)];
 
 /// v v^T.
 #[inline(always)]
@@ -299,9 +303,8 @@ impl<R: Real> GaussianProjector<R> {
         let [xx, xy, xz, yy, yz, zz] = *a;
         let rows = [Vector3::new(xx, xy, xz), Vector3::new(xy, yy, yz), Vector3::new(xz, yz, zz)];
         let times = |v: Vector3<R>| Vector3::new(rows[0].dot(v), rows[1].dot(v), rows[2].dot(v));
-        let [x, y, z] = self.frame;
-        let (ax, ay, az) = (times(x), times(y), times(z));
-        [x.dot(ax), x.dot(ay), x.dot(az), y.dot(ay), y.dot(az), z.dot(az)]
+        let products = self.frame.map_inline(times);
+        PAIRS.map_inline(|(i, j): (usize, usize)| self.frame[i].dot(products[j]))
     }
 
     /// A direction of the world in the camera frame.

@@ -145,8 +145,12 @@ pub fn project_as<R: Real>(
     surfel: u32,
     crosses: bool,
 ) -> (Splat<R>, Reasons<R>) {
-    let (placed, shape) = projector.shape(disc);
-    projector.splat(disc, (&placed, &shape), crosses, surfel)
+    let placed = projector.placed(disc);
+    let unseen = projector.unseen_if_placed(&placed, disc);
+    let shape = projector.shape_if_placed(&placed, disc);
+    let (footprint, bounds, reasons) =
+        projector.footprint_of_shape(disc, (&placed, &shape), unseen, crosses);
+    (Splat { footprint, bounds, surfel, back: placed.g.gt(R::ZERO) }, reasons)
 }
 
 /// Calls `each` for every outline that a surfel may have: with the splat, the reasons not to draw
@@ -160,25 +164,56 @@ pub(crate) fn project_each<R: Real>(
     surfel: u32,
     mut each: impl FnMut(Splat<R>, Reasons<R>, R::Truth),
 ) {
-    let placed = projector.place(disc.position, disc.normal);
+    let placed = projector.placed(disc);
     if projector.turned_away(&placed).certainly() {
         return;
     }
-    let unseen = projector.unseen(&placed, disc.reach());
+    let unseen = projector.unseen_if_placed(&placed, disc);
     if unseen.any().certainly() {
         return;
     }
-    let shape = projector.covariance(&placed, disc);
+    let shape = projector.shape_if_placed(&placed, disc);
     let crosses = projector.reaches_near_plane(&placed, &shape);
     for alternative in [false, true] {
         // Each outcome of the near-plane test that is possible gives an outline.
         let possible = if alternative { crosses.possibly() } else { !crosses.certainly() };
         if possible {
-            let (footprint, bounds) = projector.footprint(disc, (&placed, &shape), alternative);
+            let (footprint, bounds, reasons) =
+                projector.footprint_of_shape(disc, (&placed, &shape), unseen, alternative);
             let back = placed.g.gt(R::ZERO);
-            let reasons = reasons(unseen, &footprint, &bounds);
             each(Splat { footprint, bounds, surfel, back }, reasons, crosses);
         }
+    }
+}
+
+/// The steps of [`project_as`] and [`project_each`]. Each step is compiled once, because in balls a step is 10 to
+/// 60 kB of code.
+impl<R: Real> Projector<R> {
+    #[inline(never)]
+    fn placed(&self, disc: &Disc<R>) -> PlacedDisc<R> {
+        self.place(disc.position, disc.normal)
+    }
+
+    #[inline(never)]
+    fn unseen_if_placed(&self, placed: &PlacedDisc<R>, disc: &Disc<R>) -> Reasons<R> {
+        self.unseen(placed, disc.reach())
+    }
+
+    #[inline(never)]
+    fn shape_if_placed(&self, placed: &PlacedDisc<R>, disc: &Disc<R>) -> Covariance<R> {
+        self.covariance(placed, disc)
+    }
+
+    #[inline(never)]
+    fn footprint_of_shape(
+        &self,
+        disc: &Disc<R>,
+        shape: (&PlacedDisc<R>, &Covariance<R>),
+        unseen: Reasons<R>,
+        crosses: bool,
+    ) -> (Footprint<R>, Rect, Reasons<R>) {
+        let (footprint, bounds) = self.footprint(disc, shape, crosses);
+        (footprint, bounds, reasons(unseen, &footprint, &bounds))
     }
 }
 
@@ -224,13 +259,18 @@ impl<R: Real> Projector<R> {
         (placed, shape): (&PlacedDisc<R>, &Covariance<R>),
         crosses: bool,
     ) -> (Footprint<R>, Rect) {
-        match self.outline {
-            Outline::Perspective if self.view.perspective && !crosses => {
-                self.perspective(placed, shape)
-            }
-            Outline::Affine | Outline::Perspective => self.affine(placed, shape),
-            Outline::RayCast => self.ray_cast(placed, shape, disc, crosses),
+        if self.outline == Outline::RayCast {
+            return self.ray_cast(placed, shape, disc, crosses);
         }
+        // One call, because it is compiled in line.
+        let exact = self.outline == Outline::Perspective && self.view.perspective && !crosses;
+        let (shape, center, w0) = if exact {
+            let (shape, center, rest) = self.outline(placed, shape);
+            (shape, center, placed.m / rest)
+        } else {
+            (*shape, placed.center, self.view.nearness(placed.t))
+        };
+        self.gaussian(placed, &shape, center, w0)
     }
 
     /// Computes a surfel in view space, and its covariance.
@@ -241,7 +281,7 @@ impl<R: Real> Projector<R> {
     }
 
     #[inline(always)]
-    fn covariance(&self, placed: &PlacedDisc<R>, disc: &Disc<R>) -> Covariance<R> {
+    pub(super) fn covariance(&self, placed: &PlacedDisc<R>, disc: &Disc<R>) -> Covariance<R> {
         match disc.tangents {
             None => self.disc(placed, disc.radius),
             Some(tangents) => self.ellipse(placed, tangents),
@@ -257,9 +297,20 @@ impl<R: Real> Projector<R> {
         disc: &Disc<R>,
     ) -> (Footprint<R>, Rect, [R::Truth; 2], Reasons<R>) {
         let (placed, shape) = self.shape(disc);
-        let (footprint, bounds) = self.affine(&placed, &shape);
-        let reasons = reasons(self.unseen(&placed, disc.reach()), &footprint, &bounds);
-        let crosses = self.reaches_near_plane(&placed, &shape);
+        self.affine_shape(&placed, &shape, disc.reach())
+    }
+
+    /// [`Projector::affine_disc`] for a shape whose bounding sphere has the radius `reach`.
+    #[inline(always)]
+    pub(super) fn affine_shape(
+        &self,
+        placed: &PlacedDisc<R>,
+        shape: &Covariance<R>,
+        reach: R,
+    ) -> (Footprint<R>, Rect, [R::Truth; 2], Reasons<R>) {
+        let (footprint, bounds) = self.affine(placed, shape);
+        let reasons = reasons(self.unseen(placed, reach), &footprint, &bounds);
+        let crosses = self.reaches_near_plane(placed, shape);
         (footprint, bounds, [placed.g.gt(R::ZERO), crosses], reasons)
     }
 
@@ -267,12 +318,6 @@ impl<R: Real> Projector<R> {
     #[inline(always)]
     fn affine(&self, placed: &PlacedDisc<R>, shape: &Covariance<R>) -> (Footprint<R>, Rect) {
         self.gaussian(placed, shape, placed.center, self.view.nearness(placed.t))
-    }
-
-    /// The exact ellipse of the projected disc, convolved with the low-pass filter.
-    fn perspective(&self, placed: &PlacedDisc<R>, shape: &Covariance<R>) -> (Footprint<R>, Rect) {
-        let (shape, center, rest) = self.outline(placed, shape);
-        self.gaussian(placed, &shape, center, placed.m / rest)
     }
 
     /// The covariance and the centre of the exact outline, and `rest`.

@@ -31,6 +31,40 @@ pub(super) struct Covariance<R> {
     pub(super) tilt: Vector2<R>,
 }
 
+/// How many numbers a [`PlacedDisc`] has, and a [`Covariance`].
+pub(super) const PLACED: usize = 15;
+pub(super) const COVARIANCE: usize = 7;
+
+impl<R> PlacedDisc<R> {
+    #[inline(always)]
+    pub(super) fn numbers(self) -> [R; PLACED] {
+        let Self { p, n, t, m, d, sx, sy, g, center } = self;
+        [p.x, p.y, p.z, n.x, n.y, n.z, t, m, d.x, d.y, sx, sy, g, center.x, center.y]
+    }
+
+    /// The disc with these [`PlacedDisc::numbers`].
+    #[inline(always)]
+    pub(super) fn of_numbers(numbers: [R; PLACED]) -> Self {
+        let [px, py, pz, nx, ny, nz, t, m, dx, dy, sx, sy, g, x, y] = numbers;
+        let (p, n) = (Vector3::new(px, py, pz), Vector3::new(nx, ny, nz));
+        Self { p, n, t, m, d: Vector2::new(dx, dy), sx, sy, g, center: Vector2::new(x, y) }
+    }
+}
+
+impl<R> Covariance<R> {
+    #[inline(always)]
+    pub(super) fn numbers(self) -> [R; COVARIANCE] {
+        let Self { xx, xy, yy, area, half, tilt } = self;
+        [xx, xy, yy, area, half, tilt.x, tilt.y]
+    }
+
+    /// The covariance with these [`Covariance::numbers`].
+    #[inline(always)]
+    pub(super) fn of_numbers([xx, xy, yy, area, half, x, y]: [R; COVARIANCE]) -> Self {
+        Self { xx, xy, yy, area, half, tilt: Vector2::new(x, y) }
+    }
+}
+
 impl<R: Real> Projector<R> {
     /// Places a surfel in view space, with the Jacobian there.
     #[inline(always)]

@@ -373,7 +373,17 @@ pub(crate) fn checks<const N: usize>(
     let Place { tile, rect } = Place::new(job, pixel)?;
     let mut marks = [(); N].map_inline(|()| Marks::logging(rect));
     judge((tile, rect), &mut marks);
-    Ok(marks.into_iter().zip(stages).flat_map(|(marks, stage)| marks.checks(stage)).collect())
+    Ok(logged(&mut marks, &stages))
+}
+
+/// The recorded checks of each stage, one stage after the other.
+fn logged(marks: &mut [Marks], stages: &[&'static str]) -> Vec<Check> {
+    let mut all = Vec::new();
+    for (marks, stage) in marks.iter_mut().zip(stages) {
+        let log = marks.log.take().unwrap_or_default();
+        all.extend(log.into_iter().map(|(error, fault)| Check { stage, fault, error }));
+    }
+    all
 }
 
 /// The pixels of a tile, numbered row by row.

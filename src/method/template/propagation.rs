@@ -114,7 +114,8 @@ pub fn near<R: Real>(finer: &[Center<R>; 4], first: usize) -> [R::Truth; 4] {
 /// foremost of them.
 pub fn merge<R: Real>(finer: &[Center<R>; 4], takes: [bool; 4], first: usize) -> Center<R> {
     let mean = Mean::plain(takes);
-    let number = |of: fn(&Center<R>) -> R| mean.average([0, 1, 2, 3].map_inline(|j| of(&finer[j])));
+    let number =
+        |of: fn(&Center<R>) -> R| mean.average_called([0, 1, 2, 3].map_inline(|j| of(&finer[j])));
     Center {
         id: finer[first].id,
         depth: number(|c| c.depth),

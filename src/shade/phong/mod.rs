@@ -150,6 +150,20 @@ impl<R: Real> Shader<R> {
         color
     }
 
+    /// [`Shader::lit`] for a surface with this normal, or a tube with this tangent. Compiled once for all
+    /// forms, because in balls it takes 40 kB.
+    #[inline(never)]
+    fn lit_once(
+        &self,
+        p: Vector3<R>,
+        (direction, is_tube): (Vector3<R>, bool),
+        surface: [R; 3],
+    ) -> [R; 3] {
+        let towards =
+            |l| if is_tube { around(direction, l) } else { (direction, direction.dot(l)) };
+        self.lit(p, towards, surface)
+    }
+
     /// The colour of a surface at depth t of a pixel, whose normal is in world space. The pixel
     /// must not be empty.
     pub(crate) fn surface(
@@ -160,7 +174,7 @@ impl<R: Real> Shader<R> {
         surface: [R; 3],
     ) -> [R; 3] {
         let normal = self.view.direction(normal);
-        self.lit(self.position(x, y, t), |l| (normal, normal.dot(l)), surface)
+        self.lit_once(self.position(x, y, t), (normal, false), surface)
     }
 
     /// The same for a tube; its tangent, in world space, must not be the null vector.
@@ -172,7 +186,7 @@ impl<R: Real> Shader<R> {
         surface: [R; 3],
     ) -> [R; 3] {
         let tangent = self.view.direction(tangent).normalized();
-        self.lit(self.position(x, y, t), |l| around(tangent, l), surface)
+        self.lit_once(self.position(x, y, t), (tangent, true), surface)
     }
 
     /// The colour of a surfel, shaded once at its centre. p is its position, and n its normal,
@@ -180,7 +194,7 @@ impl<R: Real> Shader<R> {
     #[must_use]
     pub fn surfel(&self, p: Vector3<R>, n: Vector3<R>, surface: [R; 3]) -> [R; 3] {
         let normal = self.view.direction(n);
-        self.lit(self.view.point(p), |l| (normal, normal.dot(l)), surface)
+        self.lit_once(self.view.point(p), (normal, false), surface)
     }
 
     /// Converts the shader to another arithmetic, for the same view.

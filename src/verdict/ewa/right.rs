@@ -23,6 +23,7 @@ use crate::shade::phong::Shader;
 use crate::splat::View;
 use crate::verdict::client::{Storage, StoredPlane, known};
 use crate::verdict::supposed::Supposed;
+use std::slice;
 
 /// One number in each lane.
 type Numbers<P> = BallLanes<Common<P>>;
@@ -154,15 +155,7 @@ impl StageErrors {
     /// Compares a number with its ball.
     #[inline(always)]
     fn number<P: Profile>(&mut self, stage: usize, found: &Numbers<P>, truth: &Numbers<P>) {
-        let Self { worst, right } = self;
-        let (mut most, mut fits) = (worst[stage], *right);
-        for i in 0..LANES {
-            let error = truth.get(i).misfit_of_bounded(found.get(i));
-            // Written so that a NaN does not fit.
-            fits[i] &= u32::from(error <= 1.0).wrapping_neg();
-            most[i] = if error > most[i] { error } else { most[i] };
-        }
-        (worst[stage], *right) = (most, fits);
+        compare(self, stage, slice::from_ref(found), slice::from_ref(truth));
     }
 
     #[inline(always)]
@@ -172,9 +165,7 @@ impl StageErrors {
         found: &[Numbers<P>; 3],
         truth: &[Numbers<P>; 3],
     ) {
-        for c in 0..3 {
-            self.number(stage, &found[c], &truth[c]);
-        }
+        compare(self, stage, found, truth);
     }
 
     /// Requires that values are the same.
@@ -185,6 +176,28 @@ impl StageErrors {
         }
     }
 }
+
+vectorized!(
+    /// Compares numbers with their balls. It is called, because [`judge`] compares in a dozen places.
+    fn compare<P: Profile>(
+        errors: &mut StageErrors,
+        stage: usize,
+        found: &[Numbers<P>],
+        truth: &[Numbers<P>],
+    ) {
+        let StageErrors { worst, right } = errors;
+        let (mut most, mut fits) = (worst[stage], *right);
+        for (found, truth) in found.iter().zip(truth) {
+            for i in 0..LANES {
+                let error = truth.get(i).misfit_of_bounded(found.get(i));
+                // Written so that a NaN does not fit.
+                fits[i] &= u32::from(error <= 1.0).wrapping_neg();
+                most[i] = if error > most[i] { error } else { most[i] };
+            }
+        }
+        (worst[stage], *right) = (most, fits);
+    }
+);
 
 /// The numbers of a plane.
 #[inline(always)]
