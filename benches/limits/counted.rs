@@ -173,7 +173,7 @@ impl Exact for Counted {
         one(SHORT, self.0.to_i64())
     }
     fn atan2(self, x: Self) -> Self {
-        one(EXP, Self(self.0.atan2(x.0)))
+        one(EXP, Self(elementary::atan2(self.0, x.0)))
     }
     fn ulps_to(self, other: Self) -> f32 {
         self.0.ulps_to(other.0)

@@ -3,7 +3,7 @@
 
 use super::gaussians::{Encoding, Gaussians};
 use super::indexed::Indexed;
-use super::{Environment, Light, Mipmap, Objects, Phong, Primitives, Scene, Surfels};
+use super::{Environment, Light, Mipmap, Objects, Phong, Primitives, Scene, Surface, Surfels};
 use crate::frame::NO_ID;
 use crate::scene::Groups;
 use crate::scene::objects::Detail;
@@ -86,17 +86,7 @@ impl Scene {
         }
         let Phong { ambient, diffuse, specular, shininess, color } = self.material;
         hash.floats([ambient, diffuse, specular, shininess].into_iter().chain(color.to_array()));
-        match &self.environment {
-            None => {}
-            Some(Environment::Sky) => hash.0.update([1]),
-            Some(Environment::Map(map)) => {
-                let pixels = map.pixels();
-                hash.0.update([2]);
-                hash.count(pixels.width() as usize);
-                hash.count(pixels.height() as usize);
-                hash.floats(pixels.values().iter().flatten().copied());
-            }
-        }
+        hash.environment(self.environment.as_ref());
         if !primitives.is_empty() {
             hash.0.update([3]);
             hash.primitives(primitives);
@@ -119,9 +109,7 @@ impl Scene {
         }
         if let Some(surface) = &self.surface {
             hash.0.update([10]);
-            surface.size().into_iter().for_each(|side| hash.count(side as usize));
-            hash.floats(surface.depths().values().iter().copied());
-            hash.floats(surface.colors().values().iter().flatten().copied());
+            hash.surface(surface);
         }
         hash.finish()
     }
@@ -207,6 +195,26 @@ impl Hasher {
             head(&mut self.0, attribute, there);
             part(&mut self.0, attribute, surfels);
         }
+    }
+
+    fn environment(&mut self, environment: Option<&Environment>) {
+        match environment {
+            None => {}
+            Some(Environment::Sky) => self.0.update([1]),
+            Some(Environment::Map(map)) => {
+                let pixels = map.pixels();
+                self.0.update([2]);
+                self.count(pixels.width() as usize);
+                self.count(pixels.height() as usize);
+                self.floats(pixels.values().iter().flatten().copied());
+            }
+        }
+    }
+
+    fn surface(&mut self, surface: &Surface) {
+        surface.size().into_iter().for_each(|side| self.count(side as usize));
+        self.floats(surface.depths().values().iter().copied());
+        self.floats(surface.colors().values().iter().flatten().copied());
     }
 
     fn mipmap(&mut self, surfels: &Surfels) {
