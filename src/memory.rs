@@ -42,6 +42,15 @@ pub(crate) fn try_ask(
     bytes: u64,
     what: impl FnOnce() -> String,
 ) -> std::result::Result<(), String> {
+    try_ask_or(bytes, what, "reduce the work")
+}
+
+/// [`try_ask`] for work with a cure of its own.
+pub(crate) fn try_ask_or(
+    bytes: u64,
+    what: impl FnOnce() -> String,
+    cure: &str,
+) -> std::result::Result<(), String> {
     let limit = LIMIT.load(Ordering::Relaxed);
     if limit == u64::MAX || bytes <= limit.saturating_sub(held()) {
         return Ok(());
@@ -49,7 +58,7 @@ pub(crate) fn try_ask(
     let held = held();
     let digits = digits_apart(bytes.saturating_add(held), limit);
     Err(format!(
-        "{} needs up to {} of memory, beside {} in use, but the limit is {}; reduce the work, or \
+        "{} needs up to {} of memory, beside {} in use, but the limit is {}; {cure}, or \
          raise --memory",
         what(),
         in_words(bytes, digits),
@@ -59,7 +68,8 @@ pub(crate) fn try_ask(
 }
 
 /// How many bytes more may be held.
-pub(crate) fn left() -> u64 {
+#[must_use]
+pub fn left() -> u64 {
     match LIMIT.load(Ordering::Relaxed) {
         u64::MAX => u64::MAX,
         limit => limit.saturating_sub(held()),

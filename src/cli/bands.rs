@@ -5,6 +5,7 @@ use super::{Ended, Ending, progress, report};
 use splatref::frame::{Exec, Frame, Rect};
 use splatref::io::scene_file::{OutputSettings, Ready};
 use splatref::io::{exr, provenance};
+use splatref::memory;
 use splatref::method::Session;
 use splatref::scene::Camera;
 use splatref::{Error, Result};
@@ -12,18 +13,53 @@ use std::borrow::Cow;
 use std::path::Path;
 use std::time::Instant;
 
-/// Draws a picture in about `count` bands of rows into the file `picture`.
+/// How many bands are drawn.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Count {
+    /// About so many.
+    About(u32),
+    /// As few as fit into memory.
+    Auto,
+}
+
+/// Reads the number of bands.
+pub(super) fn count(text: &str) -> std::result::Result<Count, String> {
+    match text.parse() {
+        _ if text == "auto" => Ok(Count::Auto),
+        Ok(count) if count > 0 => Ok(Count::About(count)),
+        _ => Err("give a number from 1, or auto".into()),
+    }
+}
+
+/// The most rows of a band that fit into half of the memory that is left: all, or half as many, and so on.
+/// The other half is for the blocks of the file.
+fn most_rows(session: &mut Session<'_>, camera: &Camera, output: OutputSettings) -> Result<u32> {
+    let mut rows = camera.height;
+    loop {
+        session.set_region(Some(Rect { x0: 0, y0: 0, x1: camera.width, y1: rows }))?;
+        if rows == 1 || session.needs(camera, output.making()) <= memory::left() / 2 {
+            return Ok(rows);
+        }
+        rows = rows.div_ceil(2);
+    }
+}
+
+/// Draws a picture in bands of rows into the file `picture`.
 pub(super) fn render(
     session: &mut Session<'_>,
     ready: &Ready,
     (to, picture): (&Destination<'_>, &Path),
-    (output, count): (OutputSettings, u32),
+    (output, count): (OutputSettings, Count),
     exec: &Exec,
 ) -> Ended {
     let start = Instant::now();
     let Ready { loaded, camera, method, .. } = ready;
     to.make_folder()?;
     let text = provenance::text(&loaded.scene, session.groups(), camera, method, output);
+    let rows = match count {
+        Count::About(count) => camera.height.div_ceil(count),
+        Count::Auto => most_rows(session, camera, output)?,
+    };
     let steps = progress::Steps::new("rendering");
     let mut bands = 0_u32;
     let mut draw = |band: Rect| {
@@ -34,7 +70,6 @@ pub(super) fn render(
             None => drawn(session, camera, band, output),
         }
     };
-    let rows = camera.height.div_ceil(count);
     let how = (output.compression, exec);
     exr::pending_bands(picture, (camera.size(), rows), &text, how, &mut draw)?.put()?;
     drop(steps);

@@ -44,10 +44,10 @@ pub(super) struct Args {
         conflicts_with = "write_depth")]
     region: Option<Rect>,
     /// Draw the picture in about N bands of rows, one after the other, and write each as it is made: for
-    /// pictures larger than memory. No PNG is written
-    #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..),
+    /// pictures larger than memory. auto: as few bands as --memory allows. No PNG is written
+    #[arg(long, value_name = "N|auto", value_parser = bands::count,
         conflicts_with_all = ["region", "write_depth", "frames", "repeat", "keep_state"])]
-    bands: Option<u32>,
+    bands: Option<bands::Count>,
     #[command(flatten)]
     files: RowOptions<OfFiles>,
     /// Render N times; print the minimum and the median of each stage. For the method deferred these

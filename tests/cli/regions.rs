@@ -237,14 +237,20 @@ fn bands_are_the_file_of_the_whole_picture() {
         }
         assert!(!at.path().join("bands.png").exists());
     }
-    // The whole picture does not fit; 20 bands do.
+    // The whole picture does not fit; 20 bands do, and so do as many as the program chooses.
     let large = ["render", "torus", "--count", "300", "--size", "1000x1000", "--memory", "60M"];
     let output = splatref(at.path(), &large);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
-    let output = splatref(at.path(), &[&large[..], &["--bands", "20", "-o", "large.exr"]].concat());
-    assert!(output.status.success(), "{output:?}");
+    assert!(String::from_utf8_lossy(&output.stderr).contains("--bands auto"), "{output:?}");
+    for (bands, name) in [("20", "large.exr"), ("auto", "chosen.exr")] {
+        let more = ["--bands", bands, "-o", name];
+        let output = splatref(at.path(), &[&large[..], &more].concat());
+        assert!(output.status.success(), "{output:?}");
+    }
+    assert!(read("large.exr") == read("chosen.exr"));
     for more in [
         &["--bands", "0"][..],
+        &["--bands", "some"],
         &["--bands", "4", "--method", "pyramid"],
         &["--bands", "4", "--turntable", "3"],
         &["--bands", "4", "--region", "0,0,9,9"],

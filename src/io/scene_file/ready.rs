@@ -8,7 +8,7 @@ use crate::frame::Exec;
 use crate::index::grouping::Grouping;
 use crate::index::seen::Seen;
 use crate::io::state::{self, State};
-use crate::method::session::Made;
+use crate::method::session::{Made, Making};
 use crate::method::{Method, Picture, Session, deferred};
 use crate::progress::Progress;
 use crate::scene::{Camera, Objects, Primitives, Scene, Surfels};
@@ -247,6 +247,16 @@ impl OutputSettings {
             return Ok(());
         }
         Err(Error::Usage(format!("{why}; give --storage f32 and --depth-storage f32")))
+    }
+
+    /// The call by which [`OutputSettings::draw`] draws.
+    #[must_use]
+    pub fn making(self) -> Making {
+        match (self.number, self.stages) {
+            (Number::F32, false) if self.formats.keep_all() => Making::Render,
+            (Number::F32, stages) => Making::Define { number: 4, stages },
+            (Number::F64, stages) => Making::Define { number: 8, stages },
+        }
     }
 
     /// Draws a picture in the chosen number type and with the chosen planes, as files hold it.

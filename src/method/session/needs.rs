@@ -2,7 +2,7 @@
 //! method.
 
 use super::Session;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::frame::{Rect, pyramid};
 use crate::memory;
 use crate::method::{Holds, Job, PlaneRow, When, gaussians, peeling};
@@ -117,9 +117,11 @@ impl Session<'_> {
     /// Checks that the process may hold one more picture.
     pub(crate) fn ask(&self, job: &Job<'_>, making: Making) -> Result<()> {
         let [width, height] = job.size();
-        memory::ask(self.needs_of(job.window, job.camera, making), || {
-            format!("a picture of {width} x {height} pixels by {}", self.method.name())
-        })
+        let what = || format!("a picture of {width} x {height} pixels by {}", self.method.name());
+        let parts = making != Making::Verdict && self.method.needs_whole_picture().is_none();
+        let cure = if parts { "draw it in parts (--bands auto)" } else { "reduce the work" };
+        memory::try_ask_or(self.needs_of(job.window, job.camera, making), what, cure)
+            .map_err(Error::Invalid)
     }
 }
 
