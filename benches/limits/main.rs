@@ -1,7 +1,7 @@
 //! How far each stage of each method is from what the machine can do: the tables of
 //! `docs/limits.md`.
 //!
-//! `cargo bench --bench limits` prints Markdown, and with `--write` puts the tables into that page;
+//! `cargo bench --profile release --bench limits` prints Markdown, and with `--write` puts the tables into that page;
 //! an argument is a pattern that the names of workloads must contain. One thread, `f32`, default
 //! settings, lit scenes, in the memory of a session. A time is the median over the frames of one
 //! run.
