@@ -4,8 +4,7 @@
 //! argument is a pattern that the names of workloads must contain. Each row is the median over the
 //! frames of one run, the minimum in brackets, in milliseconds: both geometry passes and the
 //! normalization, `f32`, back faces culled, in the memory of a session: colour, weight, depth and
-//! id, or also normals, which a lit scene needs. Neither shading nor clearing empty tiles is in the
-//! times.
+//! id, or also normals, which a lit scene needs. The shading that follows is not in the times.
 
 mod common;
 

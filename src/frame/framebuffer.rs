@@ -38,11 +38,8 @@ pub struct Framebuffer<R> {
     pub weight: Plane<R>,
     /// Weighted sum of normals, then their direction; world space.
     pub normal: Option<Plane<[R; 3]>>,
-    /// Weighted sum of colours, then their average; linear RGB. If there is `alpha`, the shaded colour.
+    /// Weighted sum of colours, then their average; linear RGB.
     pub color: Option<Plane<[R; 3]>>,
-    /// The opacity of the picture, if the tiles are shaded while they are drawn: 1 where the weight is
-    /// above 0, else 0.
-    pub alpha: Option<Plane<R>>,
     /// How many fragments were accumulated, up to 255.
     pub stencil: Option<Plane<u8>>,
     /// How close the nearest decision came to flipping, in units of the last place.
@@ -62,8 +59,6 @@ pub struct FramebufferTile<'a, R> {
     pub normal: Option<TileMut<'a, [R; 3]>>,
     /// See [`Framebuffer::color`].
     pub color: Option<TileMut<'a, [R; 3]>>,
-    /// See [`Framebuffer::alpha`].
-    pub alpha: Option<TileMut<'a, R>>,
 }
 
 impl<R: Real> Framebuffer<R> {
@@ -79,7 +74,6 @@ impl<R: Real> Framebuffer<R> {
             weight: Plane::filled(width, height, R::ZERO),
             normal: wanted.normal.then(|| Plane::filled(width, height, zero)),
             color: wanted.color.then(|| Plane::filled(width, height, zero)),
-            alpha: None,
             stencil: wanted.observed.then(|| Plane::filled(width, height, 0)),
             margin: wanted.observed.then(|| Plane::filled(width, height, R::INFINITY)),
         }
@@ -93,7 +87,6 @@ impl<R: Real> Framebuffer<R> {
         let cut = |plane| grid.cut(plane, exec).into_iter();
         let mut normal = self.normal.as_mut().map(cut);
         let mut color = self.color.as_mut().map(cut);
-        let mut alpha = self.alpha.as_mut().map(|plane| grid.cut(plane, exec).into_iter());
         let tiles = depth.into_iter().filter_map(|depth| {
             Some(FramebufferTile {
                 depth,
@@ -101,7 +94,6 @@ impl<R: Real> Framebuffer<R> {
                 weight: weight.next()?,
                 normal: normal.as_mut().and_then(Iterator::next),
                 color: color.as_mut().and_then(Iterator::next),
-                alpha: alpha.as_mut().and_then(Iterator::next),
             })
         });
         tiles.collect()

@@ -338,7 +338,7 @@ impl Grid {
 
     /// Cuts a plane into its tiles, disjoint and writable, row by row.
     pub fn cut<'a, T: Send>(&self, plane: &'a mut Plane<T>, exec: &Exec) -> Vec<TileMut<'a, T>> {
-        let width = self.size()[0].max(1) as usize;
+        let (width, high) = (self.size()[0].max(1) as usize, self.side[1] as usize);
         let (mut rest, mut bands) = (plane.values_mut(), Vec::new());
         for row in 0..self.rows {
             // The first row of tiles may be cut too.
@@ -347,20 +347,20 @@ impl Grid {
         }
         // A tile is many short rows, so cutting them out is enough work to run in parallel.
         let cut = exec.ordered(bands, |(row, band): (u32, &'a mut [T])| {
-            // What is left of each row. A tile takes its part of all rows before the next tile does, because
-            // lists that grow in turns are written slowly.
-            let mut rests: Vec<&mut [T]> = band.chunks_mut(width).collect();
-            let tile = |column| {
-                let rect = self.rect(column, row);
-                let part = |rest: &mut &'a mut [T]| {
-                    let (part, others) = mem::take(rest).split_at_mut(rect.columns());
-                    *rest = others;
-                    part
-                };
-                let rows = rests.iter_mut().map(part).collect();
-                TileMut { index: (row * self.columns + column) as usize, rect, rows }
+            let empty = |column| TileMut {
+                index: (row * self.columns + column) as usize,
+                rect: self.rect(column, row),
+                rows: Vec::with_capacity(high),
             };
-            (0..self.columns).map(tile).collect::<Vec<_>>()
+            let mut cut: Vec<_> = (0..self.columns).map(empty).collect();
+            for mut row in band.chunks_mut(width) {
+                for tile in &mut cut {
+                    let (part, rest) = row.split_at_mut(tile.rect.columns());
+                    tile.rows.push(part);
+                    row = rest;
+                }
+            }
+            cut
         });
         cut.into_iter().flatten().collect()
     }

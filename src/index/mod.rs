@@ -1,6 +1,5 @@
 //! Build structures of a scene once, and query them for every view.
 //!
-//! - [`clusters`]: bounds of neighbouring surfels.
 //! - [`grouping`]: groups of surfels that do not overlap, so that a group shares one depth-image.
 //! - [`members`]: surfels in the order of a tree, each with all its groups.
 //! - [`mipmap`]: prefiltered colours of surfels.
@@ -8,7 +7,6 @@
 //! - [`seen`]: which surfels the previous frame saw.
 //! - [`sequential`]: levels of detail as a list.
 
-pub mod clusters;
 pub mod grouping;
 pub mod members;
 pub mod mipmap;
@@ -19,7 +17,6 @@ pub mod sequential;
 
 use crate::error::{Error, Result};
 use crate::scene::{Boxes, Camera, Groups, Surfels};
-use clusters::Clusters;
 use members::Members;
 use order::BackToFront;
 use seen::Seen;
@@ -44,9 +41,6 @@ pub struct Index {
     pub order: Option<BackToFront>,
     /// Boxes around the surfels of a scene without objects.
     pub boxes: Option<Boxes>,
-    /// Bounds of neighbouring surfels, for views that drop many at once; none before the second
-    /// picture of a session.
-    pub clusters: Option<Clusters>,
     /// What the previous frame saw; none before the first frame.
     pub seen: Option<Seen>,
     /// The surfels in the order of the tree behind `order`, if there are groups too.

@@ -25,7 +25,7 @@ pub struct Picture<R> {
     pub seen: Option<Seen>,
 }
 
-/// Shades a framebuffer whose tiles were not shaded while they were drawn, and makes the planes of the picture.
+/// Shades a framebuffer, and makes the planes of the picture.
 pub(crate) fn finish<R: Exact>(
     target: Framebuffer<R>,
     mut planes: Vec<NamedPlane<R>>,
@@ -33,12 +33,9 @@ pub(crate) fn finish<R: Exact>(
     mut clock: Clock,
     job: &Job<'_>,
 ) -> Picture<R> {
-    let Framebuffer { width, height, depth, id, weight, normal, color, alpha, .. } = target;
+    let Framebuffer { width, height, depth, id, weight, normal, color, .. } = target;
     clock.restart();
-    let (color, alpha) = match (color, alpha) {
-        (Some(color), Some(alpha)) => before_environment(job, color, alpha),
-        (color, _) => shaded(job, &depth, normal.as_ref(), &weight, color),
-    };
+    let (color, alpha) = shaded(job, &depth, normal.as_ref(), &weight, color);
     clock.lap("shading");
     planes.extend([SHADED.triple(0, color), ALPHA.scalar(0, alpha), DEPTH.scalar(0, depth)]);
     planes.extend(normal.map(|normal| NORMAL.triple(0, normal)));
@@ -60,16 +57,12 @@ pub(crate) fn shaded<R: Exact>(
     weight: &Plane<R>,
     color: Option<Plane<[R; 3]>>,
 ) -> (Plane<[R; 3]>, Plane<R>) {
-    let Job { exec, window, .. } = *job;
-    let shader = shader(job).from_pixel([window.x0, window.y0]);
+    let Job { scene, camera, exec, window, .. } = *job;
+    let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
+    let shader = shader.from_pixel([window.x0, window.y0]);
     let color = shader.shade(depth, normal, None, color, exec);
     let alpha = weight.map(|&w| if w > R::ZERO { R::ONE } else { R::ZERO });
     before_environment(job, color, alpha)
-}
-
-/// What the pixels of a picture share in shading.
-pub(crate) fn shader<R: Exact>(job: &Job<'_>) -> Shader<R> {
-    Shader::new(View::new(job.camera), &job.scene.lights, job.scene.material)
 }
 
 /// Lays colours multiplied by their opacity over the environment of the scene, if it has one.
@@ -115,20 +108,9 @@ pub(crate) fn framebuffer(job: &Job<'_>, wanted: Wanted, pool: &mut Pool) -> Fra
         weight: pool.scalar(size),
         normal: wanted.normal.then(|| pool.triple(size)),
         color: wanted.color.then(|| pool.triple(size)),
-        alpha: None,
         stencil: None,
         margin: None,
     }
-}
-
-/// [`framebuffer`] for tiles that are shaded while they are drawn.
-pub(crate) fn shaded_framebuffer(
-    job: &Job<'_>,
-    wanted: Wanted,
-    pool: &mut Pool,
-) -> Framebuffer<f32> {
-    let alpha = Some(pool.scalar(job.size()));
-    Framebuffer { alpha, ..framebuffer(job, Wanted { color: true, ..wanted }, pool) }
 }
 
 /// The stages in order, and the wall time of each.

@@ -2,7 +2,6 @@
 
 use super::algorithm::Job;
 use crate::frame::{Bins, Grid, Rect};
-use crate::index::clusters::Clusters;
 use crate::number::{Exact, Real};
 use crate::splat::SplatSettings;
 use crate::splat::{Projector, Shared, Splat, Tally, View, batch};
@@ -130,9 +129,7 @@ pub(crate) fn batch_size(grid: &Grid, count: usize) -> usize {
     // At most 8192 surfels, which fit the cache, and many batches, so that threads end together. At
     // least two items for each tile, so that the starts of the bins take about 2 bytes an item. If
     // there are so many tiles that this would put everything into one batch, four batches.
-    let size = (count / 64).min(8192).max(2 * grid.len()).min(count.div_ceil(4).max(1));
-    // Batches of whole clusters.
-    size.next_multiple_of(Clusters::SURFELS)
+    (count / 64).min(8192).max(2 * grid.len()).min(count.div_ceil(4).max(1))
 }
 
 impl<R: Exact> Prepared<R, Splat<R>> {

@@ -13,7 +13,6 @@ use super::{Method, Picture};
 use crate::error::Result;
 use crate::frame::{Exec, Frame, Pool, Rect};
 use crate::index::Index;
-use crate::index::clusters::Clusters;
 use crate::index::grouping::{Extended, Grouping, GroupingReport};
 use crate::index::members::Members;
 use crate::index::order::BackToFront;
@@ -232,11 +231,6 @@ impl<'a> Session<'a> {
         }
         if let Some(last) = last {
             self.pool.recycle(last.frame);
-            // One picture alone gains less than the clusters cost.
-            let projects = self.method.splats().is_some() && !self.method.draws_objects();
-            if projects && self.index.clusters.is_none() {
-                self.index.clusters = Some(Clusters::new(&self.scene.surfels, self.exec));
-            }
         }
         let Self { scene, exec, index, .. } = self;
         let job = Job { window, ..Job::new(scene, index, camera, exec) };

@@ -121,7 +121,6 @@ pub(crate) fn framebuffer<R: Exact>(
         weight: pixels.plane(|pixel| pixel.weight),
         normal: wanted.normal.then(|| pixels.plane(|pixel| pixel.normal)),
         color: wanted.color.then(|| pixels.plane(|pixel| pixel.color)),
-        alpha: None,
         stencil: None,
         margin: None,
     }

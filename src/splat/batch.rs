@@ -1,10 +1,8 @@
 //! Project many surfels: the visible ones become splats, the others are counted.
 
-use super::cluster::ClusterView;
 use super::disc_lanes::DiscLanes;
 use super::{Disc, FOOTPRINT, Fate, Footprint, Outline, Projector, Splat, project};
 use crate::frame::Rect;
-use crate::index::clusters::Clusters;
 use crate::number::lanes::{LANES, Lanes, vectorized};
 use crate::number::{Exact, MapInline, Real, Vector3};
 use crate::scene::Surfels;
@@ -29,18 +27,12 @@ impl Tally {
     /// Counts one surfel.
     #[inline(always)]
     pub(crate) fn count(&mut self, fate: Fate) {
-        self.count_many(fate, 1);
-    }
-
-    /// Counts surfels of one fate.
-    #[inline(always)]
-    fn count_many(&mut self, fate: Fate, surfels: u64) {
         match fate {
-            Fate::Visible => self.visible += surfels,
-            Fate::Behind => self.behind += surfels,
-            Fate::Degenerate => self.degenerate += surfels,
-            Fate::BackFacing => self.back_facing += surfels,
-            Fate::Outside => self.outside += surfels,
+            Fate::Visible => self.visible += 1,
+            Fate::Behind => self.behind += 1,
+            Fate::Degenerate => self.degenerate += 1,
+            Fate::BackFacing => self.back_facing += 1,
+            Fate::Outside => self.outside += 1,
         }
     }
 
@@ -99,31 +91,6 @@ pub fn splats_f32(
     let draw_item = &mut |_, splat| draw(splat);
     let tally = in_lanes(projector, surfels, range.start..rest, item, draw_item);
     tally.plus(&splats(projector, surfels, rest..range.end, draw))
-}
-
-/// [`splats_f32`], where the surfels of a cluster whose fate is known are counted and not projected.
-pub(crate) fn clustered_f32(
-    projector: &Projector<f32>,
-    surfels: &Surfels,
-    (range, clusters): (Range<usize>, Option<&Clusters>),
-    mut draw: impl FnMut(Splat<f32>),
-) -> Tally {
-    let (mut tally, mut runs, mut start) = (Tally::default(), Vec::new(), range.start);
-    if let Some(clusters) = clusters {
-        let view = ClusterView::new(projector);
-        for (part, cluster) in clusters.parts(range.clone()) {
-            if let Some(fate) = view.fate(cluster) {
-                tally.count_many(fate, part.len() as u64);
-                runs.push(start..part.start);
-                start = part.end;
-            }
-        }
-    }
-    runs.push(start..range.end);
-    for run in runs {
-        tally = tally.plus(&splats_f32(projector, surfels, run, &mut draw));
-    }
-    tally
 }
 
 /// How many of the first of `count` surfels are projected in lanes: as many as fill whole lanes, if

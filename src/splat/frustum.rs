@@ -60,23 +60,6 @@ impl<R: Real> Frustum<R> {
     }
 }
 
-impl Frustum<f64> {
-    /// Whether every sphere of this radius whose centre is within `around` of p is certainly outside;
-    /// see [`super::cluster`].
-    #[inline(always)]
-    pub(super) fn misses(&self, p: Vector3<f64>, around: f64, radius: f64) -> bool {
-        let (t, last) = if self.perspective { (-p.z, around - p.z) } else { (1.0, 1.0) };
-        let (skirt, length) = (self.skirt * last, p.length());
-        self.sides.iter().any(|side| {
-            let reach = ((radius + around) * side.slope + skirt) * (1.0 + 1.0 / 1024.0);
-            // 2^-18 of its terms is more than the distance is rounded by.
-            let terms = side.slope * length + side.past.abs();
-            let reach = reach + terms * (1.0 / 262_144.0);
-            !side.holds([p.x, p.y, t], 0.0, reach)
-        })
-    }
-}
-
 impl<R: Real> FrustumSide<R> {
     /// Whether a sphere reaches over this side to the inside.
     #[inline(always)]

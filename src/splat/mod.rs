@@ -16,7 +16,6 @@
 pub mod batch;
 pub mod bounds;
 pub mod clip;
-pub(crate) mod cluster;
 pub mod crossing;
 mod disc;
 mod disc_lanes;

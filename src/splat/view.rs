@@ -45,21 +45,6 @@ impl<R: Real> View<R> {
         }
     }
 
-    /// The same numbers in `f64`, exactly.
-    pub(crate) fn map_f64(&self) -> View<f64> {
-        View {
-            rows: self.rows.map_inline(|row| row.map_inline(R::to_f64)),
-            perspective: self.perspective,
-            fx: self.fx.to_f64(),
-            fy: self.fy.to_f64(),
-            cx: self.cx.to_f64(),
-            cy: self.cy.to_f64(),
-            near: self.near.to_f64(),
-            width: self.width.to_f64(),
-            height: self.height.to_f64(),
-        }
-    }
-
     /// A point in view space: each component `((m0 x + m1 y) + m2 z) + m3`.
     #[inline(always)]
     pub fn point(&self, world: Vector3<R>) -> Vector3<R> {

@@ -10,7 +10,7 @@ use crate::error::Result;
 use crate::frame::{NamedPlane, Pool, Wanted};
 use crate::method::Job;
 use crate::method::input_planes::InputPlanes;
-use crate::method::picture::{Clock, Picture, finish, shaded_framebuffer};
+use crate::method::picture::{Clock, Picture, finish, framebuffer};
 use crate::method::prepare::Prepared;
 use crate::method::stage::{Keep, unknown};
 use crate::method::surface::{self, SurfacePixel};
@@ -71,7 +71,7 @@ pub(super) fn stage<R: Exact>(
 
 /// The fast path for `f32`.
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
-    let mut target = shaded_framebuffer(job, wanted(job.scene, false), pool);
+    let mut target = framebuffer(job, wanted(job.scene, false), pool);
     let (tally, laps) = fast::render(job, settings, &mut target);
     Ok(finish(target, Vec::new(), tally, Clock::from_laps(laps), job))
 }

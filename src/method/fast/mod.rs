@@ -10,21 +10,16 @@ pub(super) mod store;
 pub(super) mod tile;
 
 use super::algorithm::Job;
-use super::picture::{shader, wall_shares};
+use super::picture::wall_shares;
 use super::prepare::Prepared;
 use crate::frame::Framebuffer;
-use crate::index::clusters::Clusters;
 use crate::splat::SplatSettings;
 use crate::splat::batch;
 use std::time::{Duration, Instant};
 use tile::{Record, Surface, Tile};
 
-/// Projects the splats and sorts them into tiles. `clusters` are those of the scene of the job.
-pub(super) fn prepare(
-    job: &Job<'_>,
-    settings: &SplatSettings,
-    clusters: Option<&Clusters>,
-) -> Prepared<f32, Record> {
+/// Projects the splats and sorts them into tiles.
+pub(super) fn prepare(job: &Job<'_>, settings: &SplatSettings) -> Prepared<f32, Record> {
     let surfels = &job.scene.surfels;
     let colors = surfels.color();
     Prepared::new(
@@ -32,7 +27,7 @@ pub(super) fn prepare(
         settings,
         surfels.len(),
         |projector, range, records| {
-            batch::clustered_f32(projector, surfels, (range, clusters), |splat| {
+            batch::splats_f32(projector, surfels, range, |splat| {
                 records.push(Record::new(&splat, Surface::new(&splat, surfels.normal(), colors)));
             })
         },
@@ -59,34 +54,26 @@ impl<const N: usize> Stopwatch<N> {
 ///
 /// `stages` leaves depths, averages and directions in the blocks of a tile that has splats. It ends
 /// a lap after each stage but the last. The first lap includes gathering the splats, the last
-/// storing the pixels. If the framebuffer has `alpha`, shading is one more lap, with storing the
-/// colours. The tile is then still in the cache, and no plane is read again.
+/// storing the pixels.
 pub(super) fn draw<const N: usize>(
     job: &Job<'_>,
     prepared: &Prepared<f32, Record>,
     target: &mut Framebuffer<f32>,
     stages: impl Fn(&mut Tile, &mut Stopwatch<N>) + Sync + Send,
 ) -> [Duration; N] {
-    let shader = target.alpha.is_some().then(|| shader(job));
-    let own_color = job.scene.surfels.color().is_some();
     let start = Instant::now();
     let times = job.exec.ordered(target.cut(&job.strips(), job.exec), |mut pixels| {
         let mut watch = Stopwatch { last: Instant::now(), times: [Duration::ZERO; N] };
-        let color = pixels.color.is_some() && (own_color || shader.is_none());
-        let mut tile = Tile::new([pixels.normal.is_some(), color]);
+        let mut tile = Tile::new([pixels.normal.is_some(), pixels.color.is_some()]);
         tile.gather(prepared, pixels.depth.index, pixels.depth.rect);
         if tile.splats.is_empty() {
             store::clear(&mut pixels);
+            watch.lap(N - 1);
         } else {
             stages(&mut tile, &mut watch);
-            store::store_surface(&tile, &mut pixels);
-            if let Some(shader) = &shader {
-                watch.lap(N - 2);
-                tile.shade(shader);
-            }
-            store::store_colors(&tile, &mut pixels);
+            store::store(&tile, &mut pixels);
+            watch.lap(N - 1);
         }
-        watch.lap(N - 1);
         watch.times
     });
     wall_shares(start.elapsed(), &times)

@@ -1,10 +1,8 @@
 //! Run the passes over a tile's blocks that every method has, compiled for every vector width.
 
-use super::tile::{BlockGrid, PixelBlock, ROW, Tile};
+use super::tile::{PixelBlock, Tile};
 use crate::composite::{decide, sum};
-use crate::number::MapInline;
-use crate::number::lanes::{LANES, any, components, mask, vectorized};
-use crate::shade::phong::Shader;
+use crate::number::lanes::{LANES, components, vectorized};
 use crate::splat::Shared;
 
 impl Tile {
@@ -22,32 +20,7 @@ impl Tile {
             (true, true) => normalize::<true, true>(&mut self.blocks, shared),
         }
     }
-
-    /// Replaces the average colours by the shaded ones. In a scene without colours the surfaces have
-    /// the colour of the material.
-    pub(crate) fn shade(&mut self, shader: &Shader<f32>) {
-        let own = (!self.color).then(|| shader.plain());
-        shade(&mut self.blocks, &self.grid, shader, own);
-    }
 }
-
-vectorized!(
-    fn shade(
-        blocks: &mut [PixelBlock],
-        grid: &BlockGrid,
-        shader: &Shader<f32>,
-        own: Option<[f32; 3]>,
-    ) {
-        for (index, block) in blocks.iter_mut().enumerate() {
-            let (depth, normal) = (block.nearest, block.normal);
-            // The colours of an empty block are 0 already.
-            if any(&mask(|i| depth[i].is_finite())) {
-                let surface = own.map_or(block.color, |own| own.map_inline(|s| [s; LANES]));
-                block.color = shader.block::<ROW>(grid.corner(index), &depth, &normal, &surface);
-            }
-        }
-    }
-);
 
 vectorized!(
     fn limits(blocks: &mut [PixelBlock], shared: &Shared<f32>, epsilon: f32) {

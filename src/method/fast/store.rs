@@ -10,18 +10,12 @@ pub(crate) fn clear(pixels: &mut FramebufferTile<'_, f32>) {
     clear_plane(&mut pixels.id, NO_ID);
     clear_plane(&mut pixels.weight, 0.0);
     for plane in [&mut pixels.normal, &mut pixels.color].into_iter().flatten() {
-        // Number by number, which becomes one call a row.
-        for row in plane.rows() {
-            row.as_flattened_mut().fill(0.0);
-        }
-    }
-    if let Some(alpha) = &mut pixels.alpha {
-        clear_plane(alpha, 0.0);
+        clear_plane(plane, [0.0; 3]);
     }
 }
 
-/// Copies the blocks of a tile into the rows of the framebuffer, all but their colours.
-pub(super) fn store_surface(tile: &Tile, pixels: &mut FramebufferTile<'_, f32>) {
+/// Copies the blocks of a tile into the rows of the framebuffer.
+pub(super) fn store(tile: &Tile, pixels: &mut FramebufferTile<'_, f32>) {
     let blocks = &tile.blocks;
     store_plane(blocks, &mut pixels.depth, |block, i| block.nearest[i]);
     store_plane(blocks, &mut pixels.id, |block, i| block.id[i]);
@@ -29,17 +23,8 @@ pub(super) fn store_surface(tile: &Tile, pixels: &mut FramebufferTile<'_, f32>) 
     if let Some(normal) = &mut pixels.normal {
         store_plane(blocks, normal, |block, i| components(&block.normal, i));
     }
-}
-
-/// Copies the colours of a tile's blocks into the rows of the framebuffer, and the opacities.
-pub(super) fn store_colors(tile: &Tile, pixels: &mut FramebufferTile<'_, f32>) {
-    let blocks = &tile.blocks;
     if let Some(color) = &mut pixels.color {
         store_plane(blocks, color, |block, i| components(&block.color, i));
-    }
-    if let Some(alpha) = &mut pixels.alpha {
-        let opaque = |weight: f32| if weight > 0.0 { 1.0 } else { 0.0 };
-        store_plane(blocks, alpha, |block, i| opaque(block.weight[i]));
     }
 }
 

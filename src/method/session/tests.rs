@@ -207,28 +207,3 @@ fn surfels_of_objects_are_named_by_their_ids() {
         assert_eq!(rendered.frame.plane("id").is_some(), indices.plane("id").is_some());
     }
 }
-
-/// From the second picture on, whole clusters of surfels are dropped at once.
-#[test]
-fn a_second_picture_has_the_bits_of_the_first() {
-    let surfels = Shape::Sphere.surfels(6000, 0).unwrap();
-    let mut order: Vec<u32> = (0..6000).collect();
-    order.sort_by_key(|&i| {
-        (surfels.position()[i as usize] * 4.0 + 8.0).to_array().map(|x| x as u32)
-    });
-    let scene = Scene::lit("a", surfels.reordered(order.into_iter(), &Exec::sequential()));
-    let camera = Camera::new(48, 40, Shape::Sphere.default_pose(), Shape::Sphere.default_lens());
-    let (camera, exec) = (camera.unwrap(), Exec::sequential());
-    for name in ["ewa", "single-pass"] {
-        let method = Method::by_name(name).unwrap();
-        let mut session = Session::new(&scene, method, &exec).unwrap();
-        let first = session.render(&camera).unwrap().clone();
-        assert!(session.index.clusters.is_none());
-        let second = session.render(&camera).unwrap().clone();
-        assert!(first.frame.planes == second.frame.planes, "{name}");
-        assert_eq!(first.tally, second.tally);
-        assert!(first.tally.back_facing > 2000);
-        let clusters = session.index.clusters.as_ref().expect("made by the second picture");
-        assert_eq!(clusters.parts(0..6000).count(), 94);
-    }
-}

@@ -24,7 +24,6 @@ pub(super) fn normalize<R: Exact>(
         weight: gathered.map(|pixel| pixel.weight),
         normal: normals.then(|| gathered.map(|pixel| normal(&view, pixel))),
         color: has.color.then(|| gathered.map(|pixel| sum::average(pixel.colors, pixel.weight))),
-        alpha: None,
         stencil: None,
         margin: None,
     }

@@ -159,7 +159,6 @@ pub(super) fn read_normalized<R: Exact>(
         weight: weight.clone(),
         normal: Some(normal.clone()),
         color: colors.map(average),
-        alpha: None,
         stencil: None,
         margin: None,
     })

@@ -52,13 +52,13 @@ pub(super) fn render(
     clock.lap("indices");
 
     let fresh = whole.part(unseen(&whole, &before, &list), job.exec);
-    let fresh_splats = prepare(&fresh.job(job), splats, None);
+    let fresh_splats = prepare(&fresh.job(job), splats);
     clock.lap("difference");
 
     let selected = whole.drawn(list, job);
     let selected_job = selected.job(job);
     let ranks = Ranks::new(flagged.ids(), fresh.ids());
-    let prepared = prepare(&selected_job, splats, None);
+    let prepared = prepare(&selected_job, splats);
     let shared = &prepared.shared;
     let grid = job.strips();
     clock.lap("attributes");
@@ -95,7 +95,7 @@ struct First {
 impl First {
     fn draw(job: &Job<'_>, settings: &SplatSettings, flagged: &Part) -> Self {
         let job = flagged.job(job);
-        let prepared = prepare(&job, settings, None);
+        let prepared = prepare(&job, settings);
         let shared = prepared.shared;
         let wanted = Wanted { normal: false, color: false, observed: false };
         let [width, height] = job.camera.size();

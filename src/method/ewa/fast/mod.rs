@@ -9,7 +9,7 @@ use crate::method::fast::{draw, prepare};
 use crate::method::picture::{Clock, Laps};
 use crate::splat::Tally;
 
-/// Draws a scene into a framebuffer: both geometry passes, the normalization and the shading. The wall times of
+/// Draws a scene into a framebuffer: both geometry passes and the normalization. The wall times of
 /// the fused passes are shares of their common time. Visibility splatting includes gathering each
 /// tile's splats.
 ///
@@ -25,10 +25,10 @@ pub(super) fn render(
 ) -> (Tally, Laps) {
     assert_eq!([target.width, target.height], job.size(), "framebuffer size");
     let mut clock = Clock::default();
-    let prepared = prepare(job, settings, job.index.clusters.as_ref());
+    let prepared = prepare(job, settings);
     clock.lap("projection");
     let shared = &prepared.shared;
-    let passes = draw::<4>(job, &prepared, target, |tile, watch| {
+    let passes = draw::<3>(job, &prepared, target, |tile, watch| {
         tile.visibility(shared);
         watch.lap(0);
         tile.limits(shared, prepared.epsilon);
@@ -37,6 +37,6 @@ pub(super) fn render(
         tile.normalize(shared);
     });
     let mut laps = clock.into_laps();
-    laps.extend(["visibility", "attributes", "normalization", "shading"].into_iter().zip(passes));
+    laps.extend(["visibility", "attributes", "normalization"].into_iter().zip(passes));
     (prepared.tally, laps)
 }

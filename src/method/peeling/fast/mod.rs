@@ -69,7 +69,7 @@ impl<'a> FastPeeling<'a> {
         let colored = scene.surfels.color().is_some();
         Self {
             surfels: &scene.surfels,
-            prepared: prepare(job, &settings.splats, job.index.clusters.as_ref()),
+            prepared: prepare(job, &settings.splats),
             shader: Shader::new(View::new(job.camera), &scene.lights, scene.material),
             own: (!colored).then(|| scene.material.color.to_array()),
             most: settings.layers,

@@ -24,8 +24,7 @@ use crate::method::picture::{Clock, Laps};
 use crate::splat::Tally;
 use images::GroupImages;
 
-/// Draws a scene into a framebuffer: the geometry pass, the compositing pass, the normalization and
-/// the shading.
+/// Draws a scene into a framebuffer: the geometry pass, the compositing pass and the normalization.
 /// The wall times of the fused passes are shares of their common time. The geometry pass includes
 /// gathering each tile's splats, the compositing pass the normalization.
 ///
@@ -48,10 +47,10 @@ pub(super) fn render(
     groups.check(surfels)?;
     let mut clock = Clock::default();
     let bins = settings.bins(surfels, job.camera)?;
-    let prepared = prepare(job, &settings.splats, job.index.clusters.as_ref());
+    let prepared = prepare(job, &settings.splats);
     clock.lap("projection");
     let shared = &prepared.shared;
-    let passes = draw::<3>(job, &prepared, target, |tile, watch| {
+    let passes = draw::<2>(job, &prepared, target, |tile, watch| {
         let own = own(&tile.splats, groups);
         let mut images = GroupImages::new(tile, (&own, groups.len()), shared.empty(), None);
         images.draw(tile, shared, bins.as_ref());
@@ -62,6 +61,6 @@ pub(super) fn render(
         tile.normalize(shared);
     });
     let mut laps = clock.into_laps();
-    laps.extend(["geometry", "compositing", "shading"].into_iter().zip(passes));
+    laps.extend(["geometry", "compositing"].into_iter().zip(passes));
     Ok((prepared.tally, laps))
 }

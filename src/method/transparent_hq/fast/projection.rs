@@ -40,8 +40,7 @@ impl<'a> Splats<'a> {
     /// Projects every surfel once, or once more for each scale of its groups.
     pub(super) fn project(job: &Job<'a>, settings: &Settings) -> Result<Self> {
         let keep_radii = job.index.members()?.keep_radii();
-        let clusters = job.index.clusters.as_ref();
-        let nearest = (!keep_radii).then(|| prepare(job, &settings.layers.splats, clusters));
+        let nearest = (!keep_radii).then(|| prepare(job, &settings.layers.splats));
         // Each surfel counts once, whatever groups it is in, as in the nearest layer.
         let once = |_: Set| 1;
         let blending = FastBlending::project(job, &settings.layers, once)?;
