@@ -1,102 +1,88 @@
-//! A number that counts what is computed with it: an `f64` whose operators add to global counters.
+//! A third number: f64 that counts its operations. Every formula of the crate runs on it.
 
-use splatref::number::elementary;
 use splatref::number::{Exact, Real};
 use std::cmp::Ordering;
 use std::ops::{Add, Div, Mul, Neg, Sub};
 use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 
-/// How often each kind of operation was done.
-#[derive(Clone, Copy, Debug, Default)]
-pub(crate) struct Operations {
-    /// Additions, subtractions, multiplications, comparisons, choices, floors.
-    pub(crate) short: f64,
-    /// Divisions and square roots.
-    pub(crate) long: f64,
-    /// exp and pow.
-    pub(crate) exp: f64,
+/// What is counted.
+#[derive(Clone, Copy)]
+pub(crate) enum Op {
+    Add,
+    Mul,
+    Div,
+    Sqrt,
+    Exp,
+    Pow,
+    Compare,
+    /// A choice, a floor, a conversion to an integer, a test for finite numbers.
+    Other,
 }
 
-impl Operations {
-    /// This, less what another did.
-    pub(crate) fn without(self, other: Self) -> Self {
-        // Work that a stage does not repeat would leave less than nothing.
-        let less = |a: f64, b: f64| if a > b { a - b } else { 0.0 };
-        Self {
-            short: less(self.short, other.short),
-            long: less(self.long, other.long),
-            exp: less(self.exp, other.exp),
-        }
-    }
+/// How many kinds there are.
+pub(crate) const KINDS: usize = Op::Other as usize + 1;
 
-    /// Both.
-    pub(crate) fn plus(self, other: Self) -> Self {
-        Self {
-            short: self.short + other.short,
-            long: self.long + other.long,
-            exp: self.exp + other.exp,
-        }
-    }
+static COUNTS: [AtomicU64; KINDS] = [const { AtomicU64::new(0) }; KINDS];
 
-    /// So many times this.
-    pub(crate) fn times(self, factor: f64) -> Self {
-        Self { short: self.short * factor, long: self.long * factor, exp: self.exp * factor }
-    }
-}
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Counted(pub(crate) f64);
 
-static COUNTS: [AtomicU64; 3] = [const { AtomicU64::new(0) }; 3];
-
-/// What some work did, and its result.
-pub(crate) fn counted<T>(work: impl FnOnce() -> T) -> (T, Operations) {
-    COUNTS.iter().for_each(|count| count.store(0, Relaxed));
-    let result = work();
-    let [short, long, exp] = [0, 1, 2].map(|i| COUNTS[i].load(Relaxed) as f64);
-    (result, Operations { short, long, exp })
-}
-
-/// Counts one operation of a kind, and passes its result on.
-fn one<T>(kind: usize, result: T) -> T {
-    COUNTS[kind].fetch_add(1, Relaxed);
+fn tick<T>(op: Op, result: T) -> T {
+    COUNTS[op as usize].fetch_add(1, Relaxed);
     result
 }
 
-const SHORT: usize = 0;
-const LONG: usize = 1;
-const EXP: usize = 2;
-
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Counted(f64);
-
-/// Operators of two numbers.
-macro_rules! operators {
-    ($($operator:ident $function:ident $kind:ident,)*) => {$(
-        impl $operator for Counted {
-            type Output = Self;
-            fn $function(self, other: Self) -> Self {
-                one($kind, Self(self.0.$function(other.0)))
-            }
-        }
-    )*};
-}
-operators! { Add add SHORT, Sub sub SHORT, Mul mul SHORT, Div div LONG, }
-
-// A sign costs nothing: compilers fold it into the operation that follows.
-impl Neg for Counted {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self(-self.0)
-    }
+/// The result of a job, and how many operations of each kind it did, wherever they ran.
+pub(crate) fn count<T>(job: impl FnOnce() -> T) -> (T, [u64; KINDS]) {
+    COUNTS.iter().for_each(|count| count.store(0, Relaxed));
+    let result = job();
+    (result, std::array::from_fn(|i| COUNTS[i].load(Relaxed)))
 }
 
 impl PartialEq for Counted {
     fn eq(&self, other: &Self) -> bool {
-        one(SHORT, self.0 == other.0)
+        tick(Op::Compare, self.0 == other.0)
     }
 }
 
 impl PartialOrd for Counted {
     fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        one(SHORT, self.0.partial_cmp(&other.0))
+        tick(Op::Compare, self.0.partial_cmp(&other.0))
+    }
+}
+
+impl Add for Counted {
+    type Output = Self;
+    fn add(self, other: Self) -> Self {
+        tick(Op::Add, Self(self.0 + other.0))
+    }
+}
+
+impl Sub for Counted {
+    type Output = Self;
+    fn sub(self, other: Self) -> Self {
+        tick(Op::Add, Self(self.0 - other.0))
+    }
+}
+
+impl Mul for Counted {
+    type Output = Self;
+    fn mul(self, other: Self) -> Self {
+        tick(Op::Mul, Self(self.0 * other.0))
+    }
+}
+
+impl Div for Counted {
+    type Output = Self;
+    fn div(self, other: Self) -> Self {
+        tick(Op::Div, Self(self.0 / other.0))
+    }
+}
+
+impl Neg for Counted {
+    type Output = Self;
+    fn neg(self) -> Self {
+        Self(-self.0)
     }
 }
 
@@ -115,33 +101,32 @@ impl Real for Counted {
         Self(Real::from_i64(value))
     }
     fn to_f32(self) -> f32 {
-        Real::to_f32(self.0)
+        self.0 as f32
     }
     fn to_f64(self) -> f64 {
         self.0
     }
     fn to_pixel(self) -> u32 {
-        one(SHORT, self.0.to_pixel())
+        tick(Op::Other, Real::to_pixel(self.0))
     }
     fn floor(self) -> Self {
-        one(SHORT, Self(Real::floor(self.0)))
+        tick(Op::Other, Self(self.0.floor()))
     }
     fn sqrt(self) -> Self {
-        one(LONG, Self(Real::sqrt(self.0)))
+        tick(Op::Sqrt, Self(self.0.sqrt()))
     }
     fn abs(self) -> Self {
-        Self(Real::abs(self.0))
+        Self(self.0.abs())
     }
     fn exp(self) -> Self {
-        one(EXP, Self(elementary::exp(self.0)))
+        tick(Op::Exp, Self(Real::exp(self.0)))
     }
     fn pow(self, exponent: Self) -> Self {
-        one(EXP, Self(elementary::pow(self.0, exponent.0)))
+        tick(Op::Pow, Self(Real::pow(self.0, exponent.0)))
     }
     fn is_finite(self) -> bool {
-        one(SHORT, self.0.is_finite())
+        tick(Op::Other, self.0.is_finite())
     }
-
     fn lt(self, other: Self) -> bool {
         self < other
     }
@@ -155,7 +140,7 @@ impl Real for Counted {
         self >= other
     }
     fn select(truth: bool, yes: Self, no: Self) -> Self {
-        one(SHORT, if truth { yes } else { no })
+        tick(Op::Other, if truth { yes } else { no })
     }
     fn at_least(self, low: Self) -> Self {
         if self < low { low } else { self }
@@ -170,10 +155,10 @@ impl Real for Counted {
 
 impl Exact for Counted {
     fn to_i64(self) -> i64 {
-        one(SHORT, self.0.to_i64())
+        tick(Op::Other, Exact::to_i64(self.0))
     }
     fn atan2(self, x: Self) -> Self {
-        one(EXP, Self(elementary::atan2(self.0, x.0)))
+        tick(Op::Other, Self(Exact::atan2(self.0, x.0)))
     }
     fn ulps_to(self, other: Self) -> f32 {
         self.0.ulps_to(other.0)

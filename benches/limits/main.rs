@@ -16,12 +16,14 @@
 #[path = "../common/mod.rs"]
 mod common;
 mod counted;
+mod operations;
 mod roofs;
 
 use common::report::{Arguments, Table};
 use common::sphere::{STANDARD, Workload, camera, sphere};
-use counted::{Counted, Operations, counted};
+use counted::Counted;
 use glam::DVec3;
+use operations::Operations;
 use roofs::Roofs;
 use splatref::Result;
 use splatref::composite::decide;
@@ -159,7 +161,7 @@ fn work(scene: &Scene, method: Method, exec: &Exec) -> Result<Vec<(&'static str,
             // Its records are no planes.
             Err(_) => projection,
             Ok(_) => {
-                let (_, all) = counted(|| session.stage(&camera, stage.name, &frame));
+                let (_, all) = Operations::of(|| session.stage(&camera, stage.name, &frame));
                 let again = stage.reads.contains(&"projection") && !leaves_planes(method);
                 if again { all.without(projection) } else { all }
             }
@@ -217,7 +219,7 @@ fn projected(surfels: &Surfels, method: &Method) -> Operations {
         }
         _ => {}
     };
-    counted(work).1
+    Operations::of(work).1
 }
 
 /// How many fragments the splats of a method have; none: it draws no splats.

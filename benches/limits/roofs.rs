@@ -1,6 +1,6 @@
 //! What one thread of this machine can do at most: the roofs that the stages are held against.
 
-use crate::counted::Operations;
+use crate::operations::Operations;
 use multiversion::multiversion;
 use multiversion::target::target_cfg_f;
 use splatref::number::elementary::exp_f32_in_range;

@@ -317,4 +317,6 @@ fn what_is_no_surface_is_refused_with_the_cure() {
     assert!(line.contains("a surface belongs to one view") && line.contains("--frame"), "{line}");
     let line = fails(at.path(), &[&splats[..], &["--surface", "g.ply"]].concat(), 1);
     assert!(line.contains("g.ply: "), "{line}");
+    let line = fails(at.path(), &[&splats[..], &["--surface", "o.png"]].concat(), 1);
+    assert!(line.contains("no EXR file") && line.contains("convert it to .exr"), "{line}");
 }

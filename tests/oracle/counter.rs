@@ -1,4 +1,4 @@
-//! A third number: f64 that counts its operations. Every formula of the crate runs on it.
+//! Every formula of the crate runs on a third number, which counts its operations.
 
 use crate::oracle::ewa::cases::{self, Kind};
 use crate::oracle::kit::case::Case;
@@ -9,169 +9,23 @@ use glam::Vec3;
 use splatref::composite::{decide, sum};
 use splatref::method::ewa::Settings;
 use splatref::method::single_pass::{self, BinCount, DepthTest};
-use splatref::number::{Exact, Real, Vector3};
+use splatref::number::Vector3;
 use splatref::scene::Light;
 use splatref::splat::Disc;
 use splatref::splat::{Kernel, Outline, Projector, Shared, View, project};
-use std::cmp::Ordering;
-use std::ops::{Add, Div, Mul, Neg, Sub};
-use std::sync::atomic::{AtomicU64, Ordering::Relaxed};
 use std::sync::{Mutex, PoisonError};
 
-/// What is counted.
-#[derive(Clone, Copy)]
-enum Op {
-    Add,
-    Mul,
-    Div,
-    Sqrt,
-    Exp,
-    Pow,
-    Compare,
-}
+#[path = "../../benches/limits/counted.rs"]
+mod counted;
 
-static COUNTS: [AtomicU64; 7] = [const { AtomicU64::new(0) }; 7];
+use counted::{Counted, Op};
+
 static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
-
-#[derive(Clone, Copy, Debug)]
-struct Counted(f64);
-
-fn tick(op: Op, value: f64) -> Counted {
-    COUNTS[op as usize].fetch_add(1, Relaxed);
-    Counted(value)
-}
-
-impl PartialEq for Counted {
-    fn eq(&self, other: &Self) -> bool {
-        tick(Op::Compare, self.0).0 == other.0
-    }
-}
-
-impl PartialOrd for Counted {
-    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
-        tick(Op::Compare, self.0).0.partial_cmp(&other.0)
-    }
-}
-
-impl Add for Counted {
-    type Output = Self;
-    fn add(self, other: Self) -> Self {
-        tick(Op::Add, self.0 + other.0)
-    }
-}
-
-impl Sub for Counted {
-    type Output = Self;
-    fn sub(self, other: Self) -> Self {
-        tick(Op::Add, self.0 - other.0)
-    }
-}
-
-impl Mul for Counted {
-    type Output = Self;
-    fn mul(self, other: Self) -> Self {
-        tick(Op::Mul, self.0 * other.0)
-    }
-}
-
-impl Div for Counted {
-    type Output = Self;
-    fn div(self, other: Self) -> Self {
-        tick(Op::Div, self.0 / other.0)
-    }
-}
-
-impl Neg for Counted {
-    type Output = Self;
-    fn neg(self) -> Self {
-        Self(-self.0)
-    }
-}
-
-impl Real for Counted {
-    type Truth = bool;
-    type Pixel = u32;
-
-    const ZERO: Self = Self(0.0);
-    const ONE: Self = Self(1.0);
-    const INFINITY: Self = Self(f64::INFINITY);
-
-    fn from_f32(value: f32) -> Self {
-        Self(value.into())
-    }
-    fn from_i64(value: i64) -> Self {
-        Self(Real::from_i64(value))
-    }
-    fn to_f32(self) -> f32 {
-        self.0 as f32
-    }
-    fn to_f64(self) -> f64 {
-        self.0
-    }
-    fn to_pixel(self) -> u32 {
-        Real::to_pixel(self.0)
-    }
-    fn floor(self) -> Self {
-        Self(self.0.floor())
-    }
-    fn sqrt(self) -> Self {
-        tick(Op::Sqrt, self.0.sqrt())
-    }
-    fn abs(self) -> Self {
-        Self(self.0.abs())
-    }
-    fn exp(self) -> Self {
-        tick(Op::Exp, Real::exp(self.0))
-    }
-    fn pow(self, exponent: Self) -> Self {
-        tick(Op::Pow, Real::pow(self.0, exponent.0))
-    }
-    fn is_finite(self) -> bool {
-        self.0.is_finite()
-    }
-    fn lt(self, other: Self) -> bool {
-        self < other
-    }
-    fn le(self, other: Self) -> bool {
-        self <= other
-    }
-    fn gt(self, other: Self) -> bool {
-        self > other
-    }
-    fn ge(self, other: Self) -> bool {
-        self >= other
-    }
-    fn select(truth: bool, yes: Self, no: Self) -> Self {
-        if truth { yes } else { no }
-    }
-    fn at_least(self, low: Self) -> Self {
-        if self < low { low } else { self }
-    }
-    fn at_most(self, high: Self) -> Self {
-        if self > high { high } else { self }
-    }
-    fn clamped(self, low: Self, high: Self) -> Self {
-        self.at_least(low).at_most(high)
-    }
-}
-
-impl Exact for Counted {
-    fn to_i64(self) -> i64 {
-        Exact::to_i64(self.0)
-    }
-    fn atan2(self, x: Self) -> Self {
-        Self(Exact::atan2(self.0, x.0))
-    }
-    fn ulps_to(self, other: Self) -> f32 {
-        self.0.ulps_to(other.0)
-    }
-}
 
 /// Additions, multiplications, divisions, roots, exponentials, powers, comparisons of a job.
 fn count<T>(job: impl FnOnce() -> T) -> (T, [u64; 7]) {
-    COUNTS.iter().for_each(|c| c.store(0, Relaxed));
-    let value = job();
-    (value, std::array::from_fn(|i| COUNTS[i].load(Relaxed)))
+    let (result, all) = counted::count(job);
+    (result, std::array::from_fn(|i| all[i]))
 }
 
 fn scene(outline: Outline, orthographic: bool) -> Case<Settings> {

@@ -100,9 +100,13 @@ impl Cells {
     /// The position of a point's cell along the curve.
     fn place(&self, point: Vec3) -> u64 {
         let at = self.scale * (point.as_dvec3() - self.low);
-        let [x, y, z] = at.to_array().map_inline(|at| (at as u64).min(self.count - 1));
-        spread(x) | spread(y) << 1 | spread(z) << 2
+        interleaved(at.to_array().map_inline(|at| (at as u64).min(self.count - 1)))
     }
+}
+
+/// The place along the curve of a cell with numbers of at most 21 bits: x gives the lowest bit.
+pub(crate) fn interleaved([x, y, z]: [u64; 3]) -> u64 {
+    spread(x) | spread(y) << 1 | spread(z) << 2
 }
 
 /// Spreads 21 bits, which are all that there are, so that two zeros follow each.

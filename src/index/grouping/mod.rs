@@ -134,6 +134,7 @@ mod tests;
 
 pub use color::{GroupingReport, group, group_into};
 pub use coverage::{Extended, GroupCoverage};
+pub(crate) use curve::interleaved;
 pub use enlarge::{MAX_SCALE, MAX_STEPS, SMALL_STEP};
 pub use extend::{Extension, extend};
 pub use rules::{Coplanar, Rules};

@@ -7,15 +7,16 @@ use super::read::Blocks;
 use super::sort::Sorter;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
+use crate::index::grouping::interleaved;
 use crate::io::hierarchy::Hierarchy;
 use crate::io::hierarchy::bytes::{Reader, Writer};
 use crate::io::replace::write_atomically;
 use crate::io::{Reason, checksum};
 use crate::memory;
-use crate::number::Real;
+use crate::number::{MapInline, Real};
 use crate::progress::Progress;
 use crate::scene::hash;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use sha2::Sha256;
 use std::fs::{self, File};
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
@@ -185,19 +186,13 @@ fn key(position: Vec3, low: Vec3, high: Vec3) -> u64 {
         // All positions may be one place.
         let at = if side > 0.0 { (v / side * f64::from(1 << BITS)).floor() } else { 0.0 };
         // The cast turns numbers below 0 into 0.
-        spread((at as u64).min((1 << BITS) - 1))
+        (at as u64).min((1 << BITS) - 1)
     };
-    let DVec3 { x, y, z } = position.as_dvec3() - low;
-    cell(x) | cell(y) << 1 | cell(z) << 2
+    interleaved((position.as_dvec3() - low).to_array().map_inline(cell))
 }
 
 /// Bits of a key for each axis.
 const BITS: u32 = 21;
-
-/// Moves bit i of a number to bit 3 i.
-fn spread(number: u64) -> u64 {
-    (0..BITS).fold(0, |all, bit| all | (number >> bit & 1) << (3 * bit))
-}
 
 /// The number of a rank among positive floats, of which every one is seen twice: once by its highest
 /// 16 bits, then by its lowest.

@@ -86,6 +86,11 @@ pub(super) fn open(path: &Path) -> Result<(File, u64)> {
             Some("exr") | None => {
                 "byte 0: not an EXR file; give one that starts 76 2f 31 01".into()
             }
+            Some(other @ ("png" | "npy" | "npz")) => {
+                format!(
+                    "a .{other} is no EXR file, and only those are read here; convert it to .exr"
+                )
+            }
             Some(other) => format!(
                 "pictures of the kind .{} are not read; convert it to .exr, .png, .npy or .npz",
                 other.escape_debug()
