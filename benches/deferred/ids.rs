@@ -1,6 +1,6 @@
 //! What ids of 40 bits cost against those of 32 \[GBP04, 4.2\]: the same scene by both splits.
 //!
-//! 200 spheres of 2,250 surfels in ten ranks of twenty, 512 x 512 pixels, two threads, m = 64. The frames
+//! 200 spheres of 2,250 surfels in ten ranks of twenty, 512 x 512 pixels, two threads, m = 1. The frames
 //! of both splits are drawn in turn, each from what its last one saw; the first two do not count, and
 //! every number is a median. *With all planes* is the definition, which leaves the planes of all stages: of
 //! 40 bits four more of 8 bits.

@@ -69,7 +69,7 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
         "culled, %",
         "with, frames/s",
         "ratio",
-        "m = 1",
+        "m = 64",
         "ratio",
         "paper: without",
         "culled, %",
@@ -82,9 +82,9 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
         let settings = deferred::Settings { splats: subject.splats, ..Default::default() };
         let without = measured(&subject, subject.splats.into(), exec)?;
         let with = measured(&subject, settings.into(), exec)?;
-        let single = deferred::Settings { flags: 1, ..settings };
-        let single = measured(&subject, single.into(), exec)?;
-        let [a, b, c] = [&without, &with, &single].map(|one| 1e3 / one.frame);
+        let grouped = deferred::Settings { flags: 64, ..settings };
+        let grouped = measured(&subject, grouped.into(), exec)?;
+        let [a, b, c] = [&without, &with, &grouped].map(|one| 1e3 / one.frame);
         let [p, culled, q] = subject.paper;
         // Of a range the middle.
         let number = |text: &str| {
@@ -103,7 +103,7 @@ pub(crate) fn tables(arguments: &Arguments, exec: &Exec) -> Result<()> {
             b / a,
             c / a
         ));
-        rows.extend(passes(&subject, &[&without, &with, &single], settings, exec)?);
+        rows.extend(passes(&subject, &[&without, &with, &grouped], settings, exec)?);
         let name = subject.name;
         if name == FOREST && arguments.pictures.is_some() {
             picture(&subject, arguments, exec)?;
@@ -140,7 +140,7 @@ fn passes(
     exec: &Exec,
 ) -> Result<Vec<String>> {
     let mut rows = Vec::new();
-    for (one, how) in found.iter().zip(["without, ms", "with, ms", "with m = 1, ms"]) {
+    for (one, how) in found.iter().zip(["without, ms", "with, ms", "with m = 64, ms"]) {
         let cells = one.passes.map(|time| format!("{time:.2}")).join(" | ");
         rows.push(format!("{} | {how} | {:.1} | {cells}", subject.name, one.frame));
     }

@@ -173,7 +173,7 @@ impl Seen {
         if self.group != group {
             let (found, wanted) = (self.group, group);
             return Err(Error::Invalid(format!(
-                "the state has flags of {found} surfels, but the method has {wanted}; set --flags \
+                "the state was kept with --flags {found}, but the method has {wanted}; set --flags \
                  {found}"
             )));
         }

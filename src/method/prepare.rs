@@ -102,6 +102,11 @@ impl<R: Real, S: Send> Prepared<R, S> {
         }
     }
 
+    /// All records, batch by batch.
+    pub(crate) fn records(&self) -> impl Iterator<Item = &S> {
+        self.batches.iter().flat_map(|(splats, _)| splats)
+    }
+
     /// Gathers the splats that touch a tile, in the order of the items; replaces the previous
     /// content of `gathered`. `touches` says whether a splat near the tile may touch the tile.
     #[inline(always)]

@@ -80,7 +80,7 @@ pub fn explain<R: Exact>(
     let place = Place::new(job, pixel)?;
     let splats = &settings.splats;
     let (whole, before) = whole(job, settings)?;
-    let flagged = flagged(job, &whole, &before)?;
+    let flagged = whole.part(flagged(&whole, &before)?, job.exec);
     let polygons = Polygons::draw(job, settings, &whole)?;
     let visible = first::<R>(job, settings, &flagged, polygons.as_ref());
     let kept = indices(job, splats, &whole, &visible);

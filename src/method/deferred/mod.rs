@@ -59,7 +59,7 @@
 //!   `f32`.
 //! - A disc whose centre is outside the picture is lost even where it reaches into the picture, as
 //!   in every method that draws a surfel as one pixel.
-//! - Pass 1 draws all surfels of a flagged group. \[GBP04, 4.2\] also reads as if the list of
+//! - Pass 1 draws all surfels of a flagged group; by default a group is one surfel. \[GBP04, 4.2\] also reads as if the list of
 //!   B(i-1) itself were drawn; then a surfel of B(i) - B(i-1) in a flagged group would be drawn by
 //!   neither pass.
 //! - The id of a pixel comes from the nearest fragment of passes 1 and 3. Its surfel may be flagged

@@ -187,20 +187,15 @@ impl<'a> Whole<'a> {
         Part { scene, ids }
     }
 
-    /// The surfels of ranges that pass 1 draws, in ascending ids, with the attributes that depth needs
-    /// alone.
-    pub(super) fn shapes(&self, mut ranges: Vec<(u32, std::ops::Range<u32>)>, exec: &Exec) -> Part {
+    /// The ids of the surfels of ranges that pass 1 draws, ascending as the ranges do.
+    pub(super) fn first(&self, mut ranges: Vec<(u32, std::ops::Range<u32>)>) -> Vec<u64> {
         ranges.retain(|(object, _)| !self.leaves_out(*object));
         let mut ids = Vec::new();
-        for (object, range) in &ranges {
-            let drawn = range.clone().filter(|&surfel| self.draws(*object, surfel));
-            ids.extend(drawn.map(|surfel| self.ids.id(*object, surfel)));
+        for (object, range) in ranges {
+            let drawn = range.filter(|&surfel| self.draws(object, surfel));
+            ids.extend(drawn.map(|surfel| self.ids.id(object, surfel)));
         }
-        let surfels = match &self.scene.objects {
-            Some(objects) => objects.shapes(ranges, exec),
-            None => self.scene.surfels.some(&ids, exec),
-        };
-        Part { scene: Scene::unlit(&self.scene.name, surfels), ids }
+        ids
     }
 }
 

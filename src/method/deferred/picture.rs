@@ -34,7 +34,7 @@ pub(super) fn define<R: Exact>(
     let mut clock = Clock::default();
     let (whole, before) = whole(job, settings)?;
     let polygons = Polygons::draw(job, settings, &whole)?;
-    let flagged = flagged(job, &whole, &before)?;
+    let flagged = whole.part(flagged(&whole, &before)?, job.exec);
     let visible = first::<R>(job, settings, &flagged, polygons.as_ref());
     clock.lap("visibility");
 
@@ -109,7 +109,7 @@ pub(super) fn stage<R: Exact>(
     let there = job.there(Keep::Alone);
     match stage {
         "visibility" => {
-            let flagged = flagged(job, &whole, &before)?;
+            let flagged = whole.part(flagged(&whole, &before)?, job.exec);
             let polygons = Polygons::draw(job, settings, &whole)?;
             let visible = first::<R>(job, settings, &flagged, polygons.as_ref());
             Ok(visible.planes(&Nearest::BEFORE, 0, &there))
@@ -142,15 +142,15 @@ pub(super) fn stage<R: Exact>(
     }
 }
 
-/// The surfels that pass 1 draws.
+/// The ids of the surfels that pass 1 draws, ascending.
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] if the process may not hold them.
-pub(super) fn flagged(job: &Job<'_>, whole: &Whole<'_>, before: &Seen) -> Result<Part> {
+/// [`crate::Error::Invalid`] if the process may not hold the surfels.
+pub(super) fn flagged(whole: &Whole<'_>, before: &Seen) -> Result<Vec<u64>> {
     let ranges = before.ranges(whole.ids());
     let count: u64 = ranges.iter().map(|(_, range)| range.len() as u64).sum();
     memory::ask(count * OF_A_FLAGGED, || format!("{count} flagged surfels"))?;
-    Ok(whole.shapes(ranges, job.exec))
+    Ok(whole.first(ranges))
 }
 
 /// Bytes of a surfel that pass 1 draws. The surfel is placed, is there twice while the surfels are

@@ -10,6 +10,8 @@ pub struct Settings {
     /// Footprints, epsilon and culling of all passes.
     pub splats: SplatSettings,
     /// m: how many consecutive surfels of an object share a flag \[GBP04, 4.3\]. In [1, 4096].
+    /// `Departs:` the default is 1. \[GBP04\] has 64, so that flags take at most 8 MB. Larger groups
+    /// make pass 1 draw more surfels, and leave gaps along outlines, see `docs/gbp04.md`.
     pub flags: u32,
     /// Whether pass 3 runs: it draws the surfels that the last frame did not see into the depth
     /// before EWA splatting.
@@ -25,9 +27,9 @@ pub struct Settings {
 const MOST: u32 = 4096;
 
 impl Default for Settings {
-    /// Groups of 64, as in \[GBP04, 4.3\], and pass 3.
+    /// A flag for each surfel, and pass 3.
     fn default() -> Self {
-        Self { splats: SplatSettings::default(), flags: 64, second: true, share: 0.0 }
+        Self { splats: SplatSettings::default(), flags: 1, second: true, share: 0.0 }
     }
 }
 

@@ -115,7 +115,7 @@ fn span(f: &Footprint<f32>, row: u32, rows: u32, limit: f32) -> [f32; 2] {
 /// Whether a splat may touch a tile: its bounds do, and if these are wide, its ellipse does in the
 /// rows of the tile.
 #[inline(always)]
-pub(super) fn touches<A>(record: &Record<A>, tile: &Rect, shared: &Shared<f32>) -> bool {
+pub(crate) fn touches<A>(record: &Record<A>, tile: &Rect, shared: &Shared<f32>) -> bool {
     let bounds = record.bounds();
     if bounds.intersection(tile).is_empty() {
         return false;

@@ -12,7 +12,7 @@ pub(super) mod tile;
 use super::algorithm::Job;
 use super::picture::wall_shares;
 use super::prepare::Prepared;
-use crate::frame::Framebuffer;
+use crate::frame::{Framebuffer, Rect};
 use crate::splat::SplatSettings;
 use crate::splat::batch;
 use std::time::{Duration, Instant};
@@ -52,20 +52,21 @@ impl<const N: usize> Stopwatch<N> {
 
 /// Draws every tile of a framebuffer, and returns the stages' shares of the wall time.
 ///
-/// `stages` leaves depths, averages and directions in the blocks of a tile that has splats. It ends
-/// a lap after each stage but the last. The first lap includes gathering the splats, the last
-/// storing the pixels.
+/// `gather` starts a tile: its splats, in the order of their surfels, and its empty blocks. `stages`
+/// leaves depths, averages and directions in the blocks of a tile that has splats. It ends a lap
+/// after each stage but the last. The first lap includes gathering the splats, the last storing the
+/// pixels.
 pub(super) fn draw<const N: usize>(
     job: &Job<'_>,
-    prepared: &Prepared<f32, Record>,
     target: &mut Framebuffer<f32>,
+    gather: impl Fn(&mut Tile, usize, Rect) + Sync + Send,
     stages: impl Fn(&mut Tile, &mut Stopwatch<N>) + Sync + Send,
 ) -> [Duration; N] {
     let start = Instant::now();
     let times = job.exec.ordered(target.cut(&job.strips(), job.exec), |mut pixels| {
         let mut watch = Stopwatch { last: Instant::now(), times: [Duration::ZERO; N] };
         let mut tile = Tile::new([pixels.normal.is_some(), pixels.color.is_some()]);
-        tile.gather(prepared, pixels.depth.index, pixels.depth.rect);
+        gather(&mut tile, pixels.depth.index, pixels.depth.rect);
         if tile.splats.is_empty() {
             store::clear(&mut pixels);
             watch.lap(N - 1);

@@ -128,23 +128,9 @@ impl Objects {
         self.gather(ids.chunks(CHUNK).map(Part::Ids).collect(), exec)
     }
 
-    /// Places the drawn surfels of ranges, without colours and opacities.
-    pub(crate) fn shapes(&self, ranges: Vec<(u32, Range<u32>)>, exec: &Exec) -> Surfels {
-        let [.., tangents] = self.has();
-        self.gather_with(jobs(ranges), ([false, false, tangents], 0), exec)
-    }
-
     /// Places surfels with all attributes that some surfels have.
     fn gather(&self, parts: Vec<Part<'_>>, exec: &Exec) -> Surfels {
-        self.gather_with(parts, (self.has(), self.levels()), exec)
-    }
-
-    fn gather_with(
-        &self,
-        parts: Vec<Part<'_>>,
-        (has, levels): (Has, usize),
-        exec: &Exec,
-    ) -> Surfels {
+        let (has, levels) = (self.has(), self.levels());
         let chunks = exec.ordered(parts, |part| {
             let mut arrays = Arrays::new(has, levels);
             match part {

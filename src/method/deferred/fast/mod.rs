@@ -1,23 +1,25 @@
 //! Draw in `f32`, fast: the bits of the definition, from another layout, see [`crate::method`].
 //!
-//! Passes 3 to 5 are done tile by tile, like the passes of `ewa`. In the blocks of a tile a surfel
-//! has the number of its rank among all surfels that passes 1 and 3 draw, in the order of their
-//! ids.
+//! Every surfel is projected once: B(i) are surfels that pass 1 or pass 3 draws, so pass 4 takes its
+//! splats from theirs. Passes 3 to 5 are done tile by tile, like the passes of `ewa`. In the blocks of
+//! a tile a surfel has the number of its rank among all surfels that passes 1 and 3 draw, in the order
+//! of their ids.
 
 mod points;
 mod ranks;
 
 use super::Settings;
-use super::part::Part;
+use super::part::{Part, Whole};
 use super::picture::{flagged, unseen, whole};
 use super::polygons::Polygons;
 use super::queries::Limits;
 use super::visibility::POLYGON;
 use crate::composite::decide;
 use crate::error::Result;
-use crate::frame::{Exec, Framebuffer, NO_ID, Wanted};
+use crate::frame::{Exec, Framebuffer, NO_ID, Rect, Wanted};
 use crate::index::seen::Seen;
 use crate::method::Job;
+use crate::method::fast::fragments::touches;
 use crate::method::fast::tile::{Record, SIDE, Tile};
 use crate::method::fast::{draw, prepare};
 use crate::method::picture::{Clock, Laps};
@@ -36,10 +38,12 @@ pub(super) fn render(
 ) -> Result<(Seen, Tally, Laps)> {
     let splats = &settings.splats;
     let (whole, before) = whole(job, settings)?;
+    let grid = job.strips();
     let mut clock = Clock::default();
     let polygons = Polygons::draw(job, settings, &whole)?;
-    let flagged = flagged(job, &whole, &before)?;
-    let mut first = First::draw(job, splats, &flagged);
+    let ids = flagged(&whole, &before)?;
+    let flagged = Projected::new(job, splats, whole.drawn(ids, job));
+    let mut first = First::draw(job, &flagged.splats);
     if let Some(polygons) = &polygons {
         first.add(polygons, job.exec);
     }
@@ -51,25 +55,23 @@ pub(super) fn render(
     let now = Seen::from_selected(whole.ids(), settings.flags, &list);
     clock.lap("indices");
 
-    let fresh = whole.part(unseen(&whole, &before, &list), job.exec);
-    let fresh_splats = prepare(&fresh.job(job), splats);
+    let fresh = whole.drawn(unseen(&whole, &before, &list), job);
+    let fresh = Projected::new(job, splats, fresh);
     clock.lap("difference");
 
-    let selected = whole.drawn(list, job);
-    let selected_job = selected.job(job);
-    let ranks = Ranks::new(flagged.ids(), fresh.ids());
-    let prepared = prepare(&selected_job, splats);
-    let shared = &prepared.shared;
-    let grid = job.strips();
+    let ranks = Ranks::new(flagged.part.ids(), fresh.part.ids(), &list);
+    let tally = flagged.tally(job, splats, &whole, &ranks).plus(&fresh.splats.tally);
+    let shared = &flagged.splats.shared;
     clock.lap("attributes");
 
-    let passes = draw::<3>(&selected_job, &prepared, target, |tile, watch| {
+    let gather = |tile: &mut Tile, index, rect| gather(tile, (index, rect), [&flagged, &fresh], &ranks);
+    let passes = draw::<3>(job, target, gather, |tile, watch| {
         first.load(&ranks, tile);
         watch.lap(1);
         let index = grid.place(tile.grid.rect.x0, tile.grid.rect.y0).0;
-        more(tile, &fresh_splats, &ranks, index);
+        more(tile, &fresh.splats, &ranks, index);
         watch.lap(0);
-        tile.limits(shared, prepared.epsilon);
+        tile.limits(shared, epsilon);
         tile.attributes(shared);
         watch.lap(1);
         tile.normalize(shared);
@@ -83,7 +85,68 @@ pub(super) fn render(
         polygons.fill(target, job.exec);
     }
     clock.lap("normalization");
-    Ok((now, prepared.tally, clock.into_laps()))
+    Ok((now, tally, clock.into_laps()))
+}
+
+/// Surfels in the colours of pass 4, and their splats.
+struct Projected {
+    part: Part,
+    splats: Prepared<f32, Record>,
+}
+
+impl Projected {
+    fn new(job: &Job<'_>, settings: &SplatSettings, part: Part) -> Self {
+        let splats = prepare(&part.job(job), settings);
+        Self { part, splats }
+    }
+
+    /// The fates of the surfels of pass 1 that pass 4 draws too. Those without a splat are few, and are
+    /// projected again to learn why they have none.
+    fn tally(
+        &self,
+        job: &Job<'_>,
+        settings: &SplatSettings,
+        whole: &Whole<'_>,
+        ranks: &Ranks,
+    ) -> Tally {
+        let mut missing = vec![true; self.part.ids().len()];
+        self.splats.records().for_each(|splat| missing[splat.surfel as usize] = false);
+        let kept = (0..).zip(self.part.ids()).filter(|(index, _)| ranks.keeps(*index));
+        let (without, with): (Vec<_>, Vec<_>) = kept.partition(|(index, _)| missing[*index as usize]);
+        let visible = Tally { visible: with.len() as u64, ..Tally::default() };
+        if without.is_empty() {
+            return visible;
+        }
+        let part = whole.part(without.into_iter().map(|(_, &id)| id).collect(), job.exec);
+        visible.plus(&Self::new(job, settings, part).splats.tally)
+    }
+}
+
+/// Starts a tile of pass 4: the splats of B(i), numbered by their ranks.
+fn gather(
+    tile: &mut Tile,
+    (index, rect): (usize, Rect),
+    [flagged, fresh]: [&Projected; 2],
+    ranks: &Ranks,
+) {
+    let shared = &flagged.splats.shared;
+    let splats = &mut tile.splats;
+    flagged.splats.for_each(index, |splat| {
+        if ranks.keeps(splat.surfel) && touches(splat, &rect, shared) {
+            splats.push(Record { surfel: ranks.of_flagged(splat.surfel), ..*splat });
+        }
+    });
+    let known = splats.len();
+    fresh.splats.for_each(index, |splat| {
+        if touches(splat, &rect, shared) {
+            splats.push(Record { surfel: ranks.of_fresh(splat.surfel), ..*splat });
+        }
+    });
+    // Two ascending runs, which a stable sort merges.
+    if known > 0 && known < splats.len() {
+        splats.sort_by_key(|splat| splat.surfel);
+    }
+    tile.empty(rect, shared.empty());
 }
 
 /// The output of pass 1: nearness and, for the flagged surfels, the index of the nearest.
@@ -93,14 +156,13 @@ struct First {
 }
 
 impl First {
-    fn draw(job: &Job<'_>, settings: &SplatSettings, flagged: &Part) -> Self {
-        let job = flagged.job(job);
-        let prepared = prepare(&job, settings);
-        let shared = prepared.shared;
+    fn draw(job: &Job<'_>, flagged: &Prepared<f32, Record>) -> Self {
+        let shared = flagged.shared;
         let wanted = Wanted { normal: false, color: false, observed: false };
         let [width, height] = job.camera.size();
         let mut target = Framebuffer::new(width, height, shared.empty(), wanted);
-        draw::<1>(&job, &prepared, &mut target, |tile, _| tile.visibility(&shared));
+        let gather = |tile: &mut Tile, index, rect| tile.gather(flagged, index, rect);
+        draw::<1>(job, &mut target, gather, |tile, _| tile.visibility(&shared));
         Self { shared, target }
     }
 
@@ -131,7 +193,7 @@ impl First {
     }
 
     /// Puts the pixels of a tile into its blocks.
-    fn load(&self, ranks: &Ranks<'_>, tile: &mut Tile) {
+    fn load(&self, ranks: &Ranks, tile: &mut Tile) {
         let rect = tile.grid.rect;
         for index in 0..tile.blocks.len() {
             let (x0, y0) = tile.grid.corner(index);
@@ -154,7 +216,7 @@ impl First {
 
 /// Runs pass 3 in one tile with the number `index`; afterwards the tile holds the splats of pass 4
 /// again.
-fn more(tile: &mut Tile, fresh: &Prepared<f32, Record>, ranks: &Ranks<'_>, index: usize) {
+fn more(tile: &mut Tile, fresh: &Prepared<f32, Record>, ranks: &Ranks, index: usize) {
     let mut splats = Vec::new();
     fresh.gather_f32(index, &tile.grid.rect, &mut splats);
     for splat in &mut splats {
@@ -167,7 +229,7 @@ fn more(tile: &mut Tile, fresh: &Prepared<f32, Record>, ranks: &Ranks<'_>, index
 
 /// Puts ids in the place of ranks. Pixels without weight are empty, whatever depth passes 1 and 3
 /// left. So are pixels where a polygon is nearest.
-fn name(tile: &mut Tile, ranks: &Ranks<'_>) {
+fn name(tile: &mut Tile, ranks: &Ranks) {
     for block in &mut tile.blocks {
         for lane in 0..LANES {
             if !(block.weight[lane] > 0.0) || block.id[lane] == ranks::POLYGON {

@@ -14,7 +14,7 @@ use super::super::visibility::NONE;
 use crate::composite::decide;
 use crate::method::Job;
 use crate::method::projection::surfels::{PlacedPoint, PointProjector};
-use crate::number::lanes::{LANES, Lanes, vectorized};
+use crate::number::lanes::{LANES, Lanes, each, mask, select, vectorized};
 use crate::number::{Real, Vector3};
 use crate::splat::View;
 
@@ -64,52 +64,64 @@ const PIXELS: usize = 1 << 14;
 /// Draws neighbouring surfels of an object, in ascending order.
 fn draw(points: &PointProjector<f32>, range: &Range<'_>, limits: &Limits, kept: &mut [Kept<f32>]) {
     let end = range.surfels.end;
-    let mut first = range.surfels.start;
-    while first < end {
-        let count = (end - first).min(LANES);
-        let lanes = place(points, range, first);
-        for lane in 0..count {
-            let (x, y, t) = (lanes.x[lane], lanes.y[lane], lanes.t[lane]);
-            let View { width, height, near, .. } = points.view;
-            let inside = x >= 0.0 && x < width && y >= 0.0 && y < height;
-            if !(inside && t > near && t.is_finite()) {
-                continue;
-            }
-            let pixel = (y.to_pixel() * limits.width + x.to_pixel()) as usize;
-            let t = t + 0.0;
-            let passes = decide::visible(t, limits.values[pixel]);
-            if passes
-                && decide::before(t, kept[pixel].depth)
+    for first in range.surfels.clone().step_by(LANES) {
+        let mut places = place(points, range, first, limits);
+        if end - first < LANES {
+            places.pass &= (1 << (end - first)) - 1;
+        }
+        while places.pass != 0 {
+            let lane = places.pass.trailing_zeros() as usize;
+            places.pass &= places.pass - 1;
+            let (t, kept) = (places.t[lane], &mut kept[places.pixel[lane] as usize]);
+            if decide::before(t, kept.depth)
                 && range.draws(first + lane)
                 && faces(points, range, first + lane)
             {
-                kept[pixel] = Kept { depth: t, id: range.id(first + lane) };
+                *kept = Kept { depth: t, id: range.id(first + lane) };
             }
         }
-        first += count;
     }
 }
 
-/// The positions of points in the picture, and their depths.
+/// The depths of points, and their pixels.
 struct Places {
-    x: Lanes,
-    y: Lanes,
     t: Lanes,
+    pixel: [u32; LANES],
+    /// A bit for each point that is in the picture, beyond the near plane and not hidden.
+    pass: u32,
 }
 
 vectorized!(
     /// The places of [`LANES`] surfels from `first` on; beyond the last surfel, the place of the
     /// last.
-    fn place(points: &PointProjector<f32>, range: &Range<'_>, first: usize) -> Places {
+    fn place(
+        points: &PointProjector<f32>,
+        range: &Range<'_>,
+        first: usize,
+        limits: &Limits,
+    ) -> Places {
         let positions = range.positions(first);
         let world = range.moved(&positions);
         let (mut x, mut y, mut t) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
         for i in 0..LANES {
             let position = Vector3::new(world[0][i], world[1][i], world[2][i]);
             let placed = points.place(points.view.point(position));
-            (x[i], y[i], t[i]) = (placed.center.x, placed.center.y, placed.t);
+            // Adding 0 turns -0 into +0.
+            (x[i], y[i], t[i]) = (placed.center.x, placed.center.y, placed.t + 0.0);
         }
-        Places { x, y, t }
+        let View { width, height, near, .. } = points.view;
+        let inside = mask(|i| {
+            let columns = (x[i] >= 0.0) & (x[i] < width);
+            columns & (y[i] >= 0.0) & (y[i] < height) & (t[i] > near) & (t[i] < f32::INFINITY)
+        });
+        // Points outside read the limit of the pixel 0.
+        let zero = [0.0; LANES];
+        let (x, y) = (select(&inside, &x, &zero), select(&inside, &y, &zero));
+        let pixel = each(|i| y[i].to_pixel() * limits.width + x[i].to_pixel());
+        let limit = each(|i| limits.values[pixel[i] as usize]);
+        let pass = mask(|i| decide::visible(t[i], limit[i]));
+        let pass = (0..LANES).fold(0, |all, i| all | (pass[i] & inside[i] & 1) << i);
+        Places { t, pixel, pass }
     }
 );
 

@@ -1,88 +1,69 @@
-//! Rank surfels among all that passes 1 and 3 draw, in the order of their ids.
+//! Rank surfels among all that passes 1 and 3 draw, in the order of their ids, and say which of them
+//! pass 4 draws.
 
 use super::super::visibility::NONE;
-use crate::number::MapInline;
 
 /// Stands for a polygon in the place of a rank; higher than the rank of any surfel.
 pub(super) const POLYGON: u32 = crate::frame::NO_ID - 1;
 
-/// Two ascending lists of ids without a common id, as one list.
-pub(super) struct Ranks<'a> {
-    flagged: &'a [u64],
-    fresh: &'a [u64],
-    /// How many flagged ids are less than each fresh id, and the rank of each fresh id.
-    before: Sparse,
-    of_fresh: Sparse,
+/// What passes 1 and 3 draw, as one list in ascending ids. The rank of a surfel is its place in the
+/// list.
+pub(super) struct Ranks {
+    ids: Vec<u64>,
+    of_flagged: Vec<u32>,
+    of_fresh: Vec<u32>,
+    /// Whether pass 4 draws each surfel of pass 1.
+    kept: Vec<bool>,
 }
 
-impl<'a> Ranks<'a> {
-    pub(super) fn new(flagged: &'a [u64], fresh: &'a [u64]) -> Self {
-        let mut before = 0;
-        let less = fresh.iter().map(|id| {
-            before += flagged[before..].partition_point(|other| other < id);
-            before as u32
-        });
-        let before: Vec<u32> = less.collect();
-        let ranks = (0..).zip(&before).map(|(i, before)| i + before).collect();
+impl Ranks {
+    /// Merges the ids of passes 1 and 3, which have none in common. `selected` are the ids of pass
+    /// 4. All three ascend.
+    pub(super) fn new(flagged: &[u64], fresh: &[u64], selected: &[u64]) -> Self {
         let most = flagged.len() + fresh.len();
-        Self {
-            flagged,
-            fresh,
-            before: Sparse::new(before, most),
-            of_fresh: Sparse::new(ranks, most),
+        let mut ranks = Self {
+            ids: Vec::with_capacity(most),
+            of_flagged: Vec::with_capacity(flagged.len()),
+            of_fresh: Vec::with_capacity(fresh.len()),
+            kept: Vec::with_capacity(flagged.len()),
+        };
+        let (mut fresh, mut selected) = (fresh.iter().peekable(), selected.iter().peekable());
+        for &id in flagged {
+            while let Some(&before) = fresh.next_if(|&&other| other < id) {
+                ranks.of_fresh.push(ranks.ids.len() as u32);
+                ranks.ids.push(before);
+            }
+            while selected.next_if(|&&other| other < id).is_some() {}
+            ranks.kept.push(selected.peek() == Some(&&id));
+            ranks.of_flagged.push(ranks.ids.len() as u32);
+            ranks.ids.push(id);
         }
+        for &id in fresh {
+            ranks.of_fresh.push(ranks.ids.len() as u32);
+            ranks.ids.push(id);
+        }
+        ranks
     }
 
     /// The rank of a surfel of pass 1.
     pub(super) fn of_flagged(&self, index: u32) -> u32 {
-        index + self.before.less(index + 1) as u32
+        self.of_flagged[index as usize]
     }
 
     /// The rank of a surfel of pass 3.
     pub(super) fn of_fresh(&self, index: u32) -> u32 {
-        self.of_fresh.values[index as usize]
+        self.of_fresh[index as usize]
+    }
+
+    /// Whether pass 4 draws a surfel of pass 1.
+    pub(super) fn keeps(&self, index: u32) -> bool {
+        self.kept[index as usize]
     }
 
     /// The id of a rank.
     #[inline]
     pub(super) fn id(&self, rank: u32) -> u64 {
-        let before = self.of_fresh.less(rank);
-        let id = match self.of_fresh.values.get(before) {
-            Some(found) if *found == rank => self.fresh.get(before),
-            _ => self.flagged.get(rank as usize - before),
-        };
-        id.map_or(NONE, |&id| id)
-    }
-}
-
-/// Ascending numbers, few in the range that is queried.
-struct Sparse {
-    values: Vec<u32>,
-    /// How many numbers are less than each multiple of [`STEP`].
-    steps: Vec<u32>,
-}
-
-const STEP: usize = 256;
-
-impl Sparse {
-    /// Stores numbers of at most `most`.
-    fn new(values: Vec<u32>, most: usize) -> Self {
-        let mut less = 0;
-        let steps = (0..=most / STEP + 2).map(|step| {
-            let limit = step * STEP;
-            while values.get(less).is_some_and(|&value| (value as usize) < limit) {
-                less += 1;
-            }
-            less as u32
-        });
-        Self { steps: steps.collect(), values }
-    }
-
-    /// How many numbers are less than `value`.
-    fn less(&self, value: u32) -> usize {
-        let step = value as usize / STEP;
-        let [from, to] = [self.steps[step], self.steps[step + 1]].map_inline(|less| less as usize);
-        from + self.values[from..to].partition_point(|&other| other < value)
+        self.ids.get(rank as usize).map_or(NONE, |&id| id)
     }
 }
 
@@ -94,15 +75,21 @@ mod tests {
     proptest! {
         #[test]
         fn ranks_are_places_in_the_merged_list(
-            all in prop::collection::btree_set(0..5000_u64, 0..1200), dense in 1..40_u64,
+            all in prop::collection::btree_set(0..5000_u64, 0..1200), dense in 1..40_u64, kept in 1..9_u64,
         ) {
             let (fresh, flagged): (Vec<u64>, Vec<u64>) = all.iter().partition(|&&id| id % dense == 0);
-            let ranks = Ranks::new(&flagged, &fresh);
-            for (rank, id) in (0..).zip(all) {
-                prop_assert_eq!(ranks.id(rank), id);
-                let own = match flagged.binary_search(&id) {
-                    Ok(index) => ranks.of_flagged(index as u32),
-                    Err(_) => ranks.of_fresh(fresh.binary_search(&id).unwrap() as u32),
+            // Pass 4 draws what pass 3 draws, and some of what pass 1 draws.
+            let draws = |id: &&u64| **id % dense == 0 || **id % kept == 0;
+            let selected: Vec<u64> = all.iter().filter(draws).copied().collect();
+            let ranks = Ranks::new(&flagged, &fresh, &selected);
+            for (rank, id) in (0..).zip(&all) {
+                prop_assert_eq!(ranks.id(rank), *id);
+                let own = match flagged.binary_search(id) {
+                    Ok(index) => {
+                        prop_assert_eq!(ranks.keeps(index as u32), selected.contains(id));
+                        ranks.of_flagged(index as u32)
+                    }
+                    Err(_) => ranks.of_fresh(fresh.binary_search(id).unwrap() as u32),
                 };
                 prop_assert_eq!(own, rank);
             }

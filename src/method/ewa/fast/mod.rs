@@ -5,6 +5,7 @@ mod kernels;
 use super::Settings;
 use crate::frame::Framebuffer;
 use crate::method::Job;
+use crate::method::fast::tile::Tile;
 use crate::method::fast::{draw, prepare};
 use crate::method::picture::{Clock, Laps};
 use crate::splat::Tally;
@@ -28,7 +29,8 @@ pub(super) fn render(
     let prepared = prepare(job, settings);
     clock.lap("projection");
     let shared = &prepared.shared;
-    let passes = draw::<3>(job, &prepared, target, |tile, watch| {
+    let gather = |tile: &mut Tile, index, rect| tile.gather(&prepared, index, rect);
+    let passes = draw::<3>(job, target, gather, |tile, watch| {
         tile.visibility(shared);
         watch.lap(0);
         tile.limits(shared, prepared.epsilon);

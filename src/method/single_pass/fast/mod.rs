@@ -19,6 +19,7 @@ use crate::error::Result;
 use crate::frame::Framebuffer;
 use crate::method::Job;
 use crate::method::fast::groups::own;
+use crate::method::fast::tile::Tile;
 use crate::method::fast::{draw, prepare};
 use crate::method::picture::{Clock, Laps};
 use crate::splat::Tally;
@@ -50,7 +51,8 @@ pub(super) fn render(
     let prepared = prepare(job, &settings.splats);
     clock.lap("projection");
     let shared = &prepared.shared;
-    let passes = draw::<2>(job, &prepared, target, |tile, watch| {
+    let gather = |tile: &mut Tile, index, rect| tile.gather(&prepared, index, rect);
+    let passes = draw::<2>(job, target, gather, |tile, watch| {
         let own = own(&tile.splats, groups);
         let mut images = GroupImages::new(tile, (&own, groups.len()), shared.empty(), None);
         images.draw(tile, shared, bins.as_ref());
