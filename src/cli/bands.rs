@@ -31,13 +31,24 @@ pub(super) fn count(text: &str) -> std::result::Result<Count, String> {
     }
 }
 
-/// The most rows of a band that fit into half of the memory that is left: all, or half as many, and so on.
-/// The other half is for the blocks of the file.
-fn most_rows(session: &mut Session<'_>, camera: &Camera, output: OutputSettings) -> Result<u32> {
-    let mut rows = camera.height;
+/// The most rows of a band with which every band fits into half of the memory that is left: all, or half
+/// as many, and so on. The other half is for the blocks of the file.
+fn most_rows(session: &mut Session<'_>, ready: &Ready, output: OutputSettings) -> Result<u32> {
+    let Ready { camera, .. } = ready;
+    let making = output.making();
+    let [width, height] = camera.size();
+    let mut rows = height;
     loop {
-        session.set_region(Some(Rect { x0: 0, y0: 0, x1: camera.width, y1: rows }))?;
-        if rows == 1 || session.needs(camera, output.making()) <= memory::left() / 2 {
+        rows = rows.next_multiple_of(exr::BLOCK_LINES);
+        let band = |y: u32| Rect { x0: 0, y0: y, x1: width, y1: height.min(y + rows) };
+        session.set_region(Some(band(0)))?;
+        // What a band reads of a folder is not in the session yet.
+        let read = (0..height).step_by(rows as usize).map(|y| {
+            let (surfels, held) = ready.most_of_part(band(y));
+            surfels * session.needs_a_splat(making) + held
+        });
+        let needs = session.needs(camera, making) + read.max().unwrap_or(0);
+        if rows == exr::BLOCK_LINES || needs <= memory::left() / 2 {
             return Ok(rows);
         }
         rows = rows.div_ceil(2);
@@ -58,7 +69,7 @@ pub(super) fn render(
     let text = provenance::text(&loaded.scene, session.groups(), camera, method, output);
     let rows = match count {
         Count::About(count) => camera.height.div_ceil(count),
-        Count::Auto => most_rows(session, camera, output)?,
+        Count::Auto => most_rows(session, ready, output)?,
     };
     let steps = progress::Steps::new("rendering");
     let mut bands = 0_u32;

@@ -238,7 +238,7 @@ fn bands_are_the_file_of_the_whole_picture() {
         assert!(!at.path().join("bands.png").exists());
     }
     // The whole picture does not fit; 20 bands do, and so do as many as the program chooses.
-    let large = ["render", "torus", "--count", "300", "--size", "1000x1000", "--memory", "60M"];
+    let large = ["render", "torus", "--count", "300", "--size", "1400x1400", "--memory", "100M"];
     let output = splatref(at.path(), &large);
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     assert!(String::from_utf8_lossy(&output.stderr).contains("--bands auto"), "{output:?}");

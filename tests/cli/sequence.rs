@@ -220,7 +220,10 @@ fn a_frame_goes_on_from_the_state_of_the_one_before() {
     let line = refused(&["--frame", "1", "--state", "s.bin", "-o", "x.exr"], 2);
     assert!(line.contains("the state after frame 1 is for frame 2, but this is frame 1"), "{line}");
     let line = refused(&["--frame", "2", "--state", "s.bin", "--flags", "8", "-o", "x.exr"], 2);
-    assert!(line.contains("the state was kept with --flags 1, but the method has 8; set --flags 1"), "{line}");
+    assert!(
+        line.contains("the state was kept with --flags 1, but the method has 8; set --flags 1"),
+        "{line}"
+    );
     let line = refused(&["--frame", "2", "--state", "walk.toml", "-o", "x.exr"], 1);
     assert!(line.contains("not a state of splatref"), "{line}");
     let line = refused(&["-o", "x.exr", "--keep-state", "walk.toml"], 2);

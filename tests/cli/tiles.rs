@@ -180,7 +180,7 @@ fn a_scene_four_times_as_large_as_memory_is_tiled_and_drawn() {
     let whole = run(draw("wall.ply", &["-o", "whole.exr"]));
     assert!(whole.status.success(), "{whole:?}");
     let bands =
-        run(draw("tiled/wall", &[&["-o", "bands.exr", "--bands", "64"], &limited[..]].concat()));
+        run(draw("tiled/wall", &[&["-o", "bands.exr", "--bands", "auto"], &limited[..]].concat()));
     assert!(bands.status.success() && bands.stderr.is_empty(), "{bands:?}");
     let read = |name: &str| fs::read(at.join(name)).unwrap();
     assert!(read("whole.exr") == read("bands.exr"));

@@ -113,6 +113,25 @@ impl Blocks {
         self.excerpt(self.some(Some(&nearby))?, exec)
     }
 
+    /// The most surfels that [`Blocks::near`] reads, and the bytes that it needs for them.
+    pub(in crate::io) fn most_near(
+        &self,
+        (camera, region): (&Camera, Rect),
+        skirt: f64,
+    ) -> (u64, u64) {
+        let pieces = [(0, region)];
+        let nearby = Nearby::new(Part { pieces: &pieces, spread: 1.0 }, camera, skirt);
+        let blocks = self.index.blocks.iter();
+        let near = blocks.filter(|block| nearby.holds_any(block.bounds, block.reach.into()));
+        let count = near.map(|block| u64::from(block.count)).sum();
+        (count, count * self.of_a_surfel())
+    }
+
+    /// Bytes of a surfel, of its place in the order, and of one more array while it is sorted.
+    fn of_a_surfel(&self) -> u64 {
+        self.index.kind.size() as u64 + 32
+    }
+
     /// The surfels with these indices, as a part of the whole.
     fn excerpt(&self, (cloud, ids): (Cloud, Vec<u32>), exec: &Exec) -> Result<(Surfels, Excerpt)> {
         let Index { median_radius, sphere, bounds, hash, .. } = &self.index;
@@ -131,7 +150,7 @@ impl Blocks {
     fn some(&self, nearby: Option<&Nearby<'_>>) -> Result<(Cloud, Vec<u32>)> {
         let format = |what: &str| Error::format(&self.path, what);
         let Index { kind, blocks, .. } = &self.index;
-        let mut room = Room { count: 0, bytes: kind.size() as u64 + 32 };
+        let mut room = Room { count: 0, bytes: self.of_a_surfel() };
         // All of them, or more when it is known how many are near.
         let known = if nearby.is_none() { self.index.count } else { 0 };
         room.ask(known.into())?;
@@ -194,7 +213,6 @@ impl Blocks {
 /// For how many surfels memory was asked.
 struct Room {
     count: u64,
-    /// Bytes of a surfel, of its place in the order, and of one more array while it is sorted.
     bytes: u64,
 }
 

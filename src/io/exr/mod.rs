@@ -26,7 +26,7 @@ use crate::setting::Words;
 pub use parts::{Assembled, assemble};
 pub use read::{read, read_header, read_with};
 pub use region::{Region, read_region};
-pub use write::{pending, pending_bands, pending_part, write};
+pub use write::{BLOCK_LINES, pending, pending_bands, pending_part, write};
 
 /// The name of the one text attribute in files of this crate.
 pub const ATTRIBUTE: &str = "splatref";

@@ -75,8 +75,8 @@ pub fn pending_part(
     })
 }
 
-/// The most lines of a block, over all compressions.
-const BLOCK_LINES: u32 = 32;
+/// The most lines of a block, over all compressions: bands have a multiple of it.
+pub const BLOCK_LINES: u32 = 32;
 
 /// As [`pending()`], for a picture of this width and height that is drawn in bands of about `rows`
 /// rows, from the top. `draw` returns the planes of a band; memory holds one band at a time.

@@ -144,6 +144,16 @@ impl Loaded {
 }
 
 impl Ready {
+    /// The most surfels that [`Ready::part`] reads for a region of the picture, and the bytes that it
+    /// needs to hold them; none if the scene was loaded as a whole.
+    #[must_use]
+    pub fn most_of_part(&self, region: Rect) -> (u64, u64) {
+        match (&self.loaded.blocks, self.method.skirt()) {
+            (Some(blocks), Some(skirt)) => blocks.most_near((&self.camera, region), skirt),
+            _ => (0, 0),
+        }
+    }
+
     /// The scene with the surfels that may touch a region of the picture, or the whole picture, read
     /// from a folder of blocks; the picture of that scene has the same bits there. `None` if the scene
     /// was loaded as a whole.

@@ -59,10 +59,20 @@ impl Session<'_> {
         };
         // Planes of stages are there twice: as records and as planes, or in numbers of two types.
         let a_pixel = fast.unwrap_or(number * OF_A_PIXEL + 2 * kept);
+        pixels * a_pixel + self.items(pixels, making) * self.needs_a_splat(making)
+    }
+
+    /// About the most bytes that [`Session::render`] or [`Session::define`] needs for one surfel more.
+    #[must_use]
+    pub fn needs_a_splat(&self, making: Making) -> u64 {
+        let (number, stages) = match making {
+            Making::Define { number, stages } => (number, stages),
+            _ => (4, false),
+        };
         let mut rows = self.method.stages().iter().flat_map(|stage| stage.leaves);
         // Only a plane of a whole picture, such as a margin, needs the splats in balls.
-        let balls = if kept > 0 && rows.any(|row| row.when == When::Whole) { OF_A_BALL } else { 0 };
-        pixels * a_pixel + self.items(pixels, making) * (number * OF_A_SPLAT + balls)
+        let balls = if stages && rows.any(|row| row.when == When::Whole) { OF_A_BALL } else { 0 };
+        number * OF_A_SPLAT + balls
     }
 
     /// The most items that are drawn. For a method that selects surfels, as many as it may select.
@@ -119,7 +129,13 @@ impl Session<'_> {
         let [width, height] = job.size();
         let what = || format!("a picture of {width} x {height} pixels by {}", self.method.name());
         let parts = making != Making::Verdict && self.method.needs_whole_picture().is_none();
-        let cure = if parts { "draw it in parts (--bands auto)" } else { "reduce the work" };
+        let cure = match parts {
+            true if job.window.pixels() < Rect::of_size(job.camera.size()).pixels() => {
+                "draw smaller parts (--region)"
+            }
+            true => "draw it in parts (--bands auto)",
+            false => "reduce the work",
+        };
         memory::try_ask_or(self.needs_of(job.window, job.camera, making), what, cure)
             .map_err(Error::Invalid)
     }

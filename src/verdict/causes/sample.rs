@@ -200,7 +200,7 @@ mod tests {
     #[test]
     fn the_mistake_of_a_large_picture_is_named() {
         let exec = Exec::new(2, 32).unwrap();
-        let scene = Scene::unlit("", Shape::Sphere.surfels(1500, 3).unwrap());
+        let scene = Scene::unlit("", Shape::Sphere.surfels(600, 3).unwrap());
         let camera = camera(Shape::Sphere, [176, 128], None);
         let right = ewa::Settings::default();
         let session = Session::new(&scene, Method::Ewa(right), &exec).unwrap();
@@ -222,10 +222,10 @@ mod tests {
     #[test]
     fn a_part_is_judged_as_in_the_whole_picture() {
         let exec = Exec::new(2, 32).unwrap();
-        let scene = Scene::unlit("", Shape::Sphere.surfels(1500, 3).unwrap());
+        let scene = Scene::unlit("", Shape::Sphere.surfels(600, 3).unwrap());
         let corner =
             |(tile, rect): (usize, Rect)| (tile, Rect { x0: rect.x1 - 9, y0: rect.y1 - 9, ..rect });
-        let all = exec.grid(176, 128).rects().into_iter().enumerate();
+        let all = exec.grid(112, 96).rects().into_iter().enumerate();
         let part: Arc<[_]> = all.step_by(5).map(corner).collect();
         let rules = [
             Supposed::Nothing,
@@ -239,7 +239,7 @@ mod tests {
         ];
         let mut wrong = 0;
         for lens in [None, Some(Lens::Orthographic(2.5)), Some(Lens::FieldOfView(15.0))] {
-            let camera = camera(Shape::Sphere, [176, 128], lens);
+            let camera = camera(Shape::Sphere, [112, 96], lens);
             for outline in [Outline::Affine, Outline::Perspective, Outline::RayCast] {
                 let settings = |cutoff| {
                     let right = ewa::Settings::default();

@@ -194,12 +194,23 @@ impl Figure {
         let (whole, q) = if optics.outline == Outline::RayCast {
             self.cast(optics, [x, y], hit, [origin, ray])
         } else {
-            let [dx, dy] = [x - self.center[0], y - self.center[1]];
-            let [xx, xy, yy] = self.covariance;
-            let q = (yy * dx * dx - 2.0 * xy * dx * dy + xx * dy * dy) / (xx * yy - xy * xy);
+            let q = self.screen_distance(x, y);
             (q, q)
         };
         Value { whole, q, t, weight: self.amplitude * (-0.5 * q).exp() }
+    }
+
+    /// Whether a point is certainly outside of twice the outline. This costs little, and is so of most
+    /// surfels at a pixel.
+    fn is_far(&self, optics: &Optics, x: f64, y: f64) -> bool {
+        optics.outline != Outline::RayCast && self.screen_distance(x, y) > 4.0 * optics.k * optics.k
+    }
+
+    /// Squared distance on the screen, in units of the kernel.
+    fn screen_distance(&self, x: f64, y: f64) -> f64 {
+        let [dx, dy] = [x - self.center[0], y - self.center[1]];
+        let [xx, xy, yy] = self.covariance;
+        (yy * dx * dx - 2.0 * xy * dx * dy + xx * dy * dy) / (xx * yy - xy * xy)
     }
 
     /// Squared distance in the surfel's own plane, or in the filter where that is smaller.
@@ -295,6 +306,9 @@ impl Splat {
 
     /// The fragment at a point; without its condition where it is far outside.
     pub(crate) fn fragment(&self, optics: &Optics, x: f64, y: f64) -> Option<Fragment> {
+        if self.figure.is_far(optics, x, y) {
+            return None;
+        }
         let value = self.figure.at(optics, x, y);
         if !(value.whole <= 4.0 * optics.k * optics.k) {
             return None;

@@ -64,7 +64,8 @@ pub(super) fn render(
     let shared = &flagged.splats.shared;
     clock.lap("attributes");
 
-    let gather = |tile: &mut Tile, index, rect| gather(tile, (index, rect), [&flagged, &fresh], &ranks);
+    let gather =
+        |tile: &mut Tile, index, rect| gather(tile, (index, rect), [&flagged, &fresh], &ranks);
     let passes = draw::<3>(job, target, gather, |tile, watch| {
         first.load(&ranks, tile);
         watch.lap(1);
@@ -112,7 +113,8 @@ impl Projected {
         let mut missing = vec![true; self.part.ids().len()];
         self.splats.records().for_each(|splat| missing[splat.surfel as usize] = false);
         let kept = (0..).zip(self.part.ids()).filter(|(index, _)| ranks.keeps(*index));
-        let (without, with): (Vec<_>, Vec<_>) = kept.partition(|(index, _)| missing[*index as usize]);
+        let (without, with): (Vec<_>, Vec<_>) =
+            kept.partition(|(index, _)| missing[*index as usize]);
         let visible = Tally { visible: with.len() as u64, ..Tally::default() };
         if without.is_empty() {
             return visible;
