@@ -1,6 +1,7 @@
 //! A region of a picture has every bit that the whole picture has there: for every golden scene, by
 //! the fast path, by the definition with all stages, and where buffer formats are emulated. A verdict
-//! on a region is the verdict on the whole picture there.
+//! on a region is the verdict on the whole picture there. Of methods whose later stages need the whole
+//! picture, a region has the bits of the projection, and the joined projection gives the whole picture.
 
 #![expect(clippy::unwrap_used, reason = "a test that cannot go on has failed")]
 
@@ -80,6 +81,10 @@ fn check(path: &Path, seed: u64) -> Method {
     let (camera, formats) =
         (&ready.camera, Formats { buffers: Buffers::F16, ..Formats::default() });
     let mut session = prepare(&ready, &first);
+    if ready.method.projects_regions() {
+        check_projection(&ready, seed);
+        return ready.method;
+    }
     if ready.method.needs_whole_picture().is_some() {
         let error = session.set_region(Some(Rect { x0: 0, y0: 0, x1: 1, y1: 1 })).unwrap_err();
         assert_eq!(error.exit_code(), 2, "{error}");
@@ -106,6 +111,41 @@ fn check(path: &Path, seed: u64) -> Method {
         }
     }
     ready.method
+}
+
+/// Checks the regions of a method that draws their projection alone.
+fn check_projection(ready: &Ready, seed: u64) {
+    let (exec, camera) = (Exec::new(2, 16).unwrap(), &ready.camera);
+    let mut session = prepare(ready, &exec);
+    let drawn = session.render(camera).unwrap().frame.clone();
+    let defined = session.define::<f32>(camera, true).unwrap().frame;
+    let precise = session.define::<f64>(camera, true).unwrap().frame;
+    let stage = &ready.method.stages()[0];
+    assert_eq!(stage.name, "projection");
+    let (single, double) = (stage.planes_of(&defined), stage.planes_of(&precise));
+    for rect in regions(camera.size(), seed) {
+        session.set_region(Some(rect)).unwrap();
+        if rect == Rect::of_size(camera.size()) {
+            assert!(!session.projects(camera));
+            assert!(session.render(camera).unwrap().frame == drawn, "a region of all pixels");
+            continue;
+        }
+        assert!(session.projects(camera));
+        let part = session.render(camera).unwrap().frame.clone();
+        assert_eq!(difference(&part, &single, &rect), None, "{rect:?}");
+        let part = session.define::<f64>(camera, false).unwrap().frame;
+        assert_eq!(difference(&part, &double, &rect), None, "{rect:?}: f64");
+        // Nothing takes the projection for a picture.
+        assert!(session.emulate(camera, Formats::default(), false).is_err());
+        assert!(session.stage(camera, "projection", &part).is_err());
+        assert!(session.verify(camera, &Client::from(&defined), Verdict::BUDGET).is_err());
+    }
+    assert!(session.finish(camera, &single, true).unwrap().frame == defined, "finished, stages");
+    assert!(session.finish(camera, &single, false).unwrap().frame == drawn, "finished");
+    let mut missing = single.clone();
+    missing.planes.remove(2);
+    let error = session.finish(camera, &missing, false).unwrap_err().to_string();
+    assert!(error.contains("is missing"), "{error}");
 }
 
 /// Checks that the verdict on a region is that on the whole picture, pixel by pixel, whatever the

@@ -236,6 +236,8 @@ def render(
     state: the `state` of the picture before, for the method deferred.
     region: (x0, y0, x1, y1) draws these columns and rows alone, x1 and y1 excluded, with the bits of the
         whole picture. The planes have the size of the region, and so has the data window of the file.
+        The methods pyramid and template need the whole picture: of a region you get the planes of the
+        projection alone. Save all parts, and join them with `splatref assemble`; or use `cluster.render`.
     progress: False for no progress bar; shown in a terminal and in a notebook if tqdm is there.
     settings: the settings of the method, its groups and the picture, by the names of the command
         line with _ for -: `epsilon="1.5r"`, `cull=False`, `number="f64"`, `stages=True`. Their units,

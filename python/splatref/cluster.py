@@ -13,15 +13,17 @@ from __future__ import annotations
 import functools
 import os
 import threading
+import time
 import uuid
 from dataclasses import dataclass
 from typing import Any, Callable, Iterator, Optional, Union
 
 import numpy as np
 
-from ._call import How
+from . import _splatref
+from ._call import How, calling
 from ._compare import compare
-from ._picture import Picture, read, render_one
+from ._picture import Picture, listed, read, render_one
 from ._scene import AnyCamera, Path, Scene
 from ._splatref import __version__
 from ._text import choices
@@ -54,6 +56,7 @@ class _Part:
     compression: str
     times: list[tuple[str, float]]
     tally: list[tuple[str, int]]
+    projects: bool
     state: None = None
 
     def text(self, _: object) -> str:
@@ -90,7 +93,7 @@ def _draw(region: list[int], job: _Job) -> _Part:
     planes, drawn = render_one(how, _scene(job), job.camera, job.chosen, region)
     return _Part(
         dict(planes), drawn.window, drawn.text(how), drawn.camera, drawn.method, drawn.settings, drawn.number,
-        drawn.compression, drawn.times, drawn.tally,
+        drawn.compression, drawn.times, drawn.tally, drawn.projects,
     )  # fmt: skip
 
 
@@ -116,6 +119,7 @@ def render(
     client: a `dask.distributed.Client`.
     regions: how many bands; four for each thread of the workers if absent, and at most one for each row.
 
+    By the methods pyramid and template, the workers draw the projection, and this process the other stages.
     The other arguments are those of `splatref.render`, and so are the errors. Raises `RuntimeError` if a
     worker has another version of splatref, or if workers loaded different scenes. The times of the picture
     are sums over all workers.
@@ -146,9 +150,17 @@ def _joined(size: tuple[int, int], parts: list[_Part]) -> Picture:
         for name, plane in part.planes.items():
             whole[name][y0:y1] = plane
         times += part.times
+    said = first.said
+    if first.projects:
+        # The stages after the projection need the whole picture, and nothing of the scene but what the text says.
+        with calling(False) as how:
+            start = time.perf_counter()
+            planes, said = _splatref.finish(how, listed(whole), said)
+            times.append(("finish", time.perf_counter() - start))
+        whole = dict(planes)
     joined = _Part(
-        {}, ([0, 0, width, height], [width, height]), first.said, first.camera, first.method, first.settings,
-        first.number, first.compression, times, first.tally,
+        {}, ([0, 0, width, height], [width, height]), said, first.camera, first.method, first.settings,
+        first.number, first.compression, times, first.tally, False,
     )  # fmt: skip
     return Picture(whole, joined)
 

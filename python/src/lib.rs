@@ -30,6 +30,7 @@ fn _splatref(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<verify::Judged>()?;
     for function in [
         wrap_pyfunction!(render::render, module)?,
+        wrap_pyfunction!(render::finish, module)?,
         wrap_pyfunction!(render::explain, module)?,
         wrap_pyfunction!(render::truth, module)?,
         wrap_pyfunction!(render::save_exr, module)?,

@@ -11,7 +11,7 @@ use pyo3::types::{PyBytes, PyDict};
 use splatref::frame::image::Values;
 use splatref::frame::{Frame, Plane, Rect};
 use splatref::index::seen::Seen;
-use splatref::io::scene_file::{Number, OutputSettings, SceneFile};
+use splatref::io::scene_file::{Number, OutputSettings, SceneFile, projection};
 use splatref::io::{exr, extension, npy, npz, png as png_file, provenance};
 use splatref::method::{Picture, Session};
 use splatref::scene::{Camera, Projection};
@@ -34,6 +34,8 @@ pub(crate) struct Drawn {
     camera: Camera,
     /// The pixels that the planes hold.
     window: Rect,
+    /// Whether the planes are the projection of a region alone.
+    projects: bool,
     seen: Option<Seen>,
     tally: Tally,
     times: Vec<(&'static str, f64)>,
@@ -51,10 +53,12 @@ fn draw(
     camera: Camera,
 ) -> splatref::Result<(Numbers, Drawn)> {
     let (output, window) = (setup.output, session.window(&camera)?);
+    output.check_part(session, &camera)?;
+    let projects = session.projects(&camera);
     if output.number == Number::F64 && output.formats.keep_all() {
         let picture = session.define::<f64>(&camera, output.stages)?;
         session.resume(picture.seen.clone());
-        let (frame, drawn) = parted(setup, (camera, window), picture);
+        let (frame, drawn) = parted(setup, (camera, window), projects, picture);
         return Ok((Numbers::Double(frame), drawn));
     }
     let own = match output.draw(session, &camera)? {
@@ -67,18 +71,19 @@ fn draw(
     }
     let picture = own.or_else(|| session.take_picture());
     let picture = picture.ok_or_else(|| splatref::Error::Invalid("no picture".into()))?;
-    let (frame, drawn) = parted(setup, (camera, window), picture);
+    let (frame, drawn) = parted(setup, (camera, window), projects, picture);
     Ok((Numbers::Single(frame), drawn))
 }
 
 fn parted<R>(
     setup: &Arc<Setup>,
     (camera, window): (Camera, Rect),
+    projects: bool,
     picture: Picture<R>,
 ) -> (Frame<R>, Drawn) {
     let Picture { frame, tally, timings, seen } = picture;
     let times = timings.iter().map(|(stage, time)| (*stage, time.as_secs_f64())).collect();
-    (frame, Drawn { setup: setup.clone(), camera, window, seen, tally, times })
+    (frame, Drawn { setup: setup.clone(), camera, window, projects, seen, tally, times })
 }
 
 /// Renders a scene from each camera: the planes, and what is known about them.
@@ -226,13 +231,37 @@ impl Drawn {
         ([x0, y0, x1, y1], self.camera.size())
     }
 
+    /// Whether the planes are the projection of a region alone.
+    #[getter]
+    fn projects(&self) -> bool {
+        self.projects
+    }
+
     /// The text that a file of the picture carries.
     fn text(&self, py: Python<'_>, how: How) -> PyResult<String> {
         let Self { setup, camera, .. } = self;
         call(py, &how, |_, _| {
-            Ok(provenance::text(setup.scene(), setup.groups(), camera, &setup.method, setup.output))
+            let (scene, output) = (setup.scene(), setup.output);
+            let whole = provenance::text(scene, setup.groups(), camera, &setup.method, output);
+            Ok(match self.projects {
+                true => provenance::text_of_projection(&whole, scene, output),
+                false => whole,
+            })
         })
     }
+}
+
+/// Makes the picture of the joined planes of a projection: its planes and its text.
+#[pyfunction]
+pub(crate) fn finish<'py>(
+    py: Python<'py>,
+    how: How,
+    planes: Planes<'_>,
+    text: &str,
+) -> PyResult<(Planes<'py>, String)> {
+    let frame = frame(&planes)?;
+    let (frame, text) = call(py, &how, |exec, _| projection::finish(frame, text, exec))?;
+    Ok((arrays(py, frame)?, text))
 }
 
 /// Explains every decision at a pixel.

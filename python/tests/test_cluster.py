@@ -27,7 +27,7 @@ def client() -> Iterator[Any]:
             yield client
 
 
-@pytest.mark.parametrize("method", ["ewa", "peeling", "blue"])
+@pytest.mark.parametrize("method", ["ewa", "peeling", "blue", "pyramid", "template"])
 @pytest.mark.parametrize("regions", [1, 7, 64])
 def test_every_division_has_the_bytes_of_the_whole(client: Any, method: str, regions: int, tmp_path: Path) -> None:
     whole = sr.render(sr.Scene.open("torus", count=800), CAMERA, method=method, stages=True)
@@ -77,8 +77,10 @@ def test_what_cannot_be_drawn_is_said(client: Any, tmp_path: Path) -> None:
         cluster.render(scene, client=client)  # type: ignore[arg-type]
     with pytest.raises(OSError, match="missing.ply"):
         cluster.render(tmp_path / "missing.ply", client=client)
-    with pytest.raises(ValueError, match="pyramid"):
-        cluster.render("sphere", CAMERA, client=client, method="pyramid")
+    with pytest.raises(ValueError, match="deferred"):
+        cluster.render("sphere", CAMERA, client=client, method="deferred")
+    with pytest.raises(ValueError, match="give number f32"):
+        cluster.render("sphere", CAMERA, client=client, method="pyramid", number="f64")
     with pytest.raises(ValueError, match="regions=0"):
         cluster.render("sphere", CAMERA, client=client, regions=0)
     job = cluster._Job("", "0.0.0", lambda: scene, None, None)
@@ -91,6 +93,11 @@ def test_a_region_is_a_crop_of_the_whole(tmp_path: Path) -> None:
     whole, part = (sr.render(scene, CAMERA, region=region) for region in (None, (5, 7, 40, 31)))
     assert part.region == (5, 7, 40, 31) and whole.region == (0, 0, 60, 44) and part.size == (35, 24)
     assert all(np.array_equal(part[name], whole[name][7:31, 5:40], equal_nan=True) for name in whole)
+    part = sr.render(scene, CAMERA, method="pyramid", region=(5, 7, 40, 31))
+    whole = sr.render(scene, CAMERA, method="pyramid", stages=True)
+    own = [name for name in part if name.startswith("projection")]
+    assert len(own) > 7 and set(part) == set(own) and "[projection]" in part.text
+    assert all(np.array_equal(part[name], whole[name][7:31, 5:40]) for name in own)
     for region, what in (((0, 0, 61, 44), "61"), ((5, 5, 5, 9), "no pixel"), ((1, 2, 3), "give")):
         with pytest.raises(ValueError, match=what):
             sr.render(scene, CAMERA, region=region)  # type: ignore[arg-type]

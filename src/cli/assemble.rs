@@ -4,7 +4,8 @@ use super::destination::write;
 use super::{Ended, Ending, output, progress, report};
 use splatref::frame::Exec;
 use splatref::io::exr::{self, Window};
-use splatref::io::scene_file::{FileKind, OutputSettings};
+use splatref::io::provenance;
+use splatref::io::scene_file::{FileKind, OutputSettings, projection};
 use splatref::{Error, Result};
 use std::path::PathBuf;
 
@@ -16,7 +17,8 @@ Examples:
   splatref assemble out/torus.0-*.exr -o torus.exr
 
 The parts may come from any machine, in any order, and may overlap. The EXR has the same bytes as the
-EXR of the whole picture.")]
+EXR of the whole picture. Parts by the methods pyramid and template hold the projection alone; assemble
+then runs the other stages, and needs no scene for that.")]
 pub(super) struct Args {
     /// The EXR files that `render --region` wrote
     #[arg(required = true, value_name = "PART.exr")]
@@ -30,13 +32,19 @@ pub(super) fn run(args: &Args) -> Ended {
     let (place, preview) = (&args.output, args.output.with_extension("png"));
     check(args)?;
     let exec = Exec::new(0, 32)?;
-    let whole = progress::during("reading", || exr::assemble(&args.parts, &exec))?;
+    let mut whole = progress::during("reading", || exr::assemble(&args.parts, &exec))?;
+    let projection = provenance::is_projection(&whole.text);
+    if projection {
+        (whole.frame, whole.text) =
+            progress::during("rendering", || projection::finish(whole.frame, &whole.text, &exec))?;
+    }
     let output = OutputSettings { compression: whole.compression, ..OutputSettings::default() };
     let (frame, text) = (&whole.frame, || whole.text.clone());
     let pixels = (frame, Window::whole(frame));
     progress::during("writing", || write(place, pixels, text, (output, None), &exec))?;
     report::line("picture", format!("{} x {} pixels", frame.width, frame.height));
-    report::line("parts", args.parts.len());
+    let holds = if projection { " with the projection; the other stages ran here" } else { "" };
+    report::line("parts", format!("{}{holds}", args.parts.len()));
     report::line("files", place.display());
     if frame.color("").is_ok() {
         report::line("", preview.display());

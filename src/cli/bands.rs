@@ -6,7 +6,7 @@ use splatref::frame::{Exec, Frame, Rect};
 use splatref::io::scene_file::{OutputSettings, Ready};
 use splatref::io::{exr, provenance};
 use splatref::memory;
-use splatref::method::Session;
+use splatref::method::{Method, Session};
 use splatref::scene::Camera;
 use splatref::{Error, Result};
 use std::borrow::Cow;
@@ -29,6 +29,18 @@ pub(super) fn count(text: &str) -> std::result::Result<Count, String> {
         Ok(count) if count > 0 => Ok(Count::About(count)),
         _ => Err("give a number from 1, or auto".into()),
     }
+}
+
+/// Checks that a method can draw in bands.
+pub(super) fn check(method: &Method) -> Result<()> {
+    if !method.projects_regions() {
+        return method.check_alone();
+    }
+    let name = method.name();
+    let what = format!(
+        "--bands: after the projection, the method {name} needs the whole picture in memory; remove --bands"
+    );
+    Err(Error::Usage(what))
 }
 
 /// The most rows of a band with which every band fits into half of the memory that is left: all, or half

@@ -6,12 +6,12 @@ use splatref::frame::{Exec, Frame, Rect};
 use splatref::index::seen::Seen;
 use splatref::io::client::{DepthConvention, DepthFile};
 use splatref::io::exr::{self, Window};
-use splatref::io::png;
 use splatref::io::replace::Pending;
 use splatref::io::scene_file::{FileKind, OutputSettings, Ready, SceneFile};
 use splatref::io::state::{self, State};
-use splatref::method::Session;
-use splatref::scene::Camera;
+use splatref::io::{png, provenance};
+use splatref::method::{Method, Session};
+use splatref::scene::{Camera, Groups, Scene};
 use splatref::{Error, Result};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -126,6 +126,26 @@ impl Destination<'_> {
     /// Checks, before long work, that the region is inside a camera's picture.
     pub(super) fn check_region(&self, camera: &Camera) -> Result<()> {
         self.region.map_or(Ok(()), |region| camera.check_region(&region))
+    }
+
+    /// Whether the files hold the projection of the region alone.
+    pub(super) fn projects(&self, method: &Method, camera: &Camera) -> bool {
+        let is_part = self.region.is_some_and(|region| region != Rect::of_size(camera.size()));
+        is_part && method.projects_regions()
+    }
+
+    /// The text of the picture, or of the part.
+    pub(super) fn text(
+        &self,
+        (scene, groups): (&Scene, Option<&Groups>),
+        (camera, method): (&Camera, &Method),
+        output: OutputSettings,
+    ) -> String {
+        let whole = provenance::text(scene, groups, camera, method, output);
+        match self.projects(method, camera) {
+            true => provenance::text_of_projection(&whole, scene, output),
+            false => whole,
+        }
     }
 
     /// Makes a session draw the region alone. Returns the place of its pixels in the camera's picture.

@@ -1,13 +1,14 @@
 //! `splatref info`: describes a file or a folder of surfels.
 
 use super::report::{self, line};
-use super::{Ended, Ending, hierarchy, progress, region, say, warn, warn_of};
+use super::{Ended, Ending, hierarchy, progress, region, render, say, warn, warn_of};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::exr::{self, ChannelType};
 use splatref::io::gaussians;
 use splatref::io::hierarchy::Hierarchy;
 use splatref::io::ply::ReadOptions;
+use splatref::io::provenance;
 use splatref::io::scene_file::{Draw, EnvironmentChoice, FileKind, Model, SceneFile, Source};
 use splatref::io::scene_file::{Loaded, read_model};
 use splatref::scene::Light;
@@ -172,6 +173,9 @@ fn picture(path: &Path) -> Result<()> {
     line("picture", format!("{} x {} pixels", header.width, header.height));
     if let Some(data) = header.data.filter(|data| data.size() != [header.width, header.height]) {
         line("region", region::words(data));
+    }
+    if header.text.as_deref().is_some_and(provenance::is_projection) {
+        line("holds", render::PROJECTION);
     }
     line("stored", header.compressions.join("; "));
     for (name, kind) in &header.channels {

@@ -7,13 +7,12 @@ use super::sequence::{self, Frames};
 use super::{Ended, Ending, bands, draw, progress, region, report};
 use splatref::frame::{Exec, Rect};
 use splatref::io::client::{DepthConvention, DepthFile};
-use splatref::io::provenance;
 use splatref::io::scene_file::{OutputSettings, Ready, SceneFile};
 use splatref::method::{Method, Picture, Session};
 use splatref::{Error, Result};
 use std::borrow::Cow;
 use std::ops::Range;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
 
 #[derive(clap::Args)]
@@ -38,7 +37,8 @@ pub(super) struct Args {
     #[arg(short, long, value_name = "FILE.exr")]
     output: Option<PathBuf>,
     /// Draw only the columns from X0 up to X1 and the rows from Y0 up to Y1, X1 and Y1 excluded. The EXR has
-    /// the bits of the whole picture there, as its data window; `assemble` joins such parts [default
+    /// the bits of the whole picture there, as its data window; `assemble` joins such parts. By the methods
+    /// pyramid and template it holds the projection alone, and `assemble` runs the other stages [default
     /// output: out/NAME.X0-Y0-X1-Y1.exr]
     #[arg(long, value_name = "X0,Y0,X1,Y1", value_parser = region::region, allow_hyphen_values = true,
         conflicts_with = "write_depth")]
@@ -96,7 +96,9 @@ impl Args {
 
     /// The files to write, and what part of the picture they hold.
     fn destination(&self, file: &SceneFile) -> Result<Destination<'_>> {
-        if self.region.is_some() || self.bands.is_some() {
+        if self.bands.is_some() {
+            bands::check(&file.method.method()?)?;
+        } else if self.region.is_some() {
             file.method.method()?.check_region()?;
         }
         Ok(Destination {
@@ -150,7 +152,6 @@ pub(super) fn run(args: &Args) -> Ended {
         return sequence::render(&destination, &file, frames, &exec);
     }
     let picture = destination.place(&file, None)?;
-    let preview = picture.with_extension("png");
     let mut ready = draw::ready_in_parts(&file, &exec)?;
     destination.check_state(&ready, &file, std::slice::from_ref(&picture))?;
     destination.check_region(&ready.camera)?;
@@ -163,7 +164,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let window = destination.limit(&mut session, &ready.camera)?;
     let loading = start.elapsed();
     let Ready { loaded, camera, method, .. } = &ready;
-    let scene = &loaded.scene;
+    let (scene, projects) = (&loaded.scene, destination.projects(method, camera));
     // Cloned, because the picture may borrow from the session.
     let groups = session.groups().cloned();
 
@@ -175,7 +176,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let writing = Instant::now();
     destination.make_folder()?;
     progress::during("writing", || -> Result<()> {
-        let text = || provenance::text(scene, groups.as_ref(), camera, method, file.output);
+        let text = || destination.text((scene, groups.as_ref()), (camera, method), file.output);
         write(&picture, (&drawing.frame, window), text, (file.output, destination.depth), &exec)
     })?;
     let (writing, tally, seen) = (writing.elapsed(), drawing.tally, drawing.seen.clone());
@@ -186,9 +187,7 @@ pub(super) fn run(args: &Args) -> Ended {
     report::camera(camera);
     report::far(&file, scene, camera);
     report::picture(camera, file.output);
-    if let Some(part) = args.region {
-        report::line("region", region::words(part));
-    }
+    print_part(&destination, projects);
     report::method(method, scene, camera);
     report::groups(session.groups(), made.as_ref());
     report::tally(&tally);
@@ -196,13 +195,13 @@ pub(super) fn run(args: &Args) -> Ended {
     let steady = if seen.is_some() { " after this one" } else { "" };
     print_times(&exec, loading, (times, steady), writing);
     report::time("total", vec![start.elapsed()]);
-    report::line("files", picture.display());
-    report::line("", preview.display());
-    if let Some(depth) = destination.depth {
-        depth.places(&picture).iter().for_each(|place| report::line("", place.display()));
-    }
+    print_files(&destination, &picture, projects);
     Ok(Ending::Good)
 }
+
+/// What a part holds by a method whose other stages need the whole picture.
+pub(super) const PROJECTION: &str =
+    "the projection alone; `splatref assemble` runs the other stages";
 
 /// Draws the picture, and times this many pictures: of `deferred` the frames that follow, because
 /// the first frame does other work.
@@ -243,6 +242,27 @@ fn timed<'s>(
     laps.push(("picture", start.elapsed()));
     times.push(laps);
     Ok(drawing)
+}
+
+/// Prints what part of the picture the file holds.
+fn print_part(destination: &Destination<'_>, projects: bool) {
+    if let Some(part) = destination.region {
+        report::line("region", region::words(part));
+    }
+    if projects {
+        report::line("holds", PROJECTION);
+    }
+}
+
+/// Prints the files. A projection has no colours for a preview.
+fn print_files(destination: &Destination<'_>, picture: &Path, projects: bool) {
+    report::line("files", picture.display());
+    if !projects {
+        report::line("", picture.with_extension("png").display());
+    }
+    if let Some(depth) = destination.depth {
+        depth.places(picture).iter().for_each(|place| report::line("", place.display()));
+    }
 }
 
 /// Prints the times. `which` says which pictures were timed.

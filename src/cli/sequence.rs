@@ -1,11 +1,10 @@
 //! `splatref render --frames`: renders each frame of a sequence.
 
 use super::destination::{Depth, Destination, write};
-use super::{Ended, Ending, draw, progress, report};
+use super::{Ended, Ending, draw, progress, render, report};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::index::seen::Seen;
-use splatref::io::provenance;
 use splatref::io::scene_file::{OutputSettings, SceneFile};
 use splatref::method::Session;
 use splatref::scene::Camera;
@@ -57,6 +56,10 @@ pub(super) fn render(
     report::camera(&ready.camera);
     report::far(file, &ready.loaded.scene, &ready.camera);
     report::picture(&ready.camera, file.output);
+    let projects = to.projects(&ready.method, &ready.camera);
+    if projects {
+        report::line("holds", render::PROJECTION);
+    }
     report::method(&ready.method, &ready.loaded.scene, &ready.camera);
     to.make_folder()?;
 
@@ -89,7 +92,7 @@ pub(super) fn render(
     report::line("time", format!("{}, sums over {} frames", report::threads(exec), places.len()));
     times.0.into_iter().for_each(|(what, time)| report::time(what, vec![time]));
     report::time("total", vec![start.elapsed()]);
-    files(&places, to.depth);
+    files(&places, (!projects, to.depth));
     Ok(Ending::Good)
 }
 
@@ -105,17 +108,17 @@ fn one(
     let window = to.limit(session, camera)?;
     let drawing = output.draw(session, camera)?;
     drawing.timings.iter().for_each(|(stage, time)| times.add(stage, *time));
-    let text = || provenance::text(scene, groups.as_ref(), camera, &method, output);
+    let text = || to.text((scene, groups.as_ref()), (camera, &method), output);
     let pixels = (&drawing.frame, window);
     times.of("writing", || write(path, pixels, text, (output, to.depth), exec))?;
     Ok(drawing.seen.clone())
 }
 
 /// Prints the first and the last of the files.
-fn files(places: &[PathBuf], depth: Option<Depth>) {
+fn files(places: &[PathBuf], (png, depth): (bool, Option<Depth>)) {
     let [Some(first), Some(last)] = [places.first(), places.last()] else { return };
     let depth = depth.map(|depth| format!("depth.{}", depth.file.extension()));
-    let ends = [Some("exr"), Some("png"), depth.as_deref()];
+    let ends = [Some("exr"), png.then_some("png"), depth.as_deref()];
     for (label, end) in ["files", "", ""].into_iter().zip(ends.into_iter().flatten()) {
         let [first, last] = [first, last].map(|path| path.with_extension(end));
         let (first, last) = (first.display(), last.display());

@@ -1,11 +1,14 @@
 //! Describe a picture in a text that its file carries: the scene, and the settings.
 
+use crate::error::{Error, Result};
 use crate::io::scene_file::OutputSettings;
 use crate::method::Method;
 use crate::method::buffer_formats::Formats;
-use crate::scene::{Camera, Counts, Groups, Projection, Scene};
+use crate::method::projection::Has;
+use crate::scene::{Camera, Counts, Groups, Light, Objects, Phong, Projection, Scene};
 use crate::setting::{Fields, Word};
 use glam::DVec3;
+use std::path::Path;
 
 /// The text as TOML, for the attribute [`super::exr::ATTRIBUTE`].
 ///
@@ -49,6 +52,69 @@ pub fn text(
         method = method.name(),
         camera = self::camera(camera, scene.offset),
     )
+}
+
+/// Begins what the text of a part adds to the text of the picture.
+const PROJECTION: &str = "\n# The planes of the projection alone: `splatref assemble` joins such parts, and runs the \
+                          other stages.\n[projection]\n";
+
+/// The text of a part that holds the [projection](crate::method::projection) alone: `whole`, the text of
+/// the picture, and what the stages after the projection need. These are the lights and the material, as
+/// the tables `[[light]]` and `[material]` of a scene file, and the table `[projection]`:
+///
+/// - `stages`: whether the joined picture keeps the planes of every stage;
+/// - `colors`, `tangents`, `environment`: whether the scene has colours, tubes and an environment.
+///
+/// The environment itself is not in the text, because the parts have its light as a plane.
+#[must_use]
+pub fn text_of_projection(whole: &str, scene: &Scene, output: OutputSettings) -> String {
+    let Has { color, tangent } = Has::in_scene(scene);
+    let color = color || scene.objects.as_ref().is_some_and(Objects::have_colors);
+    let (stages, environment) = (output.stages, scene.environment.is_some());
+    let lights: String = scene.lights.iter().map(light).collect();
+    let Phong { ambient, diffuse, specular, shininess, color: surface } = scene.material;
+    format!(
+        "{whole}{PROJECTION}stages = {stages}\ncolors = {color}\ntangents = {tangent}\n\
+         environment = {environment}\n\n{lights}[material]\nambient = {ambient:?}\n\
+         diffuse = {diffuse:?}\nspecular = {specular:?}\nshininess = {shininess:?}\n\
+         color = {surface:?}\n",
+        surface = surface.to_array(),
+    )
+}
+
+/// A light as a table of a scene file.
+fn light(light: &Light) -> String {
+    let (kind, key, place, color) = match *light {
+        Light::Directional { towards, color } => ("directional", "towards", towards, color),
+        Light::Headlight { towards, color } => ("headlight", "towards", towards, color),
+        Light::Point { position, color } => ("point", "position", position, color),
+    };
+    let [place, color] = [place, color].map(|v| v.to_array());
+    format!("[[light]]\nkind = \"{kind}\"\n{key} = {place:?}\ncolor = {color:?}\n\n")
+}
+
+/// Whether a file with this text holds the projection of a part alone.
+#[must_use]
+pub fn is_projection(text: &str) -> bool {
+    text.parse::<toml::Table>().is_ok_and(|table| table.contains_key("projection"))
+}
+
+/// Checks that a file with this text has the pixels of a picture.
+///
+/// # Errors
+/// [`Error::Format`] if it holds the projection alone.
+pub fn check_finished(path: &Path, text: Option<&str>) -> Result<()> {
+    if !text.is_some_and(is_projection) {
+        return Ok(());
+    }
+    let what = "holds the projection of a region, no pixels of a picture; join all parts by `splatref \
+                assemble`, and give the picture";
+    Err(Error::format(path, what))
+}
+
+/// The text of the whole picture in the text of a part, [`text_of_projection`].
+pub(crate) fn without_projection(text: &str) -> Option<&str> {
+    Some(&text[..text.rfind(PROJECTION)?])
 }
 
 /// What was subtracted from the coordinates of the files, as TOML, unless it is 0.

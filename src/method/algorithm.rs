@@ -3,6 +3,7 @@
 use super::buffer_formats::{Buffers, DepthKey};
 use super::input_planes::InputPlanes;
 use super::part::Part;
+use super::projection::{Has, Joined};
 use super::stage::{Conditions, Keep};
 use super::{Picture, Stage};
 use crate::error::Result;
@@ -38,6 +39,9 @@ pub struct Job<'a> {
     pub(crate) window: Rect,
     /// The only part of the picture that a verdict judges; none: all of it.
     pub(crate) part: Option<Part<'a>>,
+    /// What is known of the scene, if the stages after the projection go on from joined planes. Ids
+    /// are then those of the planes.
+    pub(crate) joined: Option<&'a Joined>,
 }
 
 impl<'a> Job<'a> {
@@ -46,7 +50,13 @@ impl<'a> Job<'a> {
     pub fn new(scene: &'a Scene, index: &'a Index, camera: &'a Camera, exec: &'a Exec) -> Self {
         let (buffers, key) = (Buffers::F32, DepthKey::WHOLE);
         let window = Rect::of_size(camera.size());
-        Self { scene, index, camera, exec, buffers, key, level: None, window, part: None }
+        let (level, part, joined) = (None, None, None);
+        Self { scene, index, camera, exec, buffers, key, level, window, part, joined }
+    }
+
+    /// Which attributes the scene has.
+    pub(crate) fn has(&self) -> Has {
+        self.joined.map_or_else(|| Has::in_scene(self.scene), |joined| joined.has)
     }
 
     /// The levels that this job makes, from all `levels` of a stage.
@@ -89,7 +99,8 @@ impl<'a> Job<'a> {
 
     /// The conditions that decide which planes a frame of the scene has.
     pub(crate) fn there(&self, keep: Keep) -> Conditions {
-        Conditions::new(self.scene, keep)
+        let there = Conditions::new(self.scene, keep);
+        self.joined.map_or(there, |joined| there.with_attributes(joined.has))
     }
 
     /// Planes of the window as a frame.
@@ -130,6 +141,10 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
     /// Why the method cannot draw a part of a picture alone; none: each pixel depends on nothing but
     /// its own fragments.
     const NEEDS_WHOLE_PICTURE: Option<&'static str> = None;
+    /// Whether a method that needs the whole picture can draw the [projection](super::projection) of a
+    /// part alone. A job of a part then leaves the planes of the projection, and
+    /// [`Algorithm::finish`] goes on from those of the whole picture.
+    const PROJECTS_REGIONS: bool = false;
 
     /// An upper estimate of the bytes that the fast path takes for a pixel, the picture included;
     /// none: there is no fast path.
@@ -181,6 +196,20 @@ pub trait Algorithm: Fields + Debug + Default + PartialEq + Send + Sync + 'stati
         stage: &str,
         given: &InputPlanes<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>>;
+
+    /// Runs the stages after the projection on the planes of the projection, joined from regions.
+    ///
+    /// # Errors
+    /// As [`Algorithm::stage`]; [`crate::Error::Invalid`] unless the method projects regions.
+    fn finish(
+        &self,
+        job: &Job<'_>,
+        given: &InputPlanes<'_, f32>,
+        stages: bool,
+    ) -> Result<Picture<f32>> {
+        let _ = (job, given, stages);
+        Err(super::stage::unknown("projection"))
+    }
 
     /// The levels that a stage makes, each from the one before, in the order in which they are
     /// made; empty if the stage does not work level by level.

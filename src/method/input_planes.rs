@@ -3,7 +3,7 @@
 use super::algorithm::Job;
 use super::projection::{PixelSample, SampleKind};
 use super::record::{Field, Part, wide_id};
-use super::stage::{Conditions, Holds, Keep, PlaneRow};
+use super::stage::{Holds, Keep, PlaneRow};
 use super::tiled::{Tiled, pixels};
 use crate::error::{Error, Result};
 use crate::frame::{Frame, NO_ID, Plane, Samples};
@@ -84,6 +84,10 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
         let Samples::Index(plane) = self.samples(row, number)? else {
             return Err(of_another_type(row, number));
         };
+        if self.job.joined.is_some() {
+            // Nobody looks an id up: it is copied to the planes of later stages.
+            return self.sized(row, number, plane);
+        }
         let scene = self.job.scene;
         let count = scene.surfels.len() + scene.primitives.len();
         let objects = scene.objects.as_ref().filter(|_| count == 0);
@@ -116,7 +120,7 @@ impl<'a, R: Exact> InputPlanes<'a, R> {
         number: usize,
         mut records: Plane<T>,
     ) -> Result<Plane<T>> {
-        let there = Conditions::new(self.job.scene, Keep::Alone);
+        let there = self.job.there(Keep::Alone);
         for Field { row, part } in fields.iter().filter(|field| there.hold(&field.row)) {
             let to = &mut records;
             match part {

@@ -65,21 +65,31 @@ pub(crate) fn shaded<R: Exact>(
     before_environment(job, color, alpha)
 }
 
-/// Lays colours multiplied by their opacity over the environment of the scene, if it has one.
+/// Lays colours multiplied by their opacity over the environment of the scene, or over the light of
+/// joined planes, if there is one.
 pub(crate) fn before_environment<R: Exact>(
     job: &Job<'_>,
     mut color: Plane<[R; 3]>,
     mut alpha: Plane<R>,
 ) -> (Plane<[R; 3]>, Plane<R>) {
-    let Some(environment) = &job.scene.environment else { return (color, alpha) };
+    let (environment, behind) =
+        (job.scene.environment.as_ref(), job.joined.and_then(|joined| joined.behind.as_ref()));
     let (view, Rect { x0, y0, .. }) = (View::new(job.camera), job.window);
+    let light = |x, y| match (behind, environment) {
+        (Some(behind), _) => behind.at(x, y).map_inline(R::from_f32),
+        (None, Some(environment)) => environment.radiance(view.ray(x, y)),
+        (None, None) => [R::ZERO; 3],
+    };
+    if behind.is_none() && environment.is_none() {
+        return (color, alpha);
+    }
     let rows = color.rows_mut().zip(alpha.rows_mut());
     job.exec.ordered((y0..).zip(rows).collect(), |(y, (colors, alphas)): (u32, _)| {
         let colors: &mut [[R; 3]] = colors;
         let alphas: &mut [R] = alphas;
         for (x, (color, alpha)) in (x0..).zip(colors.iter_mut().zip(alphas)) {
             let layers = Blend { color: *color, alpha: *alpha };
-            let whole = before_light(layers, || environment.radiance(view.ray(x, y)));
+            let whole = before_light(layers, || light(x, y));
             (*color, *alpha) = (whole.color, whole.alpha);
         }
     });

@@ -1,6 +1,7 @@
 //! Draw one scene by one method, from as many cameras as you like.
 
 mod emulation;
+mod joined;
 mod names;
 mod needs;
 
@@ -8,6 +9,7 @@ pub(crate) use names::Names;
 pub use needs::Making;
 
 use super::algorithm::Job;
+use super::projection::Joined;
 use super::table::Memory;
 use super::{Method, Picture};
 use crate::error::Result;
@@ -51,6 +53,8 @@ pub struct Session<'a> {
     pool: Pool,
     /// The part of the picture that is drawn; none: all of it.
     region: Option<Rect>,
+    /// What is known of a scene that is not at hand, see [`Session::finish`].
+    joined: Option<Joined>,
     /// The last picture of [`Session::render`].
     picture: Option<Picture<f32>>,
 }
@@ -124,7 +128,8 @@ impl<'a> Session<'a> {
             index.members = Some(Members::new(&scene.surfels, groups, order, exec)?);
         }
         let (memory, pool) = (method.memory(), Pool::default());
-        Ok(Self { scene, method, exec, index, memory, pool, region: None, picture: None })
+        let (region, joined, picture) = (None, None, None);
+        Ok(Self { scene, method, exec, index, memory, pool, region, joined, picture })
     }
 
     /// The same method, groups and state with another scene of as many surfels.
@@ -171,6 +176,11 @@ impl<'a> Session<'a> {
     /// Draws only these pixels of every following picture, the ends excluded, until you set another
     /// region; with none, the whole picture. Planes have the size of the region, and every bit is that
     /// of the whole picture. Memory for pixels grows with the region, but every surfel is projected.
+    ///
+    /// The methods `pyramid` and `template` draw the [projection](super::projection) of a region alone,
+    /// because their later stages need the whole picture: [`Session::render`] and [`Session::define`]
+    /// leave its planes and no others, with or without stages. Join them, and call [`Session::finish`].
+    /// Every other call refuses such a region.
     ///
     /// ```
     /// use splatref::frame::{Exec, Rect};
@@ -227,7 +237,7 @@ impl<'a> Session<'a> {
         // A last picture of this size has already got the memory.
         let window = self.window(camera)?;
         if last.as_ref().map(size) != Some(window.size()) {
-            self.ask(&self.job(camera)?, Making::Render)?;
+            self.ask(&self.drawn_job(camera)?, Making::Render)?;
         }
         if let Some(last) = last {
             self.pool.recycle(last.frame);
@@ -262,7 +272,7 @@ impl<'a> Session<'a> {
     // Compiled once, in this crate, and not again in every crate that draws by definitions.
     #[inline(never)]
     pub fn define<R: Exact>(&self, camera: &Camera, stages: bool) -> Result<Picture<R>> {
-        self.defined(&self.job(camera)?, stages)
+        self.defined(&self.drawn_job(camera)?, stages)
     }
 
     /// As [`Session::define`], for the whole picture, whatever region was set.
@@ -369,7 +379,14 @@ impl<'a> Session<'a> {
         Ok(Job::new(scene, index, camera, exec))
     }
 
+    /// The job of the region that was set, for everything but drawing.
     pub(crate) fn job<'j>(&'j self, camera: &'j Camera) -> Result<Job<'j>> {
+        self.check_finished(camera)?;
+        self.drawn_job(camera)
+    }
+
+    /// The job of the region that was set.
+    fn drawn_job<'j>(&'j self, camera: &'j Camera) -> Result<Job<'j>> {
         Ok(Job { window: self.window(camera)?, ..self.whole_job(camera)? })
     }
 }

@@ -126,6 +126,11 @@ impl Conditions {
         Self { settings, ..self }
     }
 
+    /// The same conditions, in a scene with these attributes.
+    pub(crate) fn with_attributes(self, has: Has) -> Self {
+        Self { has, ..self }
+    }
+
     /// Whether the plane of a row is there.
     pub(crate) fn hold(&self, row: &PlaneRow) -> bool {
         let stages = self.keep != Keep::Picture;

@@ -125,10 +125,18 @@ macro_rules! methods {
             }
 
             /// Why the method cannot draw a part of a picture alone, with the bits of the whole; none:
-            /// it can. [`super::Session::set_region`] refuses such a method.
+            /// it can. [`super::Session::set_region`] refuses such a method, unless it
+            /// [projects regions](Self::projects_regions).
             #[must_use]
             pub fn needs_whole_picture(&self) -> Option<&'static str> {
                 match self { $(Self::$method(_) => <$settings>::NEEDS_WHOLE_PICTURE,)* }
+            }
+
+            /// Whether a region of the picture has the planes of the [projection](super::projection)
+            /// alone, from which [`super::Session::finish`] goes on once they are joined.
+            #[must_use]
+            pub fn projects_regions(&self) -> bool {
+                match self { $(Self::$method(_) => <$settings>::PROJECTS_REGIONS,)* }
             }
 
             pub(crate) fn fast_bytes_a_pixel(&self) -> Option<u64> {
@@ -170,6 +178,16 @@ macro_rules! methods {
                     $(Self::$method(settings) => settings.stage(job, stage, &given),)*
                 };
                 Ok(job.frame(planes?))
+            }
+
+            pub(crate) fn finish(
+                &self,
+                job: &Job<'_>,
+                from: &Frame<f32>,
+                stages: bool,
+            ) -> Result<Picture<f32>> {
+                let given = InputPlanes::new(from, job)?;
+                match self { $(Self::$method(settings) => settings.finish(job, &given, stages),)* }
             }
 
             pub(crate) fn levels(&self, job: &Job<'_>, stage: &str) -> Vec<usize> {
@@ -269,11 +287,19 @@ impl Method {
         }
     }
 
-    /// Checks that the method can draw a part of a picture alone.
+    /// Checks that [`super::Session::set_region`] can limit the method to a part of a picture.
+    ///
+    /// # Errors
+    /// As [`Method::check_alone`], unless the method [projects regions](Self::projects_regions).
+    pub fn check_region(&self) -> Result<()> {
+        if self.projects_regions() { Ok(()) } else { self.check_alone() }
+    }
+
+    /// Checks that the method can draw the pixels of a part of a picture alone.
     ///
     /// # Errors
     /// [`Error::Usage`] with the reason why it cannot.
-    pub fn check_region(&self) -> Result<()> {
+    pub fn check_alone(&self) -> Result<()> {
         let Some(why) = self.needs_whole_picture() else { return Ok(()) };
         let able = Self::all().into_iter().filter(|method| method.needs_whole_picture().is_none());
         let able: Vec<_> = able.map(|method| method.name()).collect();

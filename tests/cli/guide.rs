@@ -31,6 +31,7 @@ pages! {
     backends: "docs/backends.md";
     bjfm19: "docs/bjfm19.md";
     cameras: "docs/cameras.md";
+    cluster: "docs/cluster.md";
     ewa: "docs/ewa.md";
     gaussians: "docs/gaussians.md";
     gbp04: "docs/gbp04.md";

@@ -22,6 +22,7 @@ mod primitives;
 #[cfg(target_os = "linux")]
 mod progress;
 mod project;
+mod projections;
 mod quality;
 mod refusals;
 mod regions;

@@ -170,10 +170,17 @@ fn a_region_that_cannot_be_drawn_is_refused_in_one_line() {
         let line = fails(at.path(), &[&["render"], &SCENE[..], &["--region", region]].concat(), 2);
         assert!(line.contains(word), "{region}: {line}");
     }
-    for method in ["pyramid", "template", "deferred"] {
-        let arguments = ["--region", "0,0,9,9", "--method", method];
-        let line = fails(at.path(), &[&["render"], &SCENE[..], &arguments].concat(), 2);
-        assert!(line.contains(method) && line.contains("draw the whole picture"), "{line}");
+    let arguments = ["--region", "0,0,9,9", "--method", "deferred"];
+    let line = fails(at.path(), &[&["render"], &SCENE[..], &arguments].concat(), 2);
+    assert!(line.contains("deferred") && line.contains("draw the whole picture"), "{line}");
+    for method in ["pyramid", "template"] {
+        for more in
+            [&["--number", "f64"][..], &["--storage", "f16"], &["--depth-storage", "unorm24"]]
+        {
+            let arguments = [&["--region", "0,0,9,9", "--method", method], more].concat();
+            let line = fails(at.path(), &[&["render"], &SCENE[..], &arguments].concat(), 2);
+            assert!(line.contains("--number f32, --storage f32"), "{line}");
+        }
     }
     let depths = ["--region", "0,0,9,9", "--write-depth", "npy"];
     fails(at.path(), &[&["render"], &SCENE[..], &depths].concat(), 2);
@@ -252,6 +259,8 @@ fn bands_are_the_file_of_the_whole_picture() {
         &["--bands", "0"][..],
         &["--bands", "some"],
         &["--bands", "4", "--method", "pyramid"],
+        &["--bands", "4", "--method", "template"],
+        &["--bands", "4", "--method", "deferred"],
         &["--bands", "4", "--turntable", "3"],
         &["--bands", "4", "--region", "0,0,9,9"],
     ] {

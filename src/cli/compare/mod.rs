@@ -7,7 +7,7 @@ use splatref::compare::metrics;
 use splatref::compare::{Criteria, Tolerance, Verdict, compare};
 use splatref::frame::{Exec, Image, Rect};
 use splatref::io::replace::Pending;
-use splatref::io::{exr, extension, npy, npz, png};
+use splatref::io::{exr, extension, npy, npz, png, provenance};
 use splatref::number::srgb;
 use splatref::report::page::pending;
 use splatref::{Error, Result};
@@ -82,6 +82,13 @@ pub(super) fn run(args: &Args) -> Ended {
     let exec = Exec::new(0, 32)?;
     let read = |path| PictureFile::read(path, args, &exec);
     let mut pair = [read(&args.first)?, read(&args.second)?];
+    // Two parts can be compared with each other.
+    let parts = pair.each_ref().map(|file| file.text().is_some_and(provenance::is_projection));
+    if parts[0] != parts[1] {
+        for (path, file) in [&args.first, &args.second].into_iter().zip(&pair) {
+            provenance::check_finished(path, file.text())?;
+        }
+    }
     args.rename(&mut pair)?;
     let stored = pair.iter().any(|file| matches!(file, PictureFile::Png(_)));
     let (mut first, mut second) = alike(pair)?;
@@ -214,6 +221,11 @@ impl PictureFile {
             Some("npz") => npz::read(path).map(Self::Exr),
             _ => exr::read_with(path, exec).map(Self::Exr),
         }
+    }
+
+    /// The text of an EXR.
+    fn text(&self) -> Option<&str> {
+        if let Self::Exr(image) = self { image.text.as_deref() } else { None }
     }
 
     fn image(self) -> Image {

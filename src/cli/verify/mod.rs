@@ -5,9 +5,9 @@ use super::words::quoted;
 use super::{Ended, Ending, draw, output, progress, region, say};
 use splatref::frame::{Exec, Frame, Rect, Samples};
 use splatref::io::client::Description;
-use splatref::io::exr;
 use splatref::io::replace::Pending;
 use splatref::io::scene_file::{FileKind, Number, OutputSettings, Ready, SceneFile};
+use splatref::io::{exr, provenance};
 use splatref::method::Session;
 use splatref::report::VerdictReport;
 use splatref::report::page::{self, Report};
@@ -204,13 +204,14 @@ impl Args {
     /// Checks the region. Without one, warns of a file that holds a part of the picture.
     fn check_region(&self, Ready { camera, method, .. }: &Ready) -> Result<()> {
         if let Some(region) = &self.region {
-            method.check_region()?;
+            method.check_alone()?;
             return camera.check_region(region);
         }
         if !matches!(FileKind::from_extension(&self.client), Ok(FileKind::Exr)) {
             return Ok(());
         }
         let header = exr::read_header(&self.client)?;
+        provenance::check_finished(&self.client, header.text.as_deref())?;
         if let Some(data) = header.data.filter(|data| *data != Rect::of_size(camera.size()))
             && [header.width, header.height] == camera.size()
         {

@@ -8,7 +8,7 @@ use crate::error::{Error, Result};
 use crate::frame::image::Values;
 use crate::frame::{Exec, Image};
 use crate::io::exr::{self, ChannelType};
-use crate::io::{Reason, extension, npy, npz};
+use crate::io::{Reason, extension, npy, npz, provenance};
 use crate::method::Holds;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -70,6 +70,7 @@ impl<'e> Files<'e> {
 
     fn exr(&self, path: &Path) -> Result<Picture> {
         let header = exr::read_header(path)?;
+        provenance::check_finished(path, header.text.as_deref())?;
         let formats = header.channels.into_iter().map(|(name, stored)| {
             let format = match stored {
                 ChannelType::Half => Format::F16,

@@ -4,6 +4,7 @@ use super::{ChannelType, Compression, PictureHeader, read_header, read_region};
 use crate::error::{Error, Result};
 use crate::frame::image::Values;
 use crate::frame::{Exec, Frame, Plane, Rect, Samples};
+use crate::io::provenance::is_projection;
 use crate::memory;
 use std::path::{Path, PathBuf};
 
@@ -28,11 +29,15 @@ struct Part<'a> {
 /// Joins the parts of a picture in any order. Written as an EXR with the text and the compression of
 /// its parts, the frame has the bytes of the file of the whole picture. Parts may overlap.
 ///
+/// Parts that hold the [projection](crate::method::projection) alone are joined as they are:
+/// [`finish`](crate::io::scene_file::projection::finish) makes the picture of them.
+///
 /// Memory holds the whole picture and one part.
 ///
 /// # Errors
 /// As [`read_region`]. [`Error::Format`] on a part that carries no text of this crate, or another
-/// text, size or other channels than the first, or that differs from a part that it overlaps.
+/// text, size or other channels than the first, that differs from a part that it overlaps, or whose
+/// projection has a NaN.
 /// [`Error::Invalid`] if no part has some pixel; the message names a region that is missing.
 pub fn assemble(paths: &[PathBuf], exec: &Exec) -> Result<Assembled> {
     let mut parts = paths.iter().map(|path| open(path)).collect::<Result<Vec<_>>>()?;
@@ -81,6 +86,11 @@ fn check(part: &Part<'_>, first: &Part<'_>) -> Result<()> {
     }
     if own.text != other.text {
         let [own, other] = [own, other].map(|header| header.text.as_deref().unwrap_or_default());
+        let [projects, finished] = ["the projection alone", "finished pixels"];
+        let holds = |text| if is_projection(text) { projects } else { finished };
+        if holds(own) != holds(other) {
+            return refuse(format!("it holds {}, but {place} {}", holds(own), holds(other)));
+        }
         return refuse(match differing(own, other) {
             Some(key) => format!("`{key}` is not as in {place}"),
             None => format!("its text is not as in {place}"),
@@ -162,6 +172,7 @@ fn join(parts: &[Part<'_>], picture: Rect, exec: &Exec) -> Result<(Channels, Com
     };
     let mut channels: Channels =
         header.channels.iter().map(|(name, kind)| (name.clone(), empty(*kind))).collect();
+    let projection = header.text.as_deref().is_some_and(is_projection);
     let mut compression = None;
     for (index, part) in parts.iter().enumerate() {
         let read = read_region(part.path, exec)?;
@@ -181,6 +192,10 @@ fn join(parts: &[Part<'_>], picture: Rect, exec: &Exec) -> Result<(Channels, Com
         }
         compression = compression.or(Some(read.compression.unwrap_or_default()));
         for ((name, whole), (_, own)) in channels.iter_mut().zip(&read.image.channels) {
+            if let Some((x, y)) = nan(own, &part.region).filter(|_| projection) {
+                let what = format!("`{name}` at pixel {x} {y} is NaN; render this part again");
+                return Err(Error::format(part.path, what));
+            }
             let differs = |before: &&Part<'_>| {
                 let shared = before.region.intersection(&part.region);
                 difference((own, &part.region), (whole, &picture), &shared).is_some()
@@ -198,6 +213,14 @@ fn join(parts: &[Part<'_>], picture: Rect, exec: &Exec) -> Result<(Channels, Com
         }
     }
     Ok((channels, compression.unwrap_or_default()))
+}
+
+/// The first pixel of a part at which a channel is NaN.
+fn nan(values: &Values, region: &Rect) -> Option<(u32, u32)> {
+    let Values::Float(values) = values else { return None };
+    let at = values.iter().position(|value| value.is_nan())?;
+    let (x, y) = (at % region.columns(), at / region.columns());
+    Some((region.x0 + x as u32, region.y0 + y as u32))
 }
 
 /// The indices of a row of `rect` in the values of a larger rectangle.

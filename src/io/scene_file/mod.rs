@@ -96,6 +96,7 @@ mod offset;
 mod open;
 mod parts;
 pub mod places;
+pub mod projection;
 mod ready;
 #[cfg(test)]
 mod tests;

@@ -249,6 +249,23 @@ impl OutputSettings {
         Err(Error::Usage(format!("{why}; give --storage f32 and --depth-storage f32")))
     }
 
+    /// Checks that a file can hold the region of a session: the projection of a region is in `f32`,
+    /// because the stages after it go on from the file.
+    ///
+    /// # Errors
+    /// [`Error::Usage`] if the region [is a projection](Session::projects), and other numbers are chosen.
+    pub fn check_part(self, session: &Session<'_>, camera: &Camera) -> Result<()> {
+        let single = self.number == Number::F32 && self.formats.keep_all();
+        if single || !session.projects(camera) {
+            return Ok(());
+        }
+        let name = session.method().name();
+        Err(Error::Usage(format!(
+            "a region of the method {name} holds f32, from which the other stages go on; give --number f32, \
+             --storage f32 and --depth-storage f32, or draw the whole picture"
+        )))
+    }
+
     /// The call by which [`OutputSettings::draw`] draws.
     #[must_use]
     pub fn making(self) -> Making {
@@ -262,13 +279,14 @@ impl OutputSettings {
     /// Draws a picture in the chosen number type and with the chosen planes, as files hold it.
     ///
     /// # Errors
-    /// As [`Session::render`], [`Session::define`] and [`Session::emulate`], and [`Error::Invalid`]
-    /// if other formats are chosen with f64.
+    /// As [`OutputSettings::check_part`], [`Session::render`], [`Session::define`] and
+    /// [`Session::emulate`], and [`Error::Invalid`] if other formats are chosen with f64.
     pub fn draw<'s>(
         self,
         session: &'s mut Session<'_>,
         camera: &Camera,
     ) -> Result<Cow<'s, Picture<f32>>> {
+        self.check_part(session, camera)?;
         if !self.formats.keep_all() {
             if self.number == Number::F64 {
                 let what = "storage formats need f32; give number = \"f32\", or f32 storage";

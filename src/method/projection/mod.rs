@@ -37,9 +37,19 @@
 //! # Planes
 //!
 //! With stages, the picture has the planes that [`planes::STAGE`] leaves.
+//!
+//! # Regions
+//!
+//! A pixel keeps the nearest of the samples that are drawn into it, wherever the rest of the picture is.
+//! So a region of the projection can be drawn alone, with the bits of the whole. Of a region, the
+//! methods [`pyramid`](super::pyramid) and [`template`](super::template) leave these planes and no
+//! others; their later stages need the joined planes of the whole picture
+//! ([`Session::finish`](super::Session::finish)). If the scene has an environment, a region also has
+//! the plane `environment` (linear RGB): the light that arrives along the ray of each pixel.
 
 pub(crate) mod explain;
 pub(crate) mod fast;
+mod joined;
 pub mod planes;
 pub mod primitives;
 mod project;
@@ -48,6 +58,7 @@ pub mod surfels;
 pub(crate) mod tests;
 mod visible;
 
+pub(crate) use joined::{BEHIND, Joined};
 pub(crate) use project::{beside, project};
 pub(crate) use visible::{Foremost, SHARES, VisibleTriangles};
 

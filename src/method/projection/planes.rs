@@ -56,8 +56,9 @@ impl<R> PixelSample<R> {
 impl<R: Real> Projected<R> {
     /// Makes the planes of the samples.
     pub(crate) fn planes(&self, job: &Job<'_>) -> Vec<NamedPlane<R>> {
-        let at = |x, y| *self.samples.at(x, y);
+        let window = job.window;
+        let at = |x, y| *self.samples.at(x - window.x0, y - window.y0);
         let there = job.there(Keep::Stages);
-        record::planes(&PixelSample::PLANES, 0, (job.picture(), &at), &there)
+        record::planes(&PixelSample::PLANES, 0, (window, &at), &there)
     }
 }

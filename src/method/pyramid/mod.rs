@@ -81,6 +81,7 @@ impl Algorithm for Settings {
     const DRAWS_PRIMITIVES: bool = true;
     const NEEDS_WHOLE_PICTURE: Option<&'static str> =
         Some("its coarse levels average pixels from everywhere");
+    const PROJECTS_REGIONS: bool = true;
     const FAST_BYTES_A_PIXEL: Option<u64> = Some(224);
     type Memory = fast::CellLevels;
 
@@ -108,6 +109,15 @@ impl Algorithm for Settings {
         given: &InputPlanes<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>> {
         picture::stage(job, self, stage, given)
+    }
+
+    fn finish(
+        &self,
+        job: &Job<'_>,
+        given: &InputPlanes<'_, f32>,
+        stages: bool,
+    ) -> Result<Picture<f32>> {
+        picture::finish_joined(job, self, given, stages)
     }
 
     fn levels(&self, job: &Job<'_>, stage: &str) -> Vec<usize> {

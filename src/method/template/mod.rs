@@ -76,6 +76,7 @@ impl Algorithm for Settings {
     const FAST_BYTES_A_PIXEL: Option<u64> = Some(224);
     const NEEDS_WHOLE_PICTURE: Option<&'static str> =
         Some("a pixel gathers splats of other pixels, level by level");
+    const PROJECTS_REGIONS: bool = true;
     type Memory = fast::CenterLevels;
 
     fn check(&self) -> Result<()> {
@@ -102,6 +103,15 @@ impl Algorithm for Settings {
         given: &InputPlanes<'_, R>,
     ) -> Result<Vec<NamedPlane<R>>> {
         picture::stage(job, self, stage, given)
+    }
+
+    fn finish(
+        &self,
+        job: &Job<'_>,
+        given: &InputPlanes<'_, f32>,
+        stages: bool,
+    ) -> Result<Picture<f32>> {
+        picture::finish_joined(job, self, given, stages)
     }
 
     fn levels(&self, job: &Job<'_>, stage: &str) -> Vec<usize> {

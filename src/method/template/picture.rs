@@ -12,22 +12,49 @@ use crate::frame::{NamedPlane, Plane, Pool, Wanted, pyramid};
 use crate::method::Job;
 use crate::method::input_planes::InputPlanes;
 use crate::method::picture::{Clock, Picture, finish, framebuffer};
-use crate::method::projection::{self, Has};
+use crate::method::projection::{self, Has, Projected};
 use crate::method::stage::unknown;
 use crate::number::Exact;
 use crate::splat::Tally;
 
-/// The definition, in any number type. With `stages`, every stage leaves its planes.
+/// The definition, in any number type. With `stages`, every stage leaves its planes. Of a part of a
+/// picture, the projection alone leaves its planes.
 pub(super) fn define<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stages: bool,
 ) -> Result<Picture<R>> {
-    let Job { scene, camera, exec, .. } = *job;
-    let has = Has::in_scene(scene);
     let mut clock = Clock::default();
     let projected = projection::project::<R>(job, settings.cull, Snap::default())?;
     clock.lap("projection");
+    if job.is_part() {
+        return Ok(projected.alone(job, clock));
+    }
+    Ok(reconstruct(job, settings, stages, (projected, clock)))
+}
+
+/// The stages after the projection, on the planes of the projection.
+///
+/// # Errors
+/// As [`InputPlanes::records`].
+pub(super) fn finish_joined(
+    job: &Job<'_>,
+    settings: &Settings,
+    given: &InputPlanes<'_, f32>,
+    stages: bool,
+) -> Result<Picture<f32>> {
+    let projected = Projected { samples: given.projection()?, tally: Tally::default() };
+    Ok(reconstruct(job, settings, stages, (projected, Clock::default())))
+}
+
+/// The stages after the projection.
+fn reconstruct<R: Exact>(
+    job: &Job<'_>,
+    settings: &Settings,
+    stages: bool,
+    (projected, mut clock): (Projected<R>, Clock),
+) -> Picture<R> {
+    let (Job { scene, camera, exec, .. }, has) = (*job, job.has());
     let levels = propagate(&projected.samples, settings, exec);
     clock.lap("propagation");
     let gathered = gather(&levels, settings, exec);
@@ -45,7 +72,7 @@ pub(super) fn define<R: Exact>(
     let normals = stages || !scene.lights.is_empty();
     let target = normalize(&gathered, camera, has, normals);
     clock.lap("normalization");
-    Ok(finish(target, planes, projected.tally, clock, job))
+    finish(target, planes, projected.tally, clock, job)
 }
 
 /// The fast path for `f32`.
@@ -55,6 +82,9 @@ pub(super) fn draw(
     levels: &mut CenterLevels,
     pool: &mut Pool,
 ) -> Result<Picture<f32>> {
+    if job.is_part() {
+        return define(job, settings, false);
+    }
     let Job { scene, camera, exec, .. } = *job;
     let color = Has::in_scene(scene).color;
     let wanted = Wanted { normal: !scene.lights.is_empty(), color, observed: false };

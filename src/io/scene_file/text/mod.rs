@@ -20,6 +20,7 @@ mod exactly;
 mod folder;
 mod model;
 mod object;
+pub(super) mod projection;
 mod table;
 mod transform;
 mod written;
