@@ -177,6 +177,10 @@ fn a_scene_four_times_as_large_as_memory_is_tiled_and_drawn() {
         |words: Vec<String>| splatref(at, &words.iter().map(String::as_str).collect::<Vec<_>>());
     let output = run(draw("wall.ply", &[&["-o", "no.exr"], &limited[..]].concat()));
     assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let output = run(draw("tiled/wall", &[&["-o", "no.exr"], &limited[..]].concat()));
+    assert_eq!(output.status.code(), Some(1), "{output:?}");
+    let line = String::from_utf8_lossy(&output.stderr);
+    assert!(line.contains("a part of ") && line.contains("--bands auto"), "{line}");
     let whole = run(draw("wall.ply", &["-o", "whole.exr"]));
     assert!(whole.status.success(), "{whole:?}");
     let bands =

@@ -1,6 +1,6 @@
 //! Read a file of blocks; see the [module](super).
 
-use super::index::{DAMAGED, Index, Record, START};
+use super::index::{Block, DAMAGED, Index, Record, START};
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Rect};
 use crate::io::hierarchy::bytes::Reader;
@@ -121,10 +121,14 @@ impl Blocks {
     ) -> (u64, u64) {
         let pieces = [(0, region)];
         let nearby = Nearby::new(Part { pieces: &pieces, spread: 1.0 }, camera, skirt);
-        let blocks = self.index.blocks.iter();
-        let near = blocks.filter(|block| nearby.holds_any(block.bounds, block.reach.into()));
-        let count = near.map(|block| u64::from(block.count)).sum();
+        let count = self.most(Some(&nearby));
         (count, count * self.of_a_surfel())
+    }
+
+    /// How many surfels the blocks have that may hold any that is near, or all blocks.
+    fn most(&self, nearby: Option<&Nearby<'_>>) -> u64 {
+        let blocks = self.index.blocks.iter().filter(|block| may_hold(nearby, block));
+        blocks.map(|block| u64::from(block.count)).sum()
     }
 
     /// Bytes of a surfel, of its place in the order, and of one more array while it is sorted.
@@ -150,19 +154,19 @@ impl Blocks {
     fn some(&self, nearby: Option<&Nearby<'_>>) -> Result<(Cloud, Vec<u32>)> {
         let format = |what: &str| Error::format(&self.path, what);
         let Index { kind, blocks, .. } = &self.index;
-        let mut room = Room { count: 0, bytes: self.of_a_surfel() };
-        // All of them, or more when it is known how many are near.
-        let known = if nearby.is_none() { self.index.count } else { 0 };
-        room.ask(known.into())?;
-        let mut cloud = kind.arrays(known as usize);
-        let mut ids = Vec::with_capacity(known as usize);
+        let most = self.most(nearby);
+        let cure = "draw smaller parts (--bands auto or --region)";
+        memory::try_ask_or(most * self.of_a_surfel(), || format!("a part of {most} surfels"), cure)
+            .map_err(Error::Invalid)?;
+        // Arrays that grow would take up to three times as much while they are copied.
+        let mut cloud = kind.arrays(most as usize);
+        let mut ids = Vec::with_capacity(most as usize);
         let mut file = self.reopened()?;
         let mut at = self.length - self.body();
         let mut bytes = Vec::new();
         for block in blocks {
             let size = self.index.bytes(block);
-            if nearby.is_none_or(|near| near.holds_any(block.bounds, block.reach.into())) {
-                room.ask(ids.len() as u64 + u64::from(block.count))?;
+            if may_hold(nearby, block) {
                 bytes.resize(size as usize, 0);
                 let read = file.seek(SeekFrom::Start(at)).and_then(|_| file.read_exact(&mut bytes));
                 read.map_err(|source| Error::io(&self.path, source))?;
@@ -210,23 +214,9 @@ impl Blocks {
     }
 }
 
-/// For how many surfels memory was asked.
-struct Room {
-    count: u64,
-    bytes: u64,
-}
-
-impl Room {
-    /// Asks for the memory of so many surfels, unless there is enough.
-    fn ask(&mut self, count: u64) -> Result<()> {
-        if count > self.count {
-            let more = count - self.count;
-            // Half as many again, so that the system is not asked for each block.
-            self.count = count + count / 2;
-            memory::ask(more * self.bytes, || format!("{count} surfels"))?;
-        }
-        Ok(())
-    }
+/// Whether a block may hold surfels that are near.
+fn may_hold(nearby: Option<&Nearby<'_>>, block: &Block) -> bool {
+    nearby.is_none_or(|near| near.holds_any(block.bounds, block.reach.into()))
 }
 
 /// Sorts surfels by their indices, one array after the other.
