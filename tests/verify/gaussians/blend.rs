@@ -94,7 +94,7 @@ impl Shared<'_> {
     }
 
     /// The splats from front to back.
-    fn sorted(&self) -> Vec<Splat> {
+    pub(super) fn sorted(&self) -> Vec<Splat> {
         let count = self.gaussians.len();
         let dispatched = match self.how.bug {
             Some(Bug::PaddingDrawn) => count.next_multiple_of(16),

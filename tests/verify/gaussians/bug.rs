@@ -31,6 +31,8 @@ named! {
         QuaternionWLast,
         /// The scales of x and y are exchanged.
         ScalesExchanged,
+        /// The exponential is missing: the scales are what a PLY stores.
+        ScaleLogarithm,
         /// The covariance is kept in half floats.
         HalfCovariance,
         /// The Jacobian is not bounded beside the picture.
@@ -55,6 +57,8 @@ named! {
         PictureNotDecoded,
         /// The opacity is 1.
         OpacityIgnored,
+        /// The sigmoid is missing: the opacity is what a PLY stores.
+        OpacityLogit,
         /// alpha may be 1.
         AlphaUnbounded,
         /// alpha is bounded by 0.99.

@@ -1,6 +1,7 @@
 //! A Gaussian becomes an ellipse, a colour and a key, as a shader for each splat would do it.
 
 use super::{Bug, Habit, Shared};
+use splatref::method::gaussians::record::GaussianRecord;
 use splatref::method::gaussians::{ColorBounds, Order, Support};
 use splatref::scene::Projection;
 use splatref::scene::gaussians::Encoding;
@@ -22,6 +23,8 @@ pub(super) struct Splat {
     /// pixel.
     pub(super) inverse: [[f32; 3]; 3],
     pub(super) place: [f32; 3],
+    /// What it hands in; its key may be replaced by a step.
+    pub(super) record: GaussianRecord,
 }
 
 type Matrix = [[f32; 3]; 3];
@@ -59,7 +62,11 @@ impl Shared<'_> {
 
     fn scale(&self, i: usize) -> [f32; 3] {
         let [x, y, z] = self.gaussians.scale()[i].to_array();
-        if self.how.has(Bug::ScalesExchanged) { [y, x, z] } else { [x, y, z] }
+        match self.how.bug {
+            Some(Bug::ScalesExchanged) => [y, x, z],
+            Some(Bug::ScaleLogarithm) => [x, y, z].map(core_math::logf),
+            _ => [x, y, z],
+        }
     }
 
     /// Projects a splat; none if it is not drawn.
@@ -76,7 +83,8 @@ impl Shared<'_> {
         let axes = self.axes(i);
         let m = axes.map(|row| [0, 1, 2].map(|j| row[j] * scale[j]));
         let [j, center] = self.jacobian(place);
-        let v = self.unfiltered(m, j);
+        let covariance = self.covariance(m);
+        let v = self.unfiltered(m, covariance, j);
         let low_pass = kernel.low_pass;
         let [a, b, c] = [v[0] + low_pass, v[1], v[2] + low_pass];
         let det = self.difference(a, c, b, b);
@@ -84,7 +92,8 @@ impl Shared<'_> {
             return None;
         }
         let conic = self.conic([a, b, c], det);
-        let alpha = self.opacity(i) * self.compensation(v, det);
+        let compensation = self.compensation(v, det);
+        let alpha = self.opacity(i) * compensation;
         if !conic.iter().chain(&center[..2]).all(|part| part.is_finite()) {
             return None;
         }
@@ -102,7 +111,36 @@ impl Shared<'_> {
         let color = self.color(i, from_eye);
         let inverse = self.inverse(axes, scale);
         let index = i as u32;
-        Some(Splat { index, center, conic, alpha, color, depth: t, key, bounds, inverse, place })
+        let [[xx, xy, xz], [_, yy, yz], [.., zz]] = covariance;
+        let record = GaussianRecord {
+            place,
+            key,
+            color,
+            alpha,
+            conic,
+            compensation,
+            ellipse: [a, b, c],
+            distance,
+            unfiltered: v,
+            index,
+            covariance: [xx, xy, xz, yy, yz, zz],
+            center,
+            bounds: bounds.map(|end| end as u32),
+        };
+        let depth = t;
+        Some(Splat {
+            index,
+            center,
+            conic,
+            alpha,
+            color,
+            depth,
+            key,
+            bounds,
+            inverse,
+            place,
+            record,
+        })
     }
 
     pub(super) fn perspective(&self) -> bool {
@@ -151,29 +189,37 @@ impl Shared<'_> {
         }
     }
 
-    /// V0 from the axes, which are the columns of a matrix, and the Jacobian.
-    fn unfiltered(&self, m: Matrix, [jx, jxz, jy, jyz]: [f32; 4]) -> [f32; 3] {
+    /// The rotation into the camera frame.
+    fn turn(&self) -> Matrix {
         let w = self.frame.map(|[a, b, c, _]| [a, b, c]);
-        let w = if self.how.has(Bug::ViewTransposed) { transposed(w) } else { w };
+        if self.how.has(Bug::ViewTransposed) { transposed(w) } else { w }
+    }
+
+    /// S' from the axes, which are the columns of a matrix.
+    fn covariance(&self, m: Matrix) -> Matrix {
+        let w = self.turn();
+        if matches!(self.how.habit, Habit::AxesInCamera | Habit::AxesInPixels) {
+            let turned = self.by_transposed(w, transposed(m));
+            return self.by_transposed(turned, turned);
+        }
+        let m = if self.how.has(Bug::CovarianceReversed) { transposed(m) } else { m };
+        let world = self.by_transposed(m, m);
+        let world = match self.how.bug {
+            Some(Bug::HalfCovariance) => world.map(|row| row.map(half)),
+            _ => world,
+        };
+        self.by_transposed(w, self.by_transposed(w, world))
+    }
+
+    /// V0 from the axes, or from S', and the Jacobian.
+    fn unfiltered(&self, m: Matrix, s: Matrix, [jx, jxz, jy, jyz]: [f32; 4]) -> [f32; 3] {
         // The two rows of J.
         let j = [[jx, 0.0, jxz], [0.0, jy, jyz]];
         let squares = |[x, y]: [[f32; 3]; 2]| [self.dot(x, x), self.dot(x, y), self.dot(y, y)];
         if self.how.habit == Habit::AxesInPixels {
-            let columns = transposed(self.by_transposed(w, transposed(m)));
+            let columns = transposed(self.by_transposed(self.turn(), transposed(m)));
             return squares(j.map(|row| columns.map(|column| self.dot(row, column))));
         }
-        let s = if self.how.habit == Habit::AxesInCamera {
-            let turned = self.by_transposed(w, transposed(m));
-            self.by_transposed(turned, turned)
-        } else {
-            let m = if self.how.has(Bug::CovarianceReversed) { transposed(m) } else { m };
-            let world = self.by_transposed(m, m);
-            let world = match self.how.bug {
-                Some(Bug::HalfCovariance) => world.map(|row| row.map(half)),
-                _ => world,
-            };
-            self.by_transposed(w, self.by_transposed(w, world))
-        };
         let [x, y] = j.map(|row| s.map(|column| self.dot(row, column)));
         [self.dot(x, j[0]), self.dot(x, j[1]), self.dot(y, j[1])]
     }
@@ -191,7 +237,14 @@ impl Shared<'_> {
     }
 
     fn opacity(&self, i: usize) -> f32 {
-        if self.how.has(Bug::OpacityIgnored) { 1.0 } else { self.gaussians.opacity()[i] }
+        let opacity = self.gaussians.opacity()[i];
+        match self.how.bug {
+            Some(Bug::OpacityIgnored) => 1.0,
+            // As a PLY stores it; that of 1 is as large as trained ones get.
+            Some(Bug::OpacityLogit) if opacity < 1.0 => core_math::logf(opacity / (1.0 - opacity)),
+            Some(Bug::OpacityLogit) => 16.0,
+            _ => opacity,
+        }
     }
 
     fn compensation(&self, [a, b, c]: [f32; 3], det: f32) -> f32 {
