@@ -56,6 +56,8 @@ mod splats;
 mod supposed;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_of_records;
 mod walk;
 mod walked;
 
@@ -136,7 +138,7 @@ impl<'a, P: Profile> Judge<'a, P> {
     fn new(job: &Job<'a>, settings: &'a Settings, client: &'a Client) -> Self {
         let source = Source::new(job.scene, job.camera, settings);
         let fields = &GaussianPixel::<f32>::PLANES;
-        let own = PossibleSplats::new(job, &source, client.supposed);
+        let own = PossibleSplats::found(job, &source, client.supposed);
         let (splats, projection) = match &client.gaussian_records {
             Some(records) => {
                 let rules = (&source, client.supposed, client.depth_test);
@@ -146,7 +148,7 @@ impl<'a, P: Profile> Judge<'a, P> {
             None => (own, None),
         };
         Self {
-            splats,
+            splats: PossibleSplats::new(job, splats, client.supposed),
             projection,
             source,
             planes: RecordPlanes::new(client, fields, 0),

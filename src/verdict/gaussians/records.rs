@@ -31,8 +31,8 @@ pub(super) fn judge<P: Profile>(
     job: &Job<'_>,
     rules: (&Source<'_, Ball<P>>, Supposed, Storage),
     records: &[GaussianRecord],
-    own: PossibleSplats<P>,
-) -> (PossibleSplats<P>, StageVerdict) {
+    own: Vec<PossibleSplat<P>>,
+) -> (Vec<PossibleSplat<P>>, StageVerdict) {
     let (source, supposed, _) = rules;
     let keys = Keys::new(source, &own);
     let chunks = records.chunks(SIZE).collect();
@@ -45,36 +45,30 @@ pub(super) fn judge<P: Profile>(
         marks.near(record.center).found(worst.error, || worst.fault(record.index));
         all.extend(splat);
     }
-    let walker = Walker::new(rules, &own, (0, Rect::default()));
+    let none = PossibleSplats::new(job, Vec::new(), supposed);
+    let walker = Walker::new(rules, &none, (0, Rect::default()));
     let has_record = |splat: &PossibleSplat<P>| {
         records.binary_search_by_key(&splat.splat.index, |record| record.index).is_ok()
     };
-    let mut kept = vec![false; own.all.len()];
-    for (splat, kept) in own.all.iter().zip(&mut kept).filter(|(splat, _)| !has_record(splat)) {
+    for splat in own.into_iter().filter(|splat| !has_record(splat)) {
         let center = splat.splat.center.map(Real::to_f32);
-        let certain = walker.certainly_draws(splat, marks.pixel([center.x, center.y]));
-        if certain {
+        if walker.certainly_draws(&splat, marks.pixel([center.x, center.y])) {
             let fault = || Fault::NotProjected { surfel: splat.splat.index };
             marks.near([center.x, center.y]).found(f64::INFINITY, fault);
+        } else {
+            all.push(splat);
         }
-        *kept = !certain;
     }
-    let rest = own.all.into_iter().zip(kept).filter(|(_, kept)| *kept);
-    all.extend(rest.map(|(splat, _)| splat));
-    (PossibleSplats::sorted(job, all, supposed), marks.whole(STAGE, vec!["records"]))
+    (all, marks.whole(STAGE, vec!["records"]))
 }
 
-/// The keys of an order that compares steps, by the indices of the items.
+/// The keys of an order that compares steps, in ascending index.
 struct Keys<P: Profile>(Option<Vec<(u32, Ball<P>)>>);
 
 impl<P: Profile> Keys<P> {
-    fn new(source: &Source<'_, Ball<P>>, own: &PossibleSplats<P>) -> Self {
-        Self((source.settings.order == Order::Steps).then(|| {
-            let mut keys: Vec<_> =
-                own.all.iter().map(|one| (one.splat.index, one.splat.key)).collect();
-            keys.sort_by_key(|(index, _)| *index);
-            keys
-        }))
+    fn new(source: &Source<'_, Ball<P>>, own: &[PossibleSplat<P>]) -> Self {
+        let steps = source.settings.order == Order::Steps;
+        Self(steps.then(|| own.iter().map(|one| (one.splat.index, one.splat.key)).collect()))
     }
 
     /// The key of an item; any number if it has none.
@@ -197,6 +191,9 @@ fn each_number<P: Profile>(
     }
 }
 
+/// A wrong number: its step and place, and how many times the right one it is.
+type WrongNumber = ((Step, (usize, usize)), f64);
+
 /// The numbers that are wrong in some record.
 pub(crate) fn wrong_fields<P: Profile>(
     job: &Job<'_>,
@@ -204,8 +201,8 @@ pub(crate) fn wrong_fields<P: Profile>(
     records: &[GaussianRecord],
 ) -> Vec<WrongField> {
     let source = Source::<Ball<P>>::new(job.scene, job.camera, settings);
-    let keys = Keys::new(&source, &PossibleSplats::new(job, &source, Supposed::Nothing));
-    let mut times: Vec<((Step, (usize, usize)), f64)> = Vec::new();
+    let keys = Keys::new(&source, &PossibleSplats::found(job, &source, Supposed::Nothing));
+    let mut times: Vec<WrongNumber> = Vec::new();
     for record in records.iter().filter(|record| (record.index as usize) < source.len()) {
         let (own, drawn) = projected(&source, Supposed::Nothing, record.index as usize);
         if !drawn.possibly() {
@@ -218,9 +215,9 @@ pub(crate) fn wrong_fields<P: Profile>(
             }
         });
     }
-    times.sort_by(|a, b| a.0.cmp(&b.0));
+    times.sort_by_key(|(number, _)| *number);
     let of_a_number = times.chunk_by(|a, b| a.0 == b.0);
-    let field = |all: &[((Step, (usize, usize)), f64)]| {
+    let field = |all: &[WrongNumber]| {
         let ((_, at), _) = all[0];
         WrongField::new(name(at), all.iter().map(|(_, times)| *times).collect())
     };

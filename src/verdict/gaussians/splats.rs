@@ -63,7 +63,12 @@ pub(super) struct PossibleSplats<P: Profile> {
 }
 
 impl<P: Profile> PossibleSplats<P> {
-    pub(super) fn new(job: &Job<'_>, source: &Source<'_, Ball<P>>, supposed: Supposed) -> Self {
+    /// All that may be drawn, in the order of their indices.
+    pub(super) fn found(
+        job: &Job<'_>,
+        source: &Source<'_, Ball<P>>,
+        supposed: Supposed,
+    ) -> Vec<PossibleSplat<P>> {
         /// Items that one job projects.
         const SIZE: usize = 1024;
         // A step depends on the keys of all splats.
@@ -85,15 +90,11 @@ impl<P: Profile> PossibleSplats<P> {
         if source.settings.order == Order::Steps {
             steps(&mut all);
         }
-        Self::sorted(job, all, supposed)
+        all
     }
 
     /// These splats, sorted and in tiles.
-    pub(super) fn sorted(
-        job: &Job<'_>,
-        mut all: Vec<PossibleSplat<P>>,
-        supposed: Supposed,
-    ) -> Self {
+    pub(super) fn new(job: &Job<'_>, mut all: Vec<PossibleSplat<P>>, supposed: Supposed) -> Self {
         job.keep_touching(&mut all, |splat| splat.splat.bounds);
         if supposed == Supposed::BackToFront {
             all.iter_mut().for_each(|splat| splat.splat.key = -splat.splat.key);

@@ -93,6 +93,14 @@ named! {
         PremultipliedTwice,
         /// The background is added once too often.
         BackgroundTwice,
+        /// Splats are not compared with the surface's depth, and its colour is not shown.
+        SurfaceIgnored,
+        /// Splats are not compared with the surface's depth.
+        SurfaceNotTested,
+        /// The surface's colour is not multiplied by the transmittance.
+        SurfaceWhole,
+        /// The background is shown in place of the surface's colour.
+        SurfaceNotSeen,
         /// Weights are alpha, not T alpha.
         TransmittanceMissing,
         /// The rows are filled up to a multiple of 16 with splat 0.

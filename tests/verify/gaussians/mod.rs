@@ -7,6 +7,7 @@ mod discs;
 mod habit;
 mod page;
 mod project;
+mod ray;
 mod records;
 mod scenes;
 mod tests;

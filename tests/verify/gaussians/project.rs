@@ -1,5 +1,6 @@
 //! A Gaussian becomes an ellipse, a colour and a key, as a shader for each splat would do it.
 
+use super::ray::Disc;
 use super::{Bug, Habit, Shared};
 use splatref::method::gaussians::record::GaussianRecord;
 use splatref::method::gaussians::{ColorBounds, Order, Support};
@@ -23,11 +24,13 @@ pub(super) struct Splat {
     /// pixel.
     pub(super) inverse: [[f32; 3]; 3],
     pub(super) place: [f32; 3],
+    /// The disc, if discs meet rays.
+    pub(super) disc: Option<Disc>,
     /// What it hands in; its key may be replaced by a step.
     pub(super) record: GaussianRecord,
 }
 
-type Matrix = [[f32; 3]; 3];
+pub(super) type Matrix = [[f32; 3]; 3];
 
 fn transposed(m: Matrix) -> Matrix {
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| m[j][i]))
@@ -88,13 +91,14 @@ impl Shared<'_> {
         let low_pass = kernel.low_pass;
         let [a, b, c] = [v[0] + low_pass, v[1], v[2] + low_pass];
         let det = self.difference(a, c, b, b);
-        if !(det > 0.0) {
+        let rays = self.meets_rays();
+        if !(det > 0.0 || rays) {
             return None;
         }
         let conic = self.conic([a, b, c], det);
         let compensation = self.compensation(v, det);
-        let alpha = self.opacity(i) * compensation;
-        if !conic.iter().chain(&center[..2]).all(|part| part.is_finite()) {
+        let alpha = if rays { self.opacity(i) } else { self.opacity(i) * compensation };
+        if !rays && !conic.iter().chain(&center[..2]).all(|part| part.is_finite()) {
             return None;
         }
         let from_eye = [px - self.eye[0], py - self.eye[1], pz - self.eye[2]];
@@ -107,7 +111,11 @@ impl Shared<'_> {
         if self.how.has(Bug::CentersWhole) {
             center = center.map(|at| at.floor() + 0.5);
         }
-        let bounds = self.bounds(center, [a, b, c], alpha)?;
+        let disc = if rays { Some(self.disc(m, place, center)?) } else { None };
+        let bounds = match &disc {
+            Some(disc) => self.bounds_of_disc(disc, center, alpha)?,
+            None => self.bounds(center, [a, b, c], alpha)?,
+        };
         let color = self.color(i, from_eye);
         let inverse = self.inverse(axes, scale);
         let index = i as u32;
@@ -139,6 +147,7 @@ impl Shared<'_> {
             bounds,
             inverse,
             place,
+            disc,
             record,
         })
     }
@@ -148,7 +157,7 @@ impl Shared<'_> {
     }
 
     /// a b - c d.
-    fn difference(&self, a: f32, b: f32, c: f32, d: f32) -> f32 {
+    pub(super) fn difference(&self, a: f32, b: f32, c: f32, d: f32) -> f32 {
         self.add_product(a * b, -c, d)
     }
 
@@ -190,7 +199,7 @@ impl Shared<'_> {
     }
 
     /// The rotation into the camera frame.
-    fn turn(&self) -> Matrix {
+    pub(super) fn turn(&self) -> Matrix {
         let w = self.frame.map(|[a, b, c, _]| [a, b, c]);
         if self.how.has(Bug::ViewTransposed) { transposed(w) } else { w }
     }
@@ -298,7 +307,7 @@ impl Shared<'_> {
     }
 
     /// The pixels, or the tiles, of the picture within an extent of a centre.
-    fn pixels(&self, center: [f64; 2], extent: [f64; 2], tile: i64) -> Option<[i64; 4]> {
+    pub(super) fn pixels(&self, center: [f64; 2], extent: [f64; 2], tile: i64) -> Option<[i64; 4]> {
         let wide = tile as f64;
         let side = |axis: usize| {
             let [low, high] = [center[axis] - extent[axis], center[axis] + extent[axis]];
