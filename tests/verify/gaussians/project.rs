@@ -30,6 +30,31 @@ pub(super) struct Splat {
     pub(super) record: GaussianRecord,
 }
 
+impl Splat {
+    /// The splat of a record, with what the record lacks.
+    fn new(
+        record: GaussianRecord,
+        (bounds, inverse, disc): ([i64; 4], Matrix, Option<Disc>),
+    ) -> Self {
+        let GaussianRecord { index, center, conic, alpha, color, key, place, .. } = record;
+        let [_, _, depth] = place;
+        Self {
+            index,
+            center,
+            conic,
+            alpha,
+            color,
+            depth,
+            key,
+            bounds,
+            inverse,
+            place,
+            disc,
+            record,
+        }
+    }
+}
+
 pub(super) type Matrix = [[f32; 3]; 3];
 
 fn transposed(m: Matrix) -> Matrix {
@@ -92,13 +117,11 @@ impl Shared<'_> {
         let [a, b, c] = [v[0] + low_pass, v[1], v[2] + low_pass];
         let det = self.difference(a, c, b, b);
         let rays = self.meets_rays();
-        if !(det > 0.0 || rays) {
-            return None;
-        }
         let conic = self.conic([a, b, c], det);
         let compensation = self.compensation(v, det);
         let alpha = if rays { self.opacity(i) } else { self.opacity(i) * compensation };
-        if !rays && !conic.iter().chain(&center[..2]).all(|part| part.is_finite()) {
+        let finite = conic.iter().chain(&center[..2]).all(|part| part.is_finite());
+        if !(rays || det > 0.0 && finite) {
             return None;
         }
         let from_eye = [px - self.eye[0], py - self.eye[1], pz - self.eye[2]];
@@ -118,7 +141,6 @@ impl Shared<'_> {
         };
         let color = self.color(i, from_eye);
         let inverse = self.inverse(axes, scale);
-        let index = i as u32;
         let [[xx, xy, xz], [_, yy, yz], [.., zz]] = covariance;
         let record = GaussianRecord {
             place,
@@ -130,26 +152,12 @@ impl Shared<'_> {
             ellipse: [a, b, c],
             distance,
             unfiltered: v,
-            index,
+            index: i as u32,
             covariance: [xx, xy, xz, yy, yz, zz],
             center,
             bounds: bounds.map(|end| end as u32),
         };
-        let depth = t;
-        Some(Splat {
-            index,
-            center,
-            conic,
-            alpha,
-            color,
-            depth,
-            key,
-            bounds,
-            inverse,
-            place,
-            disc,
-            record,
-        })
+        Some(Splat::new(record, (bounds, inverse, disc)))
     }
 
     pub(super) fn perspective(&self) -> bool {
