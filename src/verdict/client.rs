@@ -7,6 +7,7 @@ pub use storage::Storage;
 
 use crate::error::{Error, Result};
 use crate::frame::{Frame, NamedPlane, Plane, Rect, Samples};
+use crate::method::gaussians::record::GaussianRecord;
 use crate::method::stage::numbered;
 use crate::method::{Holds, Job, PlaneRow};
 use crate::number::MapInline;
@@ -149,6 +150,8 @@ pub struct Client {
     /// The splats that the client has projected, in ascending surfel index. The later stages are
     /// judged from these records. Only for the method `ewa`.
     pub records: Option<Vec<SplatRecord>>,
+    /// The same for the method `gaussians`, in ascending index.
+    pub gaussian_records: Option<Vec<GaussianRecord>>,
     /// The channels of the file that are no planes of the method.
     pub unknown: Vec<String>,
 }
@@ -239,6 +242,11 @@ impl From<&Frame<f32>> for Client {
 }
 
 impl Client {
+    /// Whether the client hands in its projection.
+    pub(crate) fn has_records(&self) -> bool {
+        self.records.is_some() || self.gaussian_records.is_some()
+    }
+
     /// Whether every plane and every sum is an `f32` as it was computed.
     pub(crate) fn stores_singles(&self) -> bool {
         let all = self.storage.values().chain([&self.single, &self.accumulator]);
@@ -262,6 +270,7 @@ impl Client {
             part: None,
             accumulator: Storage::Single,
             records: None,
+            gaussian_records: None,
             unknown: Vec::new(),
         }
     }

@@ -98,6 +98,20 @@ impl Marks {
         self.found.iter().filter(|at| at.doubts & doubts != 0).count() as u64
     }
 
+    /// The marks of the pixel that holds a position, or of the pixel at the border next to it.
+    pub(crate) fn near(&mut self, position: [f32; 2]) -> PixelMarks<'_> {
+        self.at(place(self.rect, self.pixel(position)))
+    }
+
+    /// That pixel.
+    pub(crate) fn pixel(&self, [x, y]: [f32; 2]) -> (u32, u32) {
+        let Rect { x0, y0, x1, y1 } = self.rect;
+        let inside = |at: f32, first: u32, end: u32| {
+            f64::from(at).clamped(first.into(), (end - 1).into()) as u32
+        };
+        (inside(x, x0, x1), inside(y, y0, y1))
+    }
+
     /// The marks of one pixel. Pixels are numbered row by row.
     pub(crate) fn at(&mut self, pixel: usize) -> PixelMarks<'_> {
         PixelMarks { marks: self, pixel }

@@ -20,7 +20,7 @@ impl Session<'_> {
     ///
     /// # Errors
     /// [`Error::Invalid`] if no plane belongs to the method, if the picture has another size than
-    /// the camera's, or if there are records for another method than `ewa`; else as
+    /// the camera's, or if there are records for another method; else as
     /// [`Session::render`].
     pub fn verify(&self, camera: &Camera, client: &Client, budget: f64) -> Result<Verdict> {
         let mut verdict = self.verify_as(self.method(), camera, client, budget)?;
@@ -53,20 +53,17 @@ impl Session<'_> {
         Ok(verdict.renumbered(|index| named(names.as_ref(), index)))
     }
 
-    /// The numbers that are wrong in the records of a client of `ewa`.
+    /// The numbers that are wrong in the records of a client.
     pub(super) fn wrong_fields(
         &self,
         camera: &Camera,
         client: &Client,
     ) -> Result<Vec<ewa::WrongField>> {
-        let (Method::Ewa(settings), Some(records)) = (self.method(), &client.records) else {
-            return Ok(Vec::new());
-        };
         let job = self.job(camera)?;
         Ok(match client.rounding {
-            Rounding::Gpu => ewa::wrong_fields::<Gpu>(&job, settings, records),
-            Rounding::Precise => ewa::wrong_fields::<Precise>(&job, settings, records),
-            Rounding::Ieee => ewa::wrong_fields::<Ieee>(&job, settings, records),
+            Rounding::Gpu => table::wrong_fields::<Gpu>(self.method(), &job, client),
+            Rounding::Precise => table::wrong_fields::<Precise>(self.method(), &job, client),
+            Rounding::Ieee => table::wrong_fields::<Ieee>(self.method(), &job, client),
         })
     }
 
@@ -113,10 +110,13 @@ impl Session<'_> {
                 format!("no plane has the name of a plane of the method {}", self.method().name());
             return Err(Error::Invalid(what));
         }
-        if client.records.is_some() && !matches!(self.method(), Method::Ewa(_)) {
-            let name = self.method().name();
-            let what = format!("only the method ewa judges records, but this is {name}");
-            return Err(Error::Invalid(what));
+        let name = self.method().name();
+        let of_surfels = client.records.is_none() || matches!(self.method(), Method::Ewa(_));
+        let of_gaussians =
+            client.gaussian_records.is_none() || matches!(self.method(), Method::Gaussians(_));
+        if !(of_surfels && of_gaussians) {
+            let what = "only the methods ewa and gaussians judge records, each its own kind";
+            return Err(Error::Invalid(format!("{what}, but this is {name}")));
         }
         Ok(())
     }

@@ -37,6 +37,21 @@ pub(super) fn verify<P: Profile>(
     }
 }
 
+/// The numbers that are wrong in the records of a client.
+pub(super) fn wrong_fields<P: Profile>(
+    method: &Method,
+    job: &Job<'_>,
+    client: &Client,
+) -> Vec<ewa::WrongField> {
+    match (method, &client.records, &client.gaussian_records) {
+        (Method::Ewa(settings), Some(records), _) => ewa::wrong_fields::<P>(job, settings, records),
+        (Method::Gaussians(settings), _, Some(records)) => {
+            gaussians::wrong_fields::<P>(job, settings, records)
+        }
+        _ => Vec::new(),
+    }
+}
+
 /// Every check of a client at one pixel.
 ///
 /// # Errors

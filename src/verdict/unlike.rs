@@ -86,7 +86,7 @@ pub(super) fn found(client: &Client, surfels: usize, stages: &[StageVerdict]) ->
     let tested = surfels > FEW_SURFELS
         && client.rounding == Rounding::Gpu
         && client.stores_singles()
-        && client.records.is_none();
+        && !client.has_records();
     if !tested {
         return Vec::new();
     }

@@ -398,14 +398,14 @@ fn what_cannot_be_judged_is_no_verdict() {
     exr::write(&at.path().join("strange.exr"), &strange, "").unwrap();
     let strange = [&SCENE[..1], &["strange.exr"], &SCENE[1..]].concat();
     assert!(refused(&strange).contains("strange"));
-    // Records are of one method.
+    // Records are of two methods.
     let project = ["project", "sphere", "--count", "600", "--size", "61x47", "-o", "mine.bin"];
     succeeds(at.path(), &project);
     let toml = "file = \"plain.exr\"\nrecords = \"mine.bin\"\n";
     fs::write(at.path().join("records.toml"), toml).unwrap();
     assert_eq!(verified(&at, "records.toml", &[]).0, 0);
     let other = [&SCENE[..1], &["records.toml"], &SCENE[1..], &["--method", "peeling"]].concat();
-    assert!(refused(&other).contains("only the method ewa judges records"));
+    assert!(refused(&other).contains("only the methods ewa and gaussians judge records"));
     assert!(refused(&["sphere", "plain.exr", "--budget", "2"]).contains("a fraction from 0 to 1"));
 }
 

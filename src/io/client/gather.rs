@@ -12,7 +12,7 @@ use crate::error::{Error, Result};
 use crate::frame::named::{COLOR, component};
 use crate::frame::{Exec, Frame, Image, Plane, Samples};
 use crate::io::Reason;
-use crate::method::{Holds, Stage};
+use crate::method::{Algorithm, Holds, Stage, gaussians};
 use crate::verdict::client::{Client, Storage};
 use std::path::{Path, PathBuf};
 
@@ -62,7 +62,14 @@ pub(super) fn client(
     client.ties = sidecar.ties;
     client.depth_test = sidecar.depth_test;
     client.unknown = unknown;
-    client.records = sidecar.records.as_deref().map(records::read).transpose()?;
+    if let Some(file) = &sidecar.records {
+        // Each of the two kinds of records has its method.
+        if stages == <gaussians::Settings as Algorithm>::STAGES {
+            client.gaussian_records = Some(records::gaussians(file)?);
+        } else {
+            client.records = Some(records::splats(file)?);
+        }
+    }
     Ok(client)
 }
 

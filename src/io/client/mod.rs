@@ -19,7 +19,7 @@
 //! | `accumulator` | `"f32"`, `"f16"` | how the client stores sums between two additions, [`Client::accumulator`] |
 //! | `ties` | `"lowest"`, `"last"`, `"any"` | which of several equally near fragments wins, [`Client::ties`] |
 //! | `origin` | `"top-left"`, `"bottom-left"` | whether rows run down or up, in all files; only the order of rows changes, not row numbers stored in a plane, nor vectors |
-//! | `records` | a path | the projected splats, [`Client::records`]: records of 96 bytes as `splatref project` writes them ([`SplatRecord`](crate::splat::record::SplatRecord)), one for each drawn surfel, in any order |
+//! | `records` | a path | the projected splats, one for each drawn surfel, in any order, as `splatref project` writes them: of 96 bytes ([`SplatRecord`](crate::splat::record::SplatRecord)) for [`Client::records`], or of 128 ([`GaussianRecord`](crate::method::gaussians::record::GaussianRecord)) for [`Client::gaussian_records`] |
 //! | `size` | \[width, height\] | size of raw files; by default the size of the other planes, or of the camera's picture |
 //! | `[depth]` | `meaning`, `near`, `far` | defaults for every plane of depths |
 //! | `[depth-test]` | `format`, `meaning`, `near`, `far` | the depths that the client's depth test compares, if they are not those of the planes, [`Client::depth_test`]; see below |

@@ -1,13 +1,13 @@
-//! Export projected Gaussians as bytes for a backend to upload, or to hold its own projection against.
+//! Export projected Gaussians as bytes for a backend to upload, and read a client's own.
 
 use super::Settings;
 use super::order::Splats;
-use super::splats::Source;
+use super::splats::{Projected, Source};
 use crate::method::algorithm::Job;
-use crate::number::MapInline;
 use crate::splat::Tally;
 use crate::splat::record::little_endian;
-use std::mem::{offset_of, size_of};
+use std::mem::size_of;
+use std::slice::{from_mut, from_ref};
 
 /// A visible splat in 128 bytes of `f32` and `u32`: all stages of the projection, see
 /// [`ProjectedGaussian`](crate::splat::gaussian::ProjectedGaussian).
@@ -38,39 +38,154 @@ use std::mem::{offset_of, size_of};
 /// }
 /// ```
 ///
-/// With discs that meet rays, `alpha` is the opacity. V, its inverse, V0 and `compensation` then
+/// With discs that meet rays, `alpha` is the opacity. V, its inverse, V0, S' and `compensation` then
 /// describe the ellipse of the Gaussian, which no fragment uses.
 ///
 /// numpy reads them with `dtype=[("place", "<f4", 3), ("key", "<f4"), ...]`.
-#[derive(Clone, Copy, Debug, PartialEq)]
+///
+/// A client may hand in its own records, see [`crate::verdict::gaussians`]. There the numbers are
+/// balls, so that the record is generic.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 #[repr(C)]
-pub struct GaussianRecord {
+pub struct GaussianRecord<R = f32> {
     /// The centre in the camera frame: x right, y down, t into the picture.
-    pub place: [f32; 3],
+    pub place: [R; 3],
     /// What the order compares.
-    pub key: f32,
+    pub key: R,
     /// The colour, in the space of blending.
-    pub color: [f32; 3],
+    pub color: [R; 3],
     /// o, the opacity times the compensation.
-    pub alpha: f32,
+    pub alpha: R,
     /// V^-1: (xx, xy, yy), in 1 / px^2.
-    pub conic: [f32; 3],
+    pub conic: [R; 3],
     /// The factor of the opacity.
-    pub compensation: f32,
+    pub compensation: R,
     /// V: (xx, xy, yy), in px^2.
-    pub ellipse: [f32; 3],
+    pub ellipse: [R; 3],
     /// The distance from the camera's centre; t under an orthographic camera.
-    pub distance: f32,
+    pub distance: R,
     /// V0: (xx, xy, yy), in px^2.
-    pub unfiltered: [f32; 3],
+    pub unfiltered: [R; 3],
     /// The index in the scene.
     pub index: u32,
     /// S': (xx, xy, xz, yy, yz, zz), in world units^2.
-    pub covariance: [f32; 6],
+    pub covariance: [R; 6],
     /// Column and row of the centre, in px.
-    pub center: [f32; 2],
+    pub center: [R; 2],
     /// The pixels that may have fragments: x0, y0, x1, y1, the ends exclusive.
     pub bounds: [u32; 4],
+}
+
+/// A field of a record: one row says everything about it.
+#[derive(Debug)]
+pub(crate) struct RecordField<R> {
+    name: &'static str,
+    /// What its numbers are called.
+    components: &'static [&'static str],
+    /// The step of the projection that makes it, if a verdict judges it.
+    pub(crate) step: Option<Step>,
+    pub(crate) part: RecordPart<R>,
+}
+
+/// The steps of the projection that leave a field, in their order.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+pub(crate) enum Step {
+    Place,
+    Distance,
+    Key,
+    Center,
+    Covariance,
+    Unfiltered,
+    Ellipse,
+    Conic,
+    Compensation,
+    Alpha,
+    Color,
+}
+
+/// The place of a field in the record.
+#[derive(Debug)]
+pub(crate) enum RecordPart<R> {
+    Numbers(fn(&GaussianRecord<R>) -> &[R], fn(&mut GaussianRecord<R>) -> &mut [R]),
+    Wholes(fn(&GaussianRecord<R>) -> &[u32], fn(&mut GaussianRecord<R>) -> &mut [u32]),
+}
+
+impl Step {
+    /// Whether discs that meet rays do not need it.
+    pub(crate) fn is_of_ellipse(self) -> bool {
+        (Self::Covariance..=Self::Compensation).contains(&self)
+    }
+}
+
+impl<R> RecordField<R> {
+    /// The name of one of its numbers.
+    pub(crate) fn component(&self, i: usize) -> String {
+        match self.components {
+            [_] => self.name.to_owned(),
+            all => format!("{}.{}", self.name, all[i]),
+        }
+    }
+
+    /// Its type.
+    const fn kind(&self) -> &'static str {
+        match (&self.part, self.components.len()) {
+            (RecordPart::Numbers(..), 1) => "f32",
+            (RecordPart::Numbers(..), 2) => "f32 x 2",
+            (RecordPart::Numbers(..), 3) => "f32 x 3",
+            (RecordPart::Numbers(..), _) => "f32 x 6",
+            (RecordPart::Wholes(..), 1) => "u32",
+            (RecordPart::Wholes(..), _) => "u32 x 4",
+        }
+    }
+}
+
+/// A row of the table: name, step, components, place.
+macro_rules! numbers {
+    ($name:ident, $step:ident, $components:expr) => {
+        RecordField {
+            name: stringify!($name),
+            components: &$components,
+            step: Some(Step::$step),
+            part: RecordPart::Numbers(|r| &r.$name, |r| &mut r.$name),
+        }
+    };
+    ($name:ident, $step:ident) => {
+        RecordField {
+            name: stringify!($name),
+            components: &[""],
+            step: Some(Step::$step),
+            part: RecordPart::Numbers(|r| from_ref(&r.$name), |r| from_mut(&mut r.$name)),
+        }
+    };
+}
+
+impl<R> GaussianRecord<R> {
+    /// The fields in the order of the bytes: writer, reader and verdict follow from this table.
+    pub(crate) const TABLE: [RecordField<R>; 13] = [
+        numbers!(place, Place, ["x", "y", "t"]),
+        numbers!(key, Key),
+        numbers!(color, Color, ["r", "g", "b"]),
+        numbers!(alpha, Alpha),
+        numbers!(conic, Conic, ["xx", "xy", "yy"]),
+        numbers!(compensation, Compensation),
+        numbers!(ellipse, Ellipse, ["xx", "xy", "yy"]),
+        numbers!(distance, Distance),
+        numbers!(unfiltered, Unfiltered, ["xx", "xy", "yy"]),
+        RecordField {
+            name: "index",
+            components: &[""],
+            step: None,
+            part: RecordPart::Wholes(|r| from_ref(&r.index), |r| from_mut(&mut r.index)),
+        },
+        numbers!(covariance, Covariance, ["xx", "xy", "xz", "yy", "yz", "zz"]),
+        numbers!(center, Center, ["x", "y"]),
+        RecordField {
+            name: "bounds",
+            components: &["x0", "y0", "x1", "y1"],
+            step: None,
+            part: RecordPart::Wholes(|r| &r.bounds, |r| &mut r.bounds),
+        },
+    ];
 }
 
 impl GaussianRecord {
@@ -78,47 +193,72 @@ impl GaussianRecord {
     pub const SIZE: usize = size_of::<Self>();
 
     /// Name, offset in bytes and type of each field, in order.
-    pub const FIELDS: [(&'static str, usize, &'static str); 13] = [
-        ("place", offset_of!(Self, place), "f32 x 3"),
-        ("key", offset_of!(Self, key), "f32"),
-        ("color", offset_of!(Self, color), "f32 x 3"),
-        ("alpha", offset_of!(Self, alpha), "f32"),
-        ("conic", offset_of!(Self, conic), "f32 x 3"),
-        ("compensation", offset_of!(Self, compensation), "f32"),
-        ("ellipse", offset_of!(Self, ellipse), "f32 x 3"),
-        ("distance", offset_of!(Self, distance), "f32"),
-        ("unfiltered", offset_of!(Self, unfiltered), "f32 x 3"),
-        ("index", offset_of!(Self, index), "u32"),
-        ("covariance", offset_of!(Self, covariance), "f32 x 6"),
-        ("center", offset_of!(Self, center), "f32 x 2"),
-        ("bounds", offset_of!(Self, bounds), "u32 x 4"),
-    ];
+    pub const FIELDS: [(&'static str, usize, &'static str); 13] = {
+        let (mut fields, mut i, mut offset) = ([("", 0, ""); 13], 0, 0);
+        while i < fields.len() {
+            let field = &Self::TABLE[i];
+            fields[i] = (field.name, offset, field.kind());
+            (i, offset) = (i + 1, offset + 4 * field.components.len());
+        }
+        fields
+    };
 
     /// Writes the fields in order, little-endian, without padding.
     #[must_use]
     pub fn to_bytes(&self) -> [u8; Self::SIZE] {
-        let mut words = [0; Self::SIZE / 4];
-        let mut at = 0;
-        let mut put = |bits: &[u32]| {
-            words[at..at + bits.len()].copy_from_slice(bits);
-            at += bits.len();
-        };
-        let three = [
-            (self.place, self.key),
-            (self.color, self.alpha),
-            (self.conic, self.compensation),
-            (self.ellipse, self.distance),
-        ];
-        for (vector, last) in three {
-            put(&vector.map_inline(f32::to_bits));
-            put(&[last.to_bits()]);
+        let mut words = Vec::with_capacity(Self::SIZE / 4);
+        for field in &Self::TABLE {
+            match field.part {
+                RecordPart::Numbers(of, _) => words.extend(of(self).iter().map(|n| n.to_bits())),
+                RecordPart::Wholes(of, _) => words.extend(of(self)),
+            }
         }
-        put(&self.unfiltered.map_inline(f32::to_bits));
-        put(&[self.index]);
-        put(&self.covariance.map_inline(f32::to_bits));
-        put(&self.center.map_inline(f32::to_bits));
-        put(&self.bounds);
         little_endian(&words)
+    }
+
+    /// Reads a record from bytes that [`GaussianRecord::to_bytes`] wrote.
+    #[must_use]
+    pub fn from_bytes(bytes: &[u8; Self::SIZE]) -> Self {
+        let mut record = Self::default();
+        let mut words = bytes.as_chunks().0.iter().map(|word| u32::from_le_bytes(*word));
+        for field in &Self::TABLE {
+            match field.part {
+                RecordPart::Numbers(_, of) => {
+                    let numbers = of(&mut record).iter_mut();
+                    numbers.zip(&mut words).for_each(|(n, word)| *n = f32::from_bits(word));
+                }
+                RecordPart::Wholes(_, of) => {
+                    let wholes = of(&mut record).iter_mut();
+                    wholes.zip(&mut words).for_each(|(n, word)| *n = word);
+                }
+            }
+        }
+        record
+    }
+}
+
+impl<R: Copy> GaussianRecord<R> {
+    /// The record of a projected item.
+    pub(crate) fn new(
+        index: u32,
+        Projected { on_screen, alpha, distance, .. }: &Projected<R>,
+        (key, color, bounds): (R, [R; 3], [u32; 4]),
+    ) -> Self {
+        Self {
+            place: [on_screen.place.x, on_screen.place.y, on_screen.place.z],
+            key,
+            color,
+            alpha: *alpha,
+            conic: on_screen.conic,
+            compensation: on_screen.compensation,
+            ellipse: on_screen.ellipse,
+            distance: *distance,
+            unfiltered: on_screen.unfiltered,
+            index,
+            covariance: on_screen.covariance,
+            center: [on_screen.center.x, on_screen.center.y],
+            bounds,
+        }
     }
 }
 
@@ -131,22 +271,9 @@ pub fn project_records(job: &Job<'_>, settings: &Settings) -> (Vec<GaussianRecor
     let record = |place: usize| {
         let splat = splats.at(place);
         let projected = source.project(splat.index as usize);
-        let (on_screen, b) = (projected.on_screen, splat.bounds);
-        GaussianRecord {
-            place: [on_screen.place.x, on_screen.place.y, on_screen.place.z],
-            key: splat.key,
-            color: splat.color,
-            alpha: splat.alpha,
-            conic: on_screen.conic,
-            compensation: on_screen.compensation,
-            ellipse: on_screen.ellipse,
-            distance: projected.distance,
-            unfiltered: on_screen.unfiltered,
-            index: splat.index,
-            covariance: on_screen.covariance,
-            center: [on_screen.center.x, on_screen.center.y],
-            bounds: [b.x0, b.y0, b.x1, b.y1],
-        }
+        let b = splat.bounds;
+        let bounds = [b.x0, b.y0, b.x1, b.y1];
+        GaussianRecord::new(splat.index, &projected, (splat.key, splat.color, bounds))
     };
     ((0..splats.len()).map(record).collect(), splats.tally)
 }
@@ -185,5 +312,6 @@ mod tests {
             at += 4 * count;
         }
         assert_eq!(at, GaussianRecord::SIZE);
+        assert_eq!(GaussianRecord::from_bytes(&bytes), record);
     }
 }

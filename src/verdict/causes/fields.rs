@@ -24,7 +24,7 @@ pub(super) fn with(case: &Case<'_, '_>, said: Option<Likely>) -> Result<Option<L
 
 /// A field in words.
 fn in_words(field: &WrongField) -> String {
-    let WrongField { name, wrong, times } = *field;
+    let WrongField { name, wrong, times } = field;
     match times.map(digits) {
         Some(times) => format!("{name} of {wrong} surfels, {times} times what is right"),
         None => format!("{name} of {wrong} surfels"),

@@ -86,21 +86,13 @@ pub(super) fn judge<P: Profile>(
     });
     let mut marks = Marks::picture(job);
     for Worst { error, at, surfel, what } in found.into_iter().flatten() {
-        marks.at(pixel(job, at)).found(error, || what.fault(surfel));
+        marks.near(at).found(error, || what.fault(surfel));
     }
     for record in records.iter().filter(|record| record.surfel as usize >= surfels.len()) {
         let fault = || Fault::Projected { surfel: record.surfel };
-        marks.at(pixel(job, record.center)).found(f64::INFINITY, fault);
+        marks.near(record.center).found(f64::INFINITY, fault);
     }
     marks.whole(STAGE, vec!["records"])
-}
-
-/// The pixel that holds a position, or the pixel at the border next to it.
-fn pixel(job: &Job<'_>, place: [f32; 2]) -> usize {
-    let size = job.camera.size();
-    let [x, y] =
-        [0, 1].map_inline(|i| f64::from(place[i]).clamped(0.0, f64::from(size[i] - 1)) as usize);
-    y * size[0] as usize + x
 }
 
 /// The worst error in the record of a surfel. It has no words, because most records are right.
@@ -235,11 +227,11 @@ fn numbers<R: Copy>(f: &Footprint<R>) -> [(&'static str, R); 11] {
     ]
 }
 
-/// A number of records: its name in a record, how many records have a wrong one, and how many times
+/// A field of records: its name in a record, how many records have a wrong one, and how many times
 /// the right one it is, if that is the same in nearly all of them.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) struct WrongField {
-    pub(crate) name: &'static str,
+    pub(crate) name: String,
     pub(crate) wrong: usize,
     pub(crate) times: Option<f64>,
 }
@@ -271,9 +263,14 @@ pub(crate) fn wrong_fields<P: Profile>(
         }
     }
     let wrong = times.into_iter().filter(|(_, times)| !times.is_empty());
-    wrong
-        .map(|(name, times)| WrongField { name, wrong: times.len(), times: usual(times) })
-        .collect()
+    wrong.map(|(name, times)| WrongField::new(name.to_owned(), times)).collect()
+}
+
+impl WrongField {
+    /// A field with the quotients of its wrong numbers and the right ones; there are some.
+    pub(crate) fn new(name: String, times: Vec<f64>) -> Self {
+        Self { name, wrong: times.len(), times: usual(times) }
+    }
 }
 
 /// The number that nearly all of some numbers are.

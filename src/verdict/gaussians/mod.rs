@@ -1,7 +1,7 @@
 //! Verify your planes of Gaussian splats: which planes a correct implementation may leave of each
 //! stage.
 //!
-//! Gaussians are projected in [`Ball`]s of a [`Profile`], with their colours, alphas and depths.
+//! Without records, Gaussians are projected in [`Ball`]s of a [`Profile`], with their colours, alphas and depths.
 //! Whatever is undecided is kept open. The numbers of a pixel are hulls over all ways to decide; each
 //! order of splats has hulls of its own. What may be undecided:
 //!
@@ -17,6 +17,27 @@
 //!   judged in the order that comes closest to the client's numbers. Of more, each weight lies between
 //!   those that it has in front of all the others and behind all of them.
 //!
+//! **Projection**, if the client hands in its records
+//! ([`GaussianRecord`](crate::method::gaussians::record::GaussianRecord)):
+//!
+//! - Each number of a record is in its ball. The ball holds the number that the scene gives, whatever
+//!   the record's other numbers are. If several fields are wrong, the fault names the first in this
+//!   order: `place`, `distance`, `key`, `center`, `covariance`, `unfiltered`, `ellipse`, `conic`,
+//!   `compensation`, `alpha`, `color`. The fields from `covariance` to `compensation` of discs that meet
+//!   rays are not judged.
+//! - Every splat that certainly has a fragment at the pixel of its centre has a record.
+//! - No Gaussian that certainly is behind or degenerate has a record.
+//!
+//! A record is marked at the pixel of its centre. The later stages take `place`, `key`, `color`, `alpha`,
+//! `conic` and `center` from the records, as they are stored: their order is the order of these keys, and
+//! no error of the projection widens what follows. Discs, and the depths of an order of the pixel's own,
+//! need more than a record has; the rest is from the scene. A splat without a record that is not
+//! certainly missing may be drawn as the scene gives it.
+//!
+//! `Decided:` `bounds` is neither judged nor used, because a client may bound a splat otherwise. The
+//! bounds are those of the record's `ellipse`, as open as those of the scene's. If a record is wrong,
+//! a splat may also be drawn in the bounds of its conic, so that compositing is not accused of it.
+//!
 //! **Blending**: C, T, the depths and the count are judged against these hulls. `id` must be a
 //! fragment before which no other certainly is drawn, and `Z` its depth. `heaviest` must be a
 //! fragment that may weigh as much as any other certainly does.
@@ -30,10 +51,13 @@
 //! decisions at every tenth pixel.
 
 mod discs;
+mod records;
 mod splats;
 mod supposed;
 #[cfg(test)]
 mod tests;
+#[cfg(test)]
+mod tests_of_records;
 mod walk;
 mod walked;
 
@@ -55,7 +79,8 @@ use crate::verdict::client::{Client, Storage, StoredPlane};
 use crate::verdict::marks::{self, Counts, Marks, PixelMarks, counted};
 use crate::verdict::planes::RecordPlanes;
 use crate::verdict::supposed::Supposed;
-use crate::verdict::{Check, Verdict};
+use crate::verdict::{Check, StageVerdict, Verdict};
+pub(super) use records::wrong_fields;
 use splats::PossibleSplats;
 use walk::Walker;
 use walked::Walked;
@@ -67,8 +92,14 @@ pub(super) fn verify<P: Profile>(
     client: &Client,
     budget: f64,
 ) -> Verdict {
-    let judge = Judge::<P>::new(job, settings, client);
-    marks::verdict(job, judge.stages(), budget, |tile, marks| judge.judge(tile, marks))
+    let mut judge = Judge::<P>::new(job, settings, client);
+    let projection = judge.projection.take();
+    let verdict =
+        marks::verdict(job, judge.stages(), budget, |tile, marks| judge.judge(tile, marks));
+    match projection {
+        Some(projection) => verdict.after(projection),
+        None => verdict,
+    }
 }
 
 /// Every check at one pixel.
@@ -87,6 +118,8 @@ pub(super) fn checks<P: Profile>(
 struct Judge<'a, P: Profile> {
     source: Source<'a, Ball<P>>,
     splats: PossibleSplats<P>,
+    /// The findings about the client's records, if it hands them in.
+    projection: Option<StageVerdict>,
     planes: RecordPlanes<'a>,
     color: Option<StoredPlane<'a, [f64; 3]>>,
     through: Option<StoredPlane<'a, f64>>,
@@ -105,8 +138,18 @@ impl<'a, P: Profile> Judge<'a, P> {
     fn new(job: &Job<'a>, settings: &'a Settings, client: &'a Client) -> Self {
         let source = Source::new(job.scene, job.camera, settings);
         let fields = &GaussianPixel::<f32>::PLANES;
+        let own = PossibleSplats::found(job, &source, client.supposed);
+        let (splats, projection) = match &client.gaussian_records {
+            Some(records) => {
+                let rules = (&source, client.supposed, client.depth_test);
+                let (splats, projection) = records::judge(job, rules, records, own);
+                (splats, Some(projection))
+            }
+            None => (own, None),
+        };
         Self {
-            splats: PossibleSplats::new(job, &source, client.supposed),
+            splats: PossibleSplats::new(job, splats, client.supposed),
+            projection,
             source,
             planes: RecordPlanes::new(client, fields, 0),
             color: client.triple(&GaussianPixel::<f32>::COLOR.row),

@@ -6,12 +6,14 @@ use crate::frame::{Bins, Rect};
 use crate::method::Job;
 use crate::method::gaussians::Order;
 use crate::method::gaussians::bounds::End;
+use crate::method::gaussians::record::GaussianRecord;
 use crate::method::gaussians::splats::{Beside, GaussianSplat, Projected, Solid, Source};
 use crate::method::part::{Nearby, Part};
-use crate::number::ball::Profile;
-use crate::number::{Ball, MapInline, Real, Truth};
+use crate::number::ball::{Profile, Three};
+use crate::number::{Ball, MapInline, Real, Truth, Vector2, Vector3};
 use crate::splat::gaussian::ProjectedGaussian;
 use crate::verdict::checks::widened;
+use crate::verdict::client::known;
 use crate::verdict::supposed::Supposed;
 use std::cmp::Ordering;
 
@@ -28,10 +30,8 @@ pub(super) struct PossibleSplat<P: Profile> {
     pub(super) products: [f64; 3],
     /// What its fragments need beside it, if anything; most splats need nothing.
     pub(super) beside: Option<Box<Beside<Ball<P>>>>,
-    /// V: (xx, xy, yy).
-    ellipse: [Ball<P>; 3],
-    /// 1/det V.
-    inverse: Ball<P>,
+    /// V, (xx, xy, yy), and 1/det V; none if the conic is a client's own.
+    ellipse: Option<([Ball<P>; 3], Ball<P>)>,
 }
 
 impl<P: Profile> PossibleSplat<P> {
@@ -44,13 +44,13 @@ impl<P: Profile> PossibleSplat<P> {
     pub(super) fn power(&self, (x, y): (u32, u32)) -> Ball<P> {
         let GaussianSplat { center, conic, .. } = self.splat;
         let plain = ProjectedGaussian::power(center, conic, (x, y));
-        let [xx, xy, yy] = self.ellipse;
+        let Some(([xx, xy, yy], inverse)) = self.ellipse else { return plain };
         let dx = center.x - Ball::from_f32(x as f32 + 0.5);
         let dy = center.y - Ball::from_f32(y as f32 + 0.5);
         let along = Ball::from_f32(0.5) * (yy * (dx * dx) + xx * (dy * dy));
         let across = xy * (dx * dy);
-        let terms = (along.middle + across.middle.abs()) * self.inverse.middle;
-        let shared = widened((along - across) * self.inverse, terms.abs() / 1_048_576.0);
+        let terms = (along.middle + across.middle.abs()) * inverse.middle;
+        let shared = widened((along - across) * inverse, terms.abs() / 1_048_576.0);
         if shared.radius < plain.radius { shared } else { plain }
     }
 }
@@ -63,7 +63,12 @@ pub(super) struct PossibleSplats<P: Profile> {
 }
 
 impl<P: Profile> PossibleSplats<P> {
-    pub(super) fn new(job: &Job<'_>, source: &Source<'_, Ball<P>>, supposed: Supposed) -> Self {
+    /// All that may be drawn, in the order of their indices.
+    pub(super) fn found(
+        job: &Job<'_>,
+        source: &Source<'_, Ball<P>>,
+        supposed: Supposed,
+    ) -> Vec<PossibleSplat<P>> {
         /// Items that one job projects.
         const SIZE: usize = 1024;
         // A step depends on the keys of all splats.
@@ -85,6 +90,11 @@ impl<P: Profile> PossibleSplats<P> {
         if source.settings.order == Order::Steps {
             steps(&mut all);
         }
+        all
+    }
+
+    /// These splats, sorted and in tiles.
+    pub(super) fn new(job: &Job<'_>, mut all: Vec<PossibleSplat<P>>, supposed: Supposed) -> Self {
         job.keep_touching(&mut all, |splat| splat.splat.bounds);
         if supposed == Supposed::BackToFront {
             all.iter_mut().for_each(|splat| splat.splat.key = -splat.splat.key);
@@ -109,6 +119,42 @@ impl<P: Profile> PossibleSplats<P> {
     }
 }
 
+/// An item as it is projected by the rule that is supposed, and whether it is drawn at all.
+pub(super) fn projected<P: Profile>(
+    source: &Source<'_, Ball<P>>,
+    supposed: Supposed,
+    i: usize,
+) -> (Projected<Ball<P>>, Three) {
+    let projected = source.project_as(i, supposed_shape(source.shape(i), supposed));
+    let projected = Projected {
+        on_screen: supposed_ellipse(projected.on_screen, supposed),
+        disc: projected.disc.map(|disc| supposed_disc(disc, supposed)),
+        ..projected
+    };
+    let behind = match supposed {
+        Supposed::NearIgnored => false.into(),
+        _ => source.projector.behind(projected.on_screen.place),
+    };
+    let degenerate = projected.degenerate();
+    let dropped = behind.certainly() || (degenerate.certainly() && !behind.possibly());
+    let sound = !behind.possibly() && !degenerate.possibly();
+    (projected, Three::new([sound, !dropped, !dropped]))
+}
+
+/// What the fragments of an item need beside its splat, if anything.
+fn beside<P: Profile>(
+    source: &Source<'_, Ball<P>>,
+    projected: &Projected<Ball<P>>,
+    place: Vector3<Ball<P>>,
+) -> Option<Box<Beside<Ball<P>>>> {
+    let own = source.settings.order == Order::Pixel;
+    let solid = || {
+        let adjugate = source.projector.turned(&projected.shape.adjugate);
+        Beside::Solid(Solid { place, adjugate })
+    };
+    projected.disc.map(Beside::Disc).or_else(|| own.then(solid)).map(Box::new)
+}
+
 /// An item, if it may be drawn.
 fn possible<P: Profile>(
     (job, part): (&Job<'_>, Option<Part<'_>>),
@@ -116,45 +162,18 @@ fn possible<P: Profile>(
     supposed: Supposed,
     i: usize,
 ) -> Option<PossibleSplat<P>> {
-    let projected = source.project_as(i, supposed_shape(source.shape(i), supposed));
-    let projected = Projected {
-        on_screen: supposed_ellipse(projected.on_screen, supposed),
-        disc: projected.disc.map(|disc| supposed_disc(disc, supposed)),
-        ..projected
-    };
-    let Projected { shape, alpha, on_screen, disc, .. } = projected;
-    let place = on_screen.place;
-    let behind = match supposed {
-        Supposed::NearIgnored => false.into(),
-        _ => source.projector.behind(place),
-    };
-    let degenerate = projected.degenerate();
-    if behind.certainly() || (degenerate.certainly() && !behind.possibly()) {
+    let (projected, drawn) = projected(source, supposed, i);
+    if !drawn.possibly() {
         return None;
     }
-    let sound = !behind.possibly() && !degenerate.possibly();
-    let [bounds, certain] = match &disc {
-        Some(disc) => {
-            let [least, most] = alpha.ends();
-            let bounds = |alpha, end| {
-                let reach = (source.reach(alpha), discs::SLACK);
-                source.bounds_of_disc(disc, Ball::ends, reach, end)
-            };
-            [bounds(most, End::Most), bounds(least, End::Least)]
-        }
-        None => bounds(job, source, (&on_screen, alpha)),
-    };
+    let [bounds, certain] = bounds(job, source, &projected);
     if bounds.is_empty() || part.is_some_and(|part| !part.touches(&bounds)) {
         return None;
     }
+    let Projected { shape, alpha, on_screen, .. } = projected;
+    let place = on_screen.place;
     let [a, b, c, _] = source.projector.view.rows[2].map_inline(|part| part.middle);
     let p = shape.position.map(|part| part.middle);
-    let own = source.settings.order == Order::Pixel;
-    let solid = || {
-        let adjugate = source.projector.turned(&shape.adjugate);
-        Beside::Solid(Solid { place, adjugate })
-    };
-    let beside = disc.map(Beside::Disc).or_else(|| own.then(solid)).map(Box::new);
     let splat = GaussianSplat {
         index: i as u32,
         bounds,
@@ -167,16 +186,80 @@ fn possible<P: Profile>(
         reach: f32::INFINITY,
     };
     let products = [a * p.x, b * p.y, c * p.z];
-    let (ellipse, inverse) = (on_screen.ellipse, Ball::ONE / on_screen.det);
-    Some(PossibleSplat { splat, certain, sound, products, beside, ellipse, inverse })
+    let ellipse = Some((on_screen.ellipse, Ball::ONE / on_screen.det));
+    let (beside, sound) = (beside(source, &projected, place), drawn.certainly());
+    Some(PossibleSplat { splat, certain, sound, products, beside, ellipse })
 }
 
-/// The pixels that an ellipse may touch, and those that its bounds certainly hold.
+/// An item with the numbers of a client's record, in place of those that it is projected to.
+///
+/// A client bounds a splat by the digits of its registers, of which the record has fewer. So the
+/// bounds leave open as much as those of the item itself. In a wrong record the conic may be of another
+/// ellipse, which has bounds of its own.
+pub(super) fn recorded<P: Profile>(
+    (job, source): (&Job<'_>, &Source<'_, Ball<P>>),
+    (record, is_wrong): (&GaussianRecord, bool),
+    own: &Projected<Ball<P>>,
+) -> Option<PossibleSplat<P>> {
+    let exact = |number: f32| known::<P>(number.into(), 0.0);
+    let ([x, y], alpha) = (record.center.map_inline(exact), exact(record.alpha));
+    let ellipse = record.ellipse.map_inline(exact);
+    let ends = ProjectedGaussian {
+        center: Vector2::new(around(x, own.on_screen.center.x), around(y, own.on_screen.center.y)),
+        ellipse: [0, 1, 2].map_inline(|i| around(ellipse[i], own.on_screen.ellipse[i])),
+        ..own.on_screen
+    };
+    let ends = Projected { on_screen: ends, alpha: around(alpha, own.alpha), ..*own };
+    let conic = record.conic.map_inline(exact);
+    let [mut bounds, certain] = bounds(job, source, &ends);
+    if is_wrong {
+        let [xx, xy, yy] = conic;
+        let det = xx * yy - xy * xy;
+        let on_screen =
+            ProjectedGaussian { ellipse: [yy / det, -xy / det, xx / det], ..ends.on_screen };
+        let [of_conic, _] = self::bounds(job, source, &Projected { on_screen, ..ends });
+        bounds = bounds.hull(&of_conic);
+    }
+    if bounds.is_empty() {
+        return None;
+    }
+    let [x_of_camera, y_of_camera, depth] = record.place.map_inline(exact);
+    let splat = GaussianSplat {
+        index: record.index,
+        bounds,
+        center: Vector2::new(x, y),
+        conic,
+        alpha,
+        color: record.color.map_inline(exact),
+        depth,
+        key: exact(record.key),
+        reach: f32::INFINITY,
+    };
+    let beside = beside(source, own, Vector3::new(x_of_camera, y_of_camera, depth));
+    // Exact keys need no products to be known equal.
+    let products = [f64::NAN; 3];
+    Some(PossibleSplat { splat, certain, sound: true, products, beside, ellipse: None })
+}
+
+/// A stored number with as much room as the projected one has.
+fn around<P: Profile>(number: Ball<P>, own: Ball<P>) -> Ball<P> {
+    Ball::new(number.middle, number.radius + own.radius)
+}
+
+/// The pixels that an item may touch, and those that its bounds certainly hold.
 fn bounds<P: Profile>(
     job: &Job<'_>,
     source: &Source<'_, Ball<P>>,
-    (on_screen, alpha): (&ProjectedGaussian<Ball<P>>, Ball<P>),
+    Projected { on_screen, alpha, disc, .. }: &Projected<Ball<P>>,
 ) -> [Rect; 2] {
+    if let Some(disc) = disc {
+        let [least, most] = alpha.ends();
+        let bounds = |alpha, end| {
+            let reach = (source.reach(alpha), discs::SLACK);
+            source.bounds_of_disc(disc, Ball::ends, reach, end)
+        };
+        return [bounds(most, End::Most), bounds(least, End::Least)];
+    }
     let [x, y] = [on_screen.center.x, on_screen.center.y].map_inline(|at| at.ends());
     let ellipse = on_screen.ellipse.map_inline(Ball::ends);
     let [least, most] = alpha.ends();

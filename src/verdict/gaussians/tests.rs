@@ -25,7 +25,7 @@ use glam::{DVec3, Vec3};
 
 /// Splats around the origin, some of them clear, whose sizes are 10^-decades to 10^decades times
 /// this one.
-fn cloud(count: u64, size: f32, decades: f32) -> Scene {
+pub(super) fn cloud(count: u64, size: f32, decades: f32) -> Scene {
     let random = |i: u64, k: u64| 2.0 * unit(5, 31 * i + k) - 1.0;
     let vector = |i: u64, k: u64| Vec3::new(random(i, k), random(i, k + 1), random(i, k + 2));
     let scale = |i: u64| {
@@ -46,9 +46,15 @@ fn cloud(count: u64, size: f32, decades: f32) -> Scene {
     Scene::of_gaussians("cloud", Gaussians::new(arrays).unwrap().0)
 }
 
-fn camera(width: u32, height: u32) -> Camera {
+pub(super) fn camera(width: u32, height: u32) -> Camera {
     let pose = Pose { eye: DVec3::new(0.4, 0.3, 3.0), target: DVec3::ZERO, up: DVec3::Y };
     Camera::new(width, height, pose, Lens::FieldOfView(60.0)).unwrap()
+}
+
+/// The splats of a right client.
+fn possible_splats(job: &Job<'_>, source: &Source<'_, Ball<Gpu>>) -> PossibleSplats<Gpu> {
+    let nothing = Supposed::Nothing;
+    PossibleSplats::new(job, PossibleSplats::found(job, source, nothing), nothing)
 }
 
 /// A view of the cloud, one from within it, and one without perspective.
@@ -83,12 +89,12 @@ fn left_out(scene: &Scene, camera: &Camera) -> [usize; 2] {
     for (name, settings) in Settings::WORDS {
         let source = Source::<Ball<Gpu>>::new(scene, camera, settings);
         let whole = Job::new(scene, &index, camera, &exec);
-        let all = PossibleSplats::new(&whole, &source, Supposed::Nothing);
+        let all = possible_splats(&whole, &source);
         for piece in whole.grid().rects().into_iter().enumerate().step_by(3) {
             let (tile, own) = piece;
             let piece = [(tile, Rect { x1: own.x0 + 7, y1: own.y0 + 5, ..own })];
             let part = Some(Part { pieces: &piece, spread: 1.0 });
-            let some = PossibleSplats::new(&Job { part, ..whole }, &source, Supposed::Nothing);
+            let some = possible_splats(&Job { part, ..whole }, &source);
             let near = |splats: &PossibleSplats<Gpu>| -> Vec<u32> {
                 let places = splats.places(piece[0]).into_iter();
                 places.map(|place| splats.all[place].splat.index).collect()
@@ -196,7 +202,7 @@ fn enclosed(scene: &Scene, camera: &Camera) -> [u32; 3] {
     let source = Source::<Ball<Gpu>>::new(scene, camera, settings);
     let index = Index::default();
     let job = Job::new(scene, &index, camera, &exec);
-    let all = PossibleSplats::new(&job, &source, Supposed::Nothing);
+    let all = possible_splats(&job, &source);
     let (mut wide, mut of, mut narrowed) = (0, 0, 0);
     for possible in &all.all {
         let i = possible.splat.index as usize;
@@ -339,7 +345,7 @@ fn every_way_to_meet_a_disc_is_enclosed() {
         let source = Source::<Ball<Gpu>>::new(&scene, camera, settings);
         let index = Index::default();
         let job = Job::new(&scene, &index, camera, &exec);
-        let all = PossibleSplats::new(&job, &source, Supposed::Nothing);
+        let all = possible_splats(&job, &source);
         let (mut wide, mut of) = (0, 0);
         for possible in &all.all {
             let (i, bounds) = (possible.splat.index as usize, possible.splat.bounds);

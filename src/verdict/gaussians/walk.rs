@@ -91,7 +91,7 @@ impl<'a, P: Profile> Walker<'a, P> {
     }
 
     /// The fragment of a splat, if it may be drawn.
-    fn possible(&self, splat: &'a PossibleSplat<P>, at: (u32, u32)) -> Option<Possible<'a, P>> {
+    fn possible<'s>(&self, splat: &'s PossibleSplat<P>, at: (u32, u32)) -> Option<Possible<'s, P>> {
         let own = &splat.splat;
         if !holds(&own.bounds, at) {
             return None;
@@ -121,6 +121,11 @@ impl<'a, P: Profile> Walker<'a, P> {
 }
 
 impl<P: Profile> Walker<'_, P> {
+    /// Whether a splat certainly has a fragment at a pixel.
+    pub(super) fn certainly_draws(&self, splat: &PossibleSplat<P>, at: (u32, u32)) -> bool {
+        self.possible(splat, at).is_some_and(|one| one.drawn.certainly())
+    }
+
     /// Whether a fragment of this depth is not behind the surface.
     fn before_surface(&self, depth: Ball<P>, (x, y): (u32, u32)) -> Three {
         if matches!(self.supposed, Supposed::SurfaceNotTested | Supposed::SurfaceIgnored) {

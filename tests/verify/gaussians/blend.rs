@@ -94,7 +94,7 @@ impl Shared<'_> {
     }
 
     /// The splats from front to back.
-    fn sorted(&self) -> Vec<Splat> {
+    pub(super) fn sorted(&self) -> Vec<Splat> {
         let count = self.gaussians.len();
         let dispatched = match self.how.bug {
             Some(Bug::PaddingDrawn) => count.next_multiple_of(16),
@@ -196,22 +196,34 @@ impl Shared<'_> {
         let half = if self.how.has(Bug::NoHalfPixel) { 0.0 } else { 0.5 };
         let dx = splat.center[0] - (at.0 as f32 + half);
         let dy = splat.center[1] - (at.1 as f32 + half);
-        let power = self.power(splat.conic, dx, dy);
+        let met = match &splat.disc {
+            Some(disc) => {
+                let place = [at.0 as f32 + half, at.1 as f32 + half];
+                Some(self.meet(disc, (splat.center, splat.depth), place)?)
+            }
+            None => None,
+        };
+        let power = met.map_or_else(|| self.power(splat.conic, dx, dy), |(rho, _)| 0.5 * rho);
         let k = self.settings.cutoff;
         if !(power >= 0.0) || self.settings.support == Support::Ellipse && power > (k * k) / 2.0 {
             return None;
         }
-        let (alpha, most) =
-            (splat.alpha * self.density(splat.conic, dx, dy), self.settings.most_alpha);
+        let density = match met {
+            Some(_) => self.exp_minus(power),
+            None => self.density(splat.conic, dx, dy),
+        };
+        let (alpha, most) = (splat.alpha * density, self.settings.most_alpha);
         let alpha = if alpha > most { most } else { alpha };
         if alpha < self.settings.least_alpha {
             return None;
         }
-        let depth = match self.settings.order {
-            Order::Pixel => self.deepest(splat, at),
+        let depth = match (met, self.settings.order) {
+            (Some((_, depth)), _) => depth,
+            (None, Order::Pixel) => self.deepest(splat, at),
             _ => splat.depth,
         };
-        if self.opaque(at).is_some_and(|(opaque, _)| depth > opaque) {
+        let tested = !self.how.has(Bug::SurfaceNotTested);
+        if tested && self.opaque(at).is_some_and(|(opaque, _)| depth > opaque) {
             return None;
         }
         Some(Fragment { splat, alpha, depth })
@@ -219,7 +231,8 @@ impl Shared<'_> {
 
     /// Depth and colour of the surface at a pixel.
     fn opaque(&self, (x, y): (u32, u32)) -> Option<(f32, [f32; 3])> {
-        let (surface, [width, _]) = (self.scene.surface.as_ref()?, self.size);
+        let surface = self.scene.surface.as_ref().filter(|_| !self.how.has(Bug::SurfaceIgnored))?;
+        let [width, _] = self.size;
         let i = (y * width + x) as usize;
         let depth = surface.depths().values()[i];
         (depth != f32::INFINITY).then(|| (depth, surface.colors().values()[i]))
@@ -240,16 +253,19 @@ impl Shared<'_> {
     /// exp(-q/2).
     fn density(&self, conic: [f32; 3], dx: f32, dy: f32) -> f32 {
         const LOG2_E: f32 = std::f32::consts::LOG2_E;
-        match self.how.habit {
-            Habit::Exp2 => return core_math::exp2f(-self.power(conic, dx, dy) * LOG2_E),
-            Habit::ConicOfExp2 => {
-                let [a, b, c] = conic;
-                let [a, b, c] = [-0.5 * LOG2_E * a, -LOG2_E * b, -0.5 * LOG2_E * c];
-                return core_math::exp2f(a * (dx * dx) + c * (dy * dy) + b * (dx * dy));
-            }
-            _ => {}
+        if self.how.habit == Habit::ConicOfExp2 {
+            let [a, b, c] = conic;
+            let [a, b, c] = [-0.5 * LOG2_E * a, -LOG2_E * b, -0.5 * LOG2_E * c];
+            return core_math::exp2f(a * (dx * dx) + c * (dy * dy) + b * (dx * dy));
         }
-        let power = self.power(conic, dx, dy);
+        self.exp_minus(self.power(conic, dx, dy))
+    }
+
+    /// exp(-q/2) of a q/2.
+    fn exp_minus(&self, power: f32) -> f32 {
+        if matches!(self.how.habit, Habit::Exp2 | Habit::ConicOfExp2) {
+            return core_math::exp2f(-power * std::f32::consts::LOG2_E);
+        }
         core_math::expf(if self.how.has(Bug::ExpWithoutHalf) { -2.0 * power } else { -power })
     }
 
@@ -271,13 +287,18 @@ impl Shared<'_> {
     /// What is seen: the layers before the environment, as linear light.
     fn display(&self, pixel: &Pixel, (x, y): (u32, u32)) -> [f32; 3] {
         let mut color = pixel.color;
-        let opaque = self.opaque((x, y)).map(|(_, color)| color);
+        let seen = !self.how.has(Bug::SurfaceNotSeen);
+        let opaque = self.opaque((x, y)).filter(|_| seen).map(|(_, color)| color);
         let environment = self.scene.environment.as_ref();
         let around = || environment.map(|environment| environment.radiance(self.ray(x, y)));
         if let Some(light) = opaque.or_else(around) {
             let light = if self.space == Encoding::Srgb { light.map(encoded) } else { light };
             let times = if self.how.has(Bug::BackgroundTwice) { 2.0 } else { 1.0 };
-            color = [0, 1, 2].map(|c| color[c] + times * pixel.through * light[c]);
+            let through = match self.how.bug {
+                Some(Bug::SurfaceWhole) if opaque.is_some() => 1.0,
+                _ => pixel.through,
+            };
+            color = [0, 1, 2].map(|c| color[c] + times * through * light[c]);
         }
         let coded = self.space == Encoding::Srgb && !self.how.has(Bug::PictureNotDecoded);
         if coded { color.map(decoded) } else { color }

@@ -31,6 +31,8 @@ named! {
         QuaternionWLast,
         /// The scales of x and y are exchanged.
         ScalesExchanged,
+        /// The exponential is missing: the scales are what a PLY stores.
+        ScaleLogarithm,
         /// The covariance is kept in half floats.
         HalfCovariance,
         /// The Jacobian is not bounded beside the picture.
@@ -55,6 +57,8 @@ named! {
         PictureNotDecoded,
         /// The opacity is 1.
         OpacityIgnored,
+        /// The sigmoid is missing: the opacity is what a PLY stores.
+        OpacityLogit,
         /// alpha may be 1.
         AlphaUnbounded,
         /// alpha is bounded by 0.99.
@@ -89,6 +93,14 @@ named! {
         PremultipliedTwice,
         /// The background is added once too often.
         BackgroundTwice,
+        /// Splats are not compared with the surface's depth, and its colour is not shown.
+        SurfaceIgnored,
+        /// Splats are not compared with the surface's depth.
+        SurfaceNotTested,
+        /// The surface's colour is not multiplied by the transmittance.
+        SurfaceWhole,
+        /// The background is shown in place of the surface's colour.
+        SurfaceNotSeen,
         /// Weights are alpha, not T alpha.
         TransmittanceMissing,
         /// The rows are filled up to a multiple of 16 with splat 0.

@@ -7,12 +7,17 @@ mod discs;
 mod habit;
 mod page;
 mod project;
+mod ray;
+mod records;
 mod scenes;
 mod tests;
 
 use bug::Bug;
 use habit::Habit;
+use project::Splat;
+use scenes::Case;
 use splatref::frame::Frame;
+use splatref::method::gaussians::record::GaussianRecord;
 use splatref::method::gaussians::{BlendSpace, ColorBounds, Order, Settings, Support};
 use splatref::scene::gaussians::Encoding;
 use splatref::scene::{Camera, Gaussians, Scene};
@@ -124,6 +129,15 @@ fn configured(own: Settings, how: How) -> Settings {
         Bug::StopMissing => Settings { stop: 0.0, ..own },
         _ => own,
     }
+}
+
+/// The records of a client, in ascending index.
+fn records(case: &Case, how: How) -> Vec<GaussianRecord> {
+    let shared = Shared::new(&case.scene, &case.camera, case.settings, how);
+    let record = |splat: Splat| GaussianRecord { key: splat.key, ..splat.record };
+    let mut all: Vec<_> = shared.sorted().into_iter().map(record).collect();
+    all.sort_by_key(|record| record.index);
+    all
 }
 
 /// The planes of a client, stage by stage.

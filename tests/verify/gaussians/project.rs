@@ -1,6 +1,8 @@
 //! A Gaussian becomes an ellipse, a colour and a key, as a shader for each splat would do it.
 
+use super::ray::Disc;
 use super::{Bug, Habit, Shared};
+use splatref::method::gaussians::record::GaussianRecord;
 use splatref::method::gaussians::{ColorBounds, Order, Support};
 use splatref::scene::Projection;
 use splatref::scene::gaussians::Encoding;
@@ -22,9 +24,38 @@ pub(super) struct Splat {
     /// pixel.
     pub(super) inverse: [[f32; 3]; 3],
     pub(super) place: [f32; 3],
+    /// The disc, if discs meet rays.
+    pub(super) disc: Option<Disc>,
+    /// What it hands in; its key may be replaced by a step.
+    pub(super) record: GaussianRecord,
 }
 
-type Matrix = [[f32; 3]; 3];
+impl Splat {
+    /// The splat of a record, with what the record lacks.
+    fn new(
+        record: GaussianRecord,
+        (bounds, inverse, disc): ([i64; 4], Matrix, Option<Disc>),
+    ) -> Self {
+        let GaussianRecord { index, center, conic, alpha, color, key, place, .. } = record;
+        let [_, _, depth] = place;
+        Self {
+            index,
+            center,
+            conic,
+            alpha,
+            color,
+            depth,
+            key,
+            bounds,
+            inverse,
+            place,
+            disc,
+            record,
+        }
+    }
+}
+
+pub(super) type Matrix = [[f32; 3]; 3];
 
 fn transposed(m: Matrix) -> Matrix {
     [0, 1, 2].map(|i| [0, 1, 2].map(|j| m[j][i]))
@@ -59,7 +90,11 @@ impl Shared<'_> {
 
     fn scale(&self, i: usize) -> [f32; 3] {
         let [x, y, z] = self.gaussians.scale()[i].to_array();
-        if self.how.has(Bug::ScalesExchanged) { [y, x, z] } else { [x, y, z] }
+        match self.how.bug {
+            Some(Bug::ScalesExchanged) => [y, x, z],
+            Some(Bug::ScaleLogarithm) => [x, y, z].map(core_math::logf),
+            _ => [x, y, z],
+        }
     }
 
     /// Projects a splat; none if it is not drawn.
@@ -76,16 +111,17 @@ impl Shared<'_> {
         let axes = self.axes(i);
         let m = axes.map(|row| [0, 1, 2].map(|j| row[j] * scale[j]));
         let [j, center] = self.jacobian(place);
-        let v = self.unfiltered(m, j);
+        let covariance = self.covariance(m);
+        let v = self.unfiltered(m, covariance, j);
         let low_pass = kernel.low_pass;
         let [a, b, c] = [v[0] + low_pass, v[1], v[2] + low_pass];
         let det = self.difference(a, c, b, b);
-        if !(det > 0.0) {
-            return None;
-        }
+        let rays = self.meets_rays();
         let conic = self.conic([a, b, c], det);
-        let alpha = self.opacity(i) * self.compensation(v, det);
-        if !conic.iter().chain(&center[..2]).all(|part| part.is_finite()) {
+        let compensation = self.compensation(v, det);
+        let alpha = if rays { self.opacity(i) } else { self.opacity(i) * compensation };
+        let finite = conic.iter().chain(&center[..2]).all(|part| part.is_finite());
+        if !(rays || det > 0.0 && finite) {
             return None;
         }
         let from_eye = [px - self.eye[0], py - self.eye[1], pz - self.eye[2]];
@@ -98,11 +134,30 @@ impl Shared<'_> {
         if self.how.has(Bug::CentersWhole) {
             center = center.map(|at| at.floor() + 0.5);
         }
-        let bounds = self.bounds(center, [a, b, c], alpha)?;
+        let disc = if rays { Some(self.disc(m, place, center)?) } else { None };
+        let bounds = match &disc {
+            Some(disc) => self.bounds_of_disc(disc, center, alpha)?,
+            None => self.bounds(center, [a, b, c], alpha)?,
+        };
         let color = self.color(i, from_eye);
         let inverse = self.inverse(axes, scale);
-        let index = i as u32;
-        Some(Splat { index, center, conic, alpha, color, depth: t, key, bounds, inverse, place })
+        let [[xx, xy, xz], [_, yy, yz], [.., zz]] = covariance;
+        let record = GaussianRecord {
+            place,
+            key,
+            color,
+            alpha,
+            conic,
+            compensation,
+            ellipse: [a, b, c],
+            distance,
+            unfiltered: v,
+            index: i as u32,
+            covariance: [xx, xy, xz, yy, yz, zz],
+            center,
+            bounds: bounds.map(|end| end as u32),
+        };
+        Some(Splat::new(record, (bounds, inverse, disc)))
     }
 
     pub(super) fn perspective(&self) -> bool {
@@ -110,7 +165,7 @@ impl Shared<'_> {
     }
 
     /// a b - c d.
-    fn difference(&self, a: f32, b: f32, c: f32, d: f32) -> f32 {
+    pub(super) fn difference(&self, a: f32, b: f32, c: f32, d: f32) -> f32 {
         self.add_product(a * b, -c, d)
     }
 
@@ -151,29 +206,37 @@ impl Shared<'_> {
         }
     }
 
-    /// V0 from the axes, which are the columns of a matrix, and the Jacobian.
-    fn unfiltered(&self, m: Matrix, [jx, jxz, jy, jyz]: [f32; 4]) -> [f32; 3] {
+    /// The rotation into the camera frame.
+    pub(super) fn turn(&self) -> Matrix {
         let w = self.frame.map(|[a, b, c, _]| [a, b, c]);
-        let w = if self.how.has(Bug::ViewTransposed) { transposed(w) } else { w };
+        if self.how.has(Bug::ViewTransposed) { transposed(w) } else { w }
+    }
+
+    /// S' from the axes, which are the columns of a matrix.
+    fn covariance(&self, m: Matrix) -> Matrix {
+        let w = self.turn();
+        if matches!(self.how.habit, Habit::AxesInCamera | Habit::AxesInPixels) {
+            let turned = self.by_transposed(w, transposed(m));
+            return self.by_transposed(turned, turned);
+        }
+        let m = if self.how.has(Bug::CovarianceReversed) { transposed(m) } else { m };
+        let world = self.by_transposed(m, m);
+        let world = match self.how.bug {
+            Some(Bug::HalfCovariance) => world.map(|row| row.map(half)),
+            _ => world,
+        };
+        self.by_transposed(w, self.by_transposed(w, world))
+    }
+
+    /// V0 from the axes, or from S', and the Jacobian.
+    fn unfiltered(&self, m: Matrix, s: Matrix, [jx, jxz, jy, jyz]: [f32; 4]) -> [f32; 3] {
         // The two rows of J.
         let j = [[jx, 0.0, jxz], [0.0, jy, jyz]];
         let squares = |[x, y]: [[f32; 3]; 2]| [self.dot(x, x), self.dot(x, y), self.dot(y, y)];
         if self.how.habit == Habit::AxesInPixels {
-            let columns = transposed(self.by_transposed(w, transposed(m)));
+            let columns = transposed(self.by_transposed(self.turn(), transposed(m)));
             return squares(j.map(|row| columns.map(|column| self.dot(row, column))));
         }
-        let s = if self.how.habit == Habit::AxesInCamera {
-            let turned = self.by_transposed(w, transposed(m));
-            self.by_transposed(turned, turned)
-        } else {
-            let m = if self.how.has(Bug::CovarianceReversed) { transposed(m) } else { m };
-            let world = self.by_transposed(m, m);
-            let world = match self.how.bug {
-                Some(Bug::HalfCovariance) => world.map(|row| row.map(half)),
-                _ => world,
-            };
-            self.by_transposed(w, self.by_transposed(w, world))
-        };
         let [x, y] = j.map(|row| s.map(|column| self.dot(row, column)));
         [self.dot(x, j[0]), self.dot(x, j[1]), self.dot(y, j[1])]
     }
@@ -191,7 +254,14 @@ impl Shared<'_> {
     }
 
     fn opacity(&self, i: usize) -> f32 {
-        if self.how.has(Bug::OpacityIgnored) { 1.0 } else { self.gaussians.opacity()[i] }
+        let opacity = self.gaussians.opacity()[i];
+        match self.how.bug {
+            Some(Bug::OpacityIgnored) => 1.0,
+            // As a PLY stores it; that of 1 is as large as trained ones get.
+            Some(Bug::OpacityLogit) if opacity < 1.0 => core_math::logf(opacity / (1.0 - opacity)),
+            Some(Bug::OpacityLogit) => 16.0,
+            _ => opacity,
+        }
     }
 
     fn compensation(&self, [a, b, c]: [f32; 3], det: f32) -> f32 {
@@ -245,7 +315,7 @@ impl Shared<'_> {
     }
 
     /// The pixels, or the tiles, of the picture within an extent of a centre.
-    fn pixels(&self, center: [f64; 2], extent: [f64; 2], tile: i64) -> Option<[i64; 4]> {
+    pub(super) fn pixels(&self, center: [f64; 2], extent: [f64; 2], tile: i64) -> Option<[i64; 4]> {
         let wide = tile as f64;
         let side = |axis: usize| {
             let [low, high] = [center[axis] - extent[axis], center[axis] + extent[axis]];

@@ -32,7 +32,7 @@ pub(super) fn suite(wanted: impl Fn(&str) -> bool) -> Vec<Case> {
 }
 
 /// The scenes of the suite in which some bug shows best.
-const SOME: [&str; 20] = [
+const SOME: [&str; 24] = [
     "rotation-inverse",
     "low-pass-0.1",
     "compensation-floor",
@@ -50,6 +50,10 @@ const SOME: [&str; 20] = [
     "colors-below-0",
     "count-17",
     "background",
+    "surface-cuts",
+    "surface-seen",
+    "surface-hides",
+    "disc-tilted",
     "principal-point",
     "pixel-aspect",
     "orthographic",
