@@ -79,7 +79,7 @@ mod tests {
         ) {
             let (fresh, flagged): (Vec<u64>, Vec<u64>) = all.iter().partition(|&&id| id % dense == 0);
             // Pass 4 draws what pass 3 draws, and some of what pass 1 draws.
-            let draws = |id: &&u64| **id % dense == 0 || **id % kept == 0;
+            let draws = |id: &&u64| id.is_multiple_of(dense) || id.is_multiple_of(kept);
             let selected: Vec<u64> = all.iter().filter(draws).copied().collect();
             let ranks = Ranks::new(&flagged, &fresh, &selected);
             for (rank, id) in (0..).zip(&all) {
