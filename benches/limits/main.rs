@@ -104,8 +104,6 @@ struct Row {
 
 /// The stages of a method, in their order.
 fn rows(scene: &Scene, small: &Scene, method: Method, exec: &Exec) -> Result<Vec<Row>> {
-    /// A stage that takes less was run by the stage before it.
-    const SOME: Duration = Duration::from_micros(50);
     let work = work(small, method, exec)?;
     let mut rows: Vec<Row> = Vec::new();
     for (stage, time) in measured(scene, method, exec)? {
