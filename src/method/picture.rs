@@ -24,9 +24,8 @@ pub struct Picture<R> {
     /// - A lap holds the work of its stage and no other work. A fast path may run several stages as
     ///   one loop; one lap then holds them all, under all their names: `blending and averaging`.
     ///   Every stage that ran is in exactly one lap.
-    /// - The splats of a tile are gathered in the lap of the stage that draws them. Planes of the
-    ///   picture are written in the lap of the last stage that runs on a tile or a row before
-    ///   shading.
+    /// - The splats of a tile are gathered in the lap of the stage that draws them. The planes of the
+    ///   picture are written in the lap of the stage that finishes a tile or a row of them.
     /// - Stages that run one after the other on each tile share the wall time in proportion to their
     ///   time on all tiles.
     /// - No lap holds the planes of stages that [`Session::define`](super::Session::define) keeps.
