@@ -78,7 +78,7 @@ fn scene(shape: &str, count: usize, exec: &Exec) -> Result<Vec<Row>> {
     let quiet = |_: &str, _, _| ();
     let all = candidates(&file, None)?.into_iter().filter(|candidate| !candidate.imitates);
     let (mut bench, all, _) = Bench::load(all.collect(), exec, &quiet)?;
-    let ready = bench.visit(&all[0], &quiet)?.ready;
+    let ready = bench.visit(&all[0], exec, &quiet)?.ready;
     let camera = ready.camera;
     let truth = truths::Known::about(&file, &ready.loaded.scene, exec, &quiet)?;
     let truth = truth.still(&camera, exec, &quiet)?;
@@ -86,7 +86,7 @@ fn scene(shape: &str, count: usize, exec: &Exec) -> Result<Vec<Row>> {
         .into_iter()
         .find(|loss| loss.figure == "rmse")
         .unwrap_or_else(|| losses()[0].clone());
-    let measure = |bench: &mut Bench<'_>, budget| {
+    let measure = |bench: &mut Bench, budget| {
         choose(bench, &all, &truth, budget, &rmse as &Loss, exec, &quiet)
     };
     let errors: Vec<f64> =
@@ -97,8 +97,8 @@ fn scene(shape: &str, count: usize, exec: &Exec) -> Result<Vec<Row>> {
     let mut rows = Vec::new();
     for most in [f64::midpoint(least, median), median] {
         let budget = Budget::Error(most);
-        let timed = exhaustive(&mut bench, &all, (budget, &errors))?;
-        let second = exhaustive(&mut bench, &all, (budget, &errors))?;
+        let timed = exhaustive(&mut bench, &all, (budget, &errors), exec)?;
+        let second = exhaustive(&mut bench, &all, (budget, &errors), exec)?;
         let known = measure(&mut bench, budget)?;
         let (planned, small) =
             (budget.ranked(&known), known.iter().filter(|k| !k.is_whole).count());
@@ -119,14 +119,15 @@ fn scene(shape: &str, count: usize, exec: &Exec) -> Result<Vec<Row>> {
 
 /// Every candidate's median time, by turns. Those that may be the fastest within the error have more turns.
 fn exhaustive(
-    bench: &mut Bench<'_>,
+    bench: &mut Bench,
     all: &[Candidate],
     (budget, errors): (Budget, &[f64]),
+    exec: &Exec,
 ) -> Result<Vec<Known>> {
     let mut records: Vec<Record> = all.iter().map(Record::new).collect();
     for round in 0..time::ROUNDS {
         for i in time::order(round, all.len()) {
-            time::turn(bench, &all[i], round, &mut records[i].times)?;
+            time::turn(bench, &all[i], round, &mut records[i].times, exec)?;
         }
     }
     let time = |record: &Record| record.quartiles().map_or(f64::INFINITY, |[_, median, _]| median);
@@ -134,6 +135,6 @@ fn exhaustive(
     let mut known: Vec<Known> = both
         .map(|(record, loss)| Known { time: time(record), loss: *loss, is_whole: true })
         .collect();
-    timed(bench, all, &budget.hopeful(&known), &mut known, &|_, _, _| ())?;
+    timed(bench, all, &budget.hopeful(&known), &mut known, exec, &|_, _, _| ())?;
     Ok(known)
 }

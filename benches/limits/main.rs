@@ -97,33 +97,25 @@ fn main() -> Result<()> {
 
 /// A stage, or several that the fast path runs in one: its time, and what it must do.
 struct Row {
-    stages: String,
+    stages: &'static str,
     time: Duration,
     work: Work,
 }
 
-/// The stages of a method, in their order.
+/// The laps of a method, in their order.
 fn rows(scene: &Scene, small: &Scene, method: Method, exec: &Exec) -> Result<Vec<Row>> {
-    /// A stage that takes less was run by the stage before it.
-    const SOME: Duration = Duration::from_micros(50);
-    let work = work(small, method, exec)?;
-    let mut rows: Vec<Row> = Vec::new();
-    for (stage, time) in measured(scene, method, exec)? {
-        let Some((_, own)) = work.iter().find(|(name, _)| *name == stage) else { continue };
-        match rows.last_mut() {
-            Some(before) if time < SOME => {
-                before.stages += &format!(", {stage}");
-                before.time += time;
-                before.work.operations = before.work.operations.plus(own.operations);
-                before.work.bytes += own.bytes;
-            }
-            _ => rows.push(Row { stages: stage.to_owned(), time, work: *own }),
+    let all = work(small, method, exec)?;
+    let mut rows = Vec::new();
+    for (stages, time) in measured(scene, method, exec)? {
+        let own = all.iter().filter(|(name, _)| stages.split(" and ").any(|stage| stage == *name));
+        if let Some(work) = own.map(|(_, work)| *work).reduce(Work::plus) {
+            rows.push(Row { stages, time, work });
         }
     }
     Ok(rows)
 }
 
-/// The median time of each stage, of the fast path.
+/// The median time of each lap, of the fast path.
 fn measured(scene: &Scene, method: Method, exec: &Exec) -> Result<Vec<(&'static str, Duration)>> {
     let mut session = Session::new(scene, method, exec)?;
     let mut frames = Vec::new();
@@ -147,6 +139,14 @@ fn measured(scene: &Scene, method: Method, exec: &Exec) -> Result<Vec<(&'static 
 struct Work {
     operations: Operations,
     bytes: f64,
+}
+
+impl Work {
+    /// Both.
+    fn plus(self, other: Self) -> Self {
+        let operations = self.operations.plus(other.operations);
+        Self { operations, bytes: self.bytes + other.bytes }
+    }
 }
 
 /// What each stage does in a picture of a part of the scene, times the parts.

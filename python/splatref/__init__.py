@@ -11,9 +11,10 @@ True
 - `Scene`, `Camera`: what is drawn, from files or arrays, and from where.
 - `render`, `explain`, `truth`, `read`: pictures, as arrays by name.
 - `verify`: whether your renderer's planes are right, and the likely mistake.
+- `study`: the error and the time of every method and setting.
 - `compare`, `metrics`: equality of planes, and errors that rank methods.
 - `surfels`: orders of points. `laws`: compositing laws against your function.
-- `cluster`: pictures and goldens on a Dask cluster.
+- `cluster`: pictures, studies and goldens on a Dask cluster.
 - `methods`: methods, settings and planes by name. `testing`: assertions and fixtures for pytest.
 """
 
@@ -25,6 +26,7 @@ from ._compare import Comparison, compare, sha256
 from ._picture import Picture, Planes, explain, read, render, truth
 from ._scene import Camera, ResolvedCamera, Scene
 from ._splatref import __version__
+from ._study import Candidate, Study, study
 from ._verdict import DOUBTS, Stage, Verdict, Worst, verify
 
 NO_ID = 0xFFFF_FFFF
@@ -32,6 +34,7 @@ NO_ID = 0xFFFF_FFFF
 
 __all__ = [
     "Camera",
+    "Candidate",
     "Comparison",
     "DOUBTS",
     "NO_ID",
@@ -40,6 +43,7 @@ __all__ = [
     "ResolvedCamera",
     "Scene",
     "Stage",
+    "Study",
     "Verdict",
     "Worst",
     "__version__",
@@ -52,6 +56,7 @@ __all__ = [
     "read",
     "render",
     "sha256",
+    "study",
     "surfels",
     "testing",
     "truth",

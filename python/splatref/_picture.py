@@ -101,7 +101,7 @@ class Picture(Planes):
 
     @property
     def times(self) -> dict[str, float]:
-        """Seconds of each stage."""
+        """Seconds of each stage. Stages that run as one loop have one entry: `blending and averaging`."""
         times: dict[str, float] = {}
         for stage, seconds in self._drawn.times:
             times[stage] = times.get(stage, 0.0) + seconds

@@ -102,6 +102,12 @@ fn sorted(settings: &[(String, String)]) -> PyResult<[Choice; 3]> {
 }
 
 impl Choices {
+    /// The name of the chosen method, if one is chosen.
+    pub(crate) fn named(&self) -> PyResult<Option<&'static str>> {
+        let name = self.method.as_deref().map(Method::by_name).transpose().map_err(raised)?;
+        Ok(name.map(|method| method.name()))
+    }
+
     /// The scene file with these choices.
     pub(crate) fn on(
         &self,
@@ -116,9 +122,8 @@ impl Choices {
             file.check_frame(frame).map_err(raised)?;
             file.frame = frame;
         }
-        let name = self.method.as_deref().map(Method::by_name).transpose().map_err(raised)?;
+        let name = self.named()?;
         let [method, groups, output] = sorted(&self.settings)?;
-        let name = name.map(|method| method.name());
         file.choose_method(name, &method, &groups).map_err(raised)?;
         file.output = output.on(file.output, "the output").map_err(raised)?;
         Ok(file)

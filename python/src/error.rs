@@ -44,7 +44,7 @@ fn without_line(what: &str) -> &str {
 }
 
 /// Options of the command line by their names in Python: `--depth-storage` is `depth_storage`.
-fn in_python(what: &str) -> String {
+pub(crate) fn in_python(what: &str) -> String {
     let mut text = String::with_capacity(what.len());
     let mut rest = what;
     while let Some(at) = rest.find("--") {

@@ -14,6 +14,7 @@ mod render;
 mod rows;
 mod scene;
 mod setup;
+mod study;
 mod surfels;
 mod verify;
 
@@ -28,6 +29,7 @@ fn _splatref(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<render::Drawn>()?;
     module.add_class::<render::State>()?;
     module.add_class::<verify::Judged>()?;
+    module.add_class::<study::Study>()?;
     for function in [
         wrap_pyfunction!(render::render, module)?,
         wrap_pyfunction!(render::finish, module)?,
@@ -55,6 +57,7 @@ fn _splatref(module: &Bound<'_, PyModule>) -> PyResult<()> {
         wrap_pyfunction!(call::ask, module)?,
         wrap_pyfunction!(choose::views, module)?,
         wrap_pyfunction!(render::resolve, module)?,
+        wrap_pyfunction!(study::front_of, module)?,
     ] {
         module.add_function(function)?;
     }

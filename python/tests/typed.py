@@ -13,6 +13,9 @@ verdict = sr.verify(scene, camera, {"visibility.Z": depth, "rgb": picture["RGB"]
 right: bool = verdict.right
 worst: sr.Worst | None = verdict.worst
 error: float = sr.metrics.flip(picture, picture["RGB"])
+found: sr.Study = sr.study(scene, camera, method="ewa", truth="bunny.ply", epsilon="1.5r")
+front: list[sr.Candidate] = found.front("ssim")
+milliseconds: float | None = front[0].time
 order: np.ndarray = sr.surfels.greedy(depth, count=10)
 lawful: sr.laws.Counterexample | None = sr.laws.over(lambda below, alpha_below, alpha, color: (color, alpha))
 sr.testing.assert_right(scene, camera, picture, promise="ieee")

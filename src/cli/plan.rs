@@ -1,7 +1,6 @@
 //! `splatref plan`: chooses the best method and settings within a budget.
 
-use super::study::loss;
-use super::tried::{Loaded, Tried, truth_in_words};
+use super::tried::Tried;
 use super::words::quoted;
 use super::{Ended, Ending, output, progress, report, say};
 use splatref::compare::metrics::METRICS;
@@ -10,7 +9,8 @@ use splatref::io::scene_file::{GroupChoice, MethodChoice};
 use splatref::method::Method;
 use splatref::setting::Setting;
 use splatref::study::plan::{Budget, Known as Row, choose};
-use splatref::study::run::Loss;
+use splatref::study::run::measure::loss;
+use splatref::study::run::{Loss, Setup};
 use splatref::study::sweep::Candidate;
 use std::io::Write;
 use std::path::{Path, PathBuf};
@@ -64,7 +64,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let exec = args.tried.exec()?;
     let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
-    let Loaded { mut bench, mut candidates, known, camera, .. } =
+    let Setup { mut bench, mut candidates, known, camera, .. } =
         args.tried.load(&scene, &exec, &steps)?;
     candidates.retain(|candidate| !candidate.imitates);
     let truth = known.still(&camera, &exec, &show)?;
@@ -72,7 +72,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let rows = choose(&mut bench, &candidates, &truth, budget, &args.metric, &exec, &show)?;
     drop(steps);
     report::line("scene", format!("{}, {} x {}", scene.name, camera.width, camera.height));
-    report::line("truth", truth_in_words(&known, &truth));
+    report::line("truth", known.in_words(&truth));
     let small = rows.iter().filter(|row| !row.is_whole).count();
     report::line(
         "tried",
@@ -205,6 +205,6 @@ fn still(name: &str) -> Result<Loss, String> {
         Ok(loss) if !METRICS.iter().any(|metric| metric.name == name) => {
             Err(format!("{} is measured on sequences; give a metric of one picture", loss.figure))
         }
-        other => other,
+        other => other.map_err(|error| error.to_string()),
     }
 }

@@ -1,17 +1,16 @@
 //! `splatref study`: measures every method and setting against the true picture and the clock.
 
-use super::tried::{Loaded, Tried, truth_in_words};
+use super::tried::Tried;
 use super::{Ended, Ending, atlas, claims, output, progress, report, say};
-use splatref::compare::digest;
-use splatref::frame::{Exec, Frame, Image};
+use splatref::frame::{Exec, Frame};
+use splatref::io::png;
 use splatref::io::replace::write_atomically;
 use splatref::io::scene_file::SceneFile;
-use splatref::io::{png, provenance};
 use splatref::study::report::chart::chart;
 use splatref::study::report::{csv, page};
-use splatref::study::run::measure::{losses, measure};
+use splatref::study::run::measure::{loss, losses, measure};
 use splatref::study::run::truths::Truths;
-use splatref::study::run::{Bench, LeftOut, Loss, Record, Study, Subject, time};
+use splatref::study::run::{Bench, LeftOut, Loss, Record, Setup, Study, Subject, time};
 use splatref::study::sweep::Candidate;
 use splatref::{Error, Result};
 use std::fs;
@@ -78,20 +77,10 @@ fn scene(args: &Args) -> Ended {
     let folder = Folder::make(args, &scene)?;
     let steps = progress::Steps::new("loading");
     let show = |what: &str, done, of| steps.show(what, done, of);
-    let Loaded { mut bench, candidates, left_out, known, camera } =
-        tried.load(&scene, &exec, &steps)?;
-    let truths = known.pictures(&camera, &exec, &show)?;
-    let truth = truth_in_words(&known, &truths.still);
-    let ready = &bench.visit(&candidates[0], &show)?.ready;
-    let of = Subject {
-        splatref: env!("CARGO_PKG_VERSION").into(),
-        scene: scene.name.clone(),
-        scene_sha256: ready.identity()?,
-        size: [camera.width, camera.height],
-        camera: provenance::camera(&camera, ready.loaded.scene.offset),
-        truth,
-        truth_sha256: digest::sha256([("truth", &Image::from(&truths.still.frame))]),
-    };
+    let mut setup = tried.load(&scene, &exec, &steps)?;
+    let truths = setup.known.pictures(&setup.camera, &exec, &show)?;
+    let of = setup.subject(&truths, &exec)?;
+    let Setup { mut bench, candidates, left_out, .. } = setup;
     let mut study = folder.begin(of, &candidates, left_out, args.resume, &exec)?;
     folder.keep_truth(&truths.still.frame)?;
 
@@ -122,7 +111,7 @@ impl Job<'_> {
     /// any case.
     fn measure(
         &self,
-        bench: &mut Bench<'_>,
+        bench: &mut Bench,
         candidates: &[Candidate],
         truths: &Truths,
         study: &mut Study,
@@ -146,12 +135,7 @@ impl Job<'_> {
     }
 
     /// Times all measured candidates, round by round.
-    fn time(
-        &self,
-        bench: &mut Bench<'_>,
-        candidates: &[Candidate],
-        study: &mut Study,
-    ) -> Result<()> {
+    fn time(&self, bench: &mut Bench, candidates: &[Candidate], study: &mut Study) -> Result<()> {
         for round in 0..time::ROUNDS {
             let order = time::order(round, candidates.len());
             for (done, &i) in order.iter().enumerate() {
@@ -163,7 +147,7 @@ impl Job<'_> {
                 }
                 let count = candidates.len() as u64;
                 self.steps.show("timing", round * count + done as u64, time::ROUNDS * count);
-                time::turn(bench, &candidates[i], round, times)?;
+                time::turn(bench, &candidates[i], round, times, self.exec)?;
             }
             self.folder.keep(study)?;
         }
@@ -284,15 +268,6 @@ fn span(text: &str) -> std::result::Result<Duration, String> {
         Duration::try_from_secs_f64(number * seconds).ok()
     });
     unit.filter(|span| !span.is_zero()).ok_or_else(|| "give a time such as 60s, 5m or 1h".into())
-}
-
-/// Finds a metric by its name.
-pub(super) fn loss(name: &str) -> std::result::Result<Loss, String> {
-    let all = losses();
-    all.iter().find(|loss| loss.figure == name).cloned().ok_or_else(|| {
-        let names: Vec<&str> = all.iter().map(|loss| loss.figure).collect();
-        format!("give one of {}", names.join(", "))
-    })
 }
 
 /// Prints the table on stdout, the fastest first.

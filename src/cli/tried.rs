@@ -4,11 +4,7 @@ use super::options::{ExecOptions, SceneOptions};
 use super::{progress, warn};
 use splatref::frame::Exec;
 use splatref::io::scene_file::SceneFile;
-use splatref::scene::Camera;
-use splatref::study::run::truths::Known;
-use splatref::study::run::{Bench, LeftOut};
-use splatref::study::sweep::{Candidate, candidates};
-use splatref::study::truth::Truth;
+use splatref::study::run::Setup;
 use splatref::{Error, Result};
 use std::path::{Path, PathBuf};
 
@@ -26,15 +22,6 @@ pub(super) struct Tried {
     exec: ExecOptions,
     #[command(flatten)]
     options: SceneOptions,
-}
-
-/// Everything that is loaded before anything is measured.
-pub(super) struct Loaded<'e> {
-    pub(super) bench: Bench<'e>,
-    pub(super) candidates: Vec<Candidate>,
-    pub(super) left_out: Vec<LeftOut>,
-    pub(super) known: Known,
-    pub(super) camera: Camera,
 }
 
 impl Tried {
@@ -59,26 +46,17 @@ impl Tried {
     }
 
     /// Loads the scene and its candidates.
-    pub(super) fn load<'e>(
+    pub(super) fn load(
         &self,
         scene: &SceneFile,
-        exec: &'e Exec,
+        exec: &Exec,
         steps: &progress::Steps,
-    ) -> Result<Loaded<'e>> {
+    ) -> Result<Setup> {
         let show = |what: &str, done, of| steps.show(what, done, of);
-        let all = candidates(scene, self.options.chosen_method())?;
-        let (mut bench, candidates, left_out) = Bench::load(all, exec, &show)?;
-        let other = self.truth.as_deref().map(SceneFile::open).transpose()?;
-        let shown = other.as_ref().unwrap_or(scene);
-        let ready = bench.visit(&candidates[0], &show)?.ready;
-        let known = Known::about(shown, &ready.loaded.scene, exec, &show)?;
-        let camera = ready.camera;
-        warn(&ready.loaded.warnings);
-        Ok(Loaded { bench, candidates, left_out, known, camera })
+        let truth = self.truth.as_deref().map(SceneFile::open).transpose()?;
+        let only = self.options.chosen_method();
+        let setup = Setup::load(scene, only, truth.as_ref(), exec, &show)?;
+        warn(&setup.warnings);
+        Ok(setup)
     }
-}
-
-/// How the truth is computed, and why it is no better.
-pub(super) fn truth_in_words(known: &Known, truth: &Truth) -> String {
-    known.unknown().map_or_else(|| truth.how.to_string(), |why| format!("{} ({why})", truth.how))
 }

@@ -65,6 +65,7 @@
 mod algorithm;
 pub mod blue;
 pub mod buffer_formats;
+pub(crate) mod clock;
 pub(crate) mod decisions;
 pub mod deferred;
 pub mod ewa;
@@ -94,8 +95,9 @@ pub mod transparent;
 pub mod transparent_hq;
 
 pub use algorithm::{Algorithm, Job};
+pub use clock::Laps;
 pub use input_planes::InputPlanes;
-pub use picture::{Laps, Picture};
+pub use picture::Picture;
 pub use records::Records;
 pub use session::Session;
 pub use stage::{Holds, PlaneRow, Stage, When};

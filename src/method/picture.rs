@@ -1,6 +1,7 @@
 //! The result that every method leaves: named planes, counts and times.
 
 use super::algorithm::Job;
+use super::clock::{Clock, Laps, Work, spend};
 use super::surface::{ALPHA, DEPTH, ID, NORMAL, SHADED, WEIGHT};
 use crate::composite::over::Blend;
 use crate::frame::{Frame, Framebuffer, NamedPlane, Plane, Pool, Rect, Wanted};
@@ -8,7 +9,6 @@ use crate::index::seen::Seen;
 use crate::number::{Exact, MapInline, Real, Truth};
 use crate::shade::phong::Shader;
 use crate::splat::{Tally, View};
-use std::time::{Duration, Instant};
 
 /// A picture, with the counts and times of its drawing.
 #[derive(Clone, Debug)]
@@ -19,7 +19,16 @@ pub struct Picture<R> {
     pub frame: Frame<R>,
     /// How many surfels were drawn or dropped, and why.
     pub tally: Tally,
-    /// The wall time of each stage, in order.
+    /// The laps, in the order of the stages: the name of each stage, and its wall time.
+    ///
+    /// - A lap holds the work of its stage and no other work. A fast path may run several stages as
+    ///   one loop; one lap then holds them all, under all their names: `blending and averaging`.
+    ///   Every stage that ran is in exactly one lap.
+    /// - The splats of a tile are gathered in the lap of the stage that draws them. The planes of the
+    ///   picture are written in the lap of the stage that finishes a tile or a row of them.
+    /// - Stages that run one after the other on each tile share the wall time in proportion to their
+    ///   time on all tiles.
+    /// - No lap holds the planes of stages that [`Session::define`](super::Session::define) keeps.
     pub timings: Laps,
     /// What the frame saw, if its method carries that to the next frame.
     pub seen: Option<Seen>,
@@ -58,6 +67,7 @@ pub(crate) fn shaded<R: Exact>(
     color: Option<Plane<[R; 3]>>,
 ) -> (Plane<[R; 3]>, Plane<R>) {
     let Job { scene, camera, exec, window, .. } = *job;
+    spend(Work::Shade);
     let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
     let shader = shader.from_pixel([window.x0, window.y0]);
     let color = shader.shade(depth, normal, None, color, exec);
@@ -83,6 +93,7 @@ pub(crate) fn before_environment<R: Exact>(
     if behind.is_none() && environment.is_none() {
         return (color, alpha);
     }
+    spend(Work::Environment);
     let rows = color.rows_mut().zip(alpha.rows_mut());
     job.exec.ordered((y0..).zip(rows).collect(), |(y, (colors, alphas)): (u32, _)| {
         let colors: &mut [[R; 3]] = colors;
@@ -120,94 +131,5 @@ pub(crate) fn framebuffer(job: &Job<'_>, wanted: Wanted, pool: &mut Pool) -> Fra
         color: wanted.color.then(|| pool.triple(size)),
         stencil: None,
         margin: None,
-    }
-}
-
-/// The stages in order, and the wall time of each.
-pub type Laps = Vec<(&'static str, Duration)>;
-
-/// Divides the wall time among stages in proportion to their time in all tiles.
-pub(crate) fn wall_shares<const N: usize>(
-    wall: Duration,
-    tiles: &[[Duration; N]],
-) -> [Duration; N] {
-    let sums: [Duration; N] = std::array::from_fn(|i| tiles.iter().map(|tile| tile[i]).sum());
-    let total: Duration = sums.iter().sum();
-    sums.map_inline(|part| match total.as_secs_f64() {
-        0.0 => Duration::ZERO,
-        total => wall.mul_f64(part.as_secs_f64() / total),
-    })
-}
-
-/// Measures the wall times of stages.
-pub(crate) struct Clock {
-    start: Instant,
-    laps: Laps,
-}
-
-impl Default for Clock {
-    fn default() -> Self {
-        Self { start: Instant::now(), laps: Vec::new() }
-    }
-}
-
-impl Clock {
-    /// A clock for stages that were timed elsewhere.
-    pub(crate) fn from_laps(laps: Laps) -> Self {
-        Self { laps, ..Self::default() }
-    }
-
-    pub(crate) fn restart(&mut self) {
-        self.start = Instant::now();
-    }
-
-    /// The stages and their wall times.
-    pub(crate) fn into_laps(self) -> Laps {
-        self.laps
-    }
-
-    /// Ends stages that ran one after the other in every tile. Each stage gets a share of the wall
-    /// time in proportion to its time in all tiles.
-    pub(crate) fn shares<const N: usize>(
-        &mut self,
-        names: [&'static str; N],
-        tiles: &[[Duration; N]],
-    ) {
-        let shares = wall_shares(self.start.elapsed(), tiles);
-        for (name, time) in names.into_iter().zip(shares) {
-            self.add(name, time);
-        }
-        self.start = Instant::now();
-    }
-
-    /// Ends work on a stage that began at the last call or at `restart`.
-    pub(crate) fn lap(&mut self, name: &'static str) {
-        self.add(name, self.start.elapsed());
-        self.start = Instant::now();
-    }
-
-    /// Adds time to a stage, which may have been worked on before.
-    pub(crate) fn add(&mut self, name: &'static str, time: Duration) {
-        match self.laps.iter_mut().find(|(stage, _)| *stage == name) {
-            Some((_, sum)) => *sum += time,
-            None => self.laps.push((name, time)),
-        }
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_stage_in_two_parts_has_one_lap() {
-        let ms = Duration::from_millis;
-        let mut clock = Clock::from_laps(vec![("visibility", ms(1))]);
-        clock.add("attributes", ms(2));
-        clock.shares(["difference", "attributes"], &[[ms(0); 2]]);
-        clock.add("difference", ms(8));
-        clock.add("attributes", ms(16));
-        let laps = [("visibility", ms(1)), ("attributes", ms(18)), ("difference", ms(8))];
-        assert_eq!(clock.into_laps(), laps);
     }
 }

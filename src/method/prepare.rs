@@ -1,6 +1,7 @@
 //! Project the surfels and bin the splats into tiles: the first step of every method.
 
 use super::algorithm::Job;
+use super::clock::{Work, spend};
 use crate::frame::{Bins, Grid, Rect};
 use crate::number::{Exact, Real};
 use crate::splat::SplatSettings;
@@ -74,6 +75,7 @@ impl<R: Real, S: Send> Prepared<R, S> {
         let view = View::new(job.camera);
         let projector = Projector::new(view, &settings.kernel, settings.cull);
         let results = job.exec.ordered(batches, |batch| {
+            spend(Work::Project);
             let mut splats = Vec::new();
             let tally = project(&projector, batch, &mut splats);
             job.keep_touching(&mut splats, &bounds);

@@ -5,6 +5,7 @@
 //! verdict takes from a client. In the same way, scene files and the command line follow from the
 //! rows of [`crate::setting`].
 
+use super::clock::{Work, spend};
 use super::projection::SampleKind;
 use super::stage::{Conditions, Holds, PlaneRow, When};
 use crate::frame::{NO_ID, NamedPlane, Plane, Rect};
@@ -137,6 +138,7 @@ pub(crate) fn planes<T, R: Real>(
 }
 
 fn values<V>(window: Rect, value: &dyn Fn(u32, u32) -> V) -> Plane<V> {
+    spend(Work::Store);
     Plane::of_window(window, value)
 }
 

@@ -9,8 +9,9 @@ use crate::scene::Scene;
 
 /// A pass of a method.
 ///
-/// A method lists its stages in the order in which they run. The timings of a picture carry the
-/// names of these stages, whether the definition or the fast path drew it.
+/// A method lists its stages in the order in which they run. The
+/// [timings](super::Picture::timings) of a picture carry the names of these stages, whether the
+/// definition or the fast path drew it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Stage {
     /// The name of the pass: `visibility`.

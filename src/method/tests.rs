@@ -2,6 +2,7 @@
 
 mod explanations;
 mod extremes;
+mod laps;
 mod planes;
 mod stages;
 mod ties;

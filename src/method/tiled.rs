@@ -1,6 +1,7 @@
 //! Hold a picture between its passes: a record a pixel, tile by tile.
 
 use super::algorithm::Job;
+use super::clock::{Work, spend};
 use super::record::{self, Field};
 use super::stage::Conditions;
 use crate::frame::{Grid, NamedPlane, Plane, Rect};
@@ -95,6 +96,7 @@ impl<T> Tiled<T> {
 
     /// Makes a plane from one value of each record.
     pub(crate) fn plane<V>(&self, value: impl Fn(&T) -> V) -> Plane<V> {
+        spend(Work::Store);
         Plane::of_window(self.grid.window(), |x, y| value(self.at(x, y)))
     }
 }

@@ -38,7 +38,7 @@ pub const MOST_ROUNDS: u64 = 25;
 /// # Errors
 /// As [`Bench::visit`] and as drawing.
 pub fn choose(
-    bench: &mut Bench<'_>,
+    bench: &mut Bench,
     candidates: &[Candidate],
     truth: &Truth,
     budget: Budget,
@@ -51,7 +51,7 @@ pub fn choose(
     let mut known = Vec::new();
     for (i, candidate) in candidates.iter().enumerate() {
         progress("drawing small pictures", i as u64, count);
-        let mut visit = bench.visit(candidate, &|_, _, _| ())?;
+        let mut visit = bench.visit(candidate, exec, &|_, _, _| ())?;
         let camera = small(&visit.ready.camera);
         let (time, _) = second(&mut visit, candidate, &camera)?;
         known.push(Known { time, loss: f64::NAN, is_whole: false });
@@ -70,7 +70,7 @@ pub fn choose(
             limit = time;
         }
     }
-    timed(bench, candidates, &budget.hopeful(&known), &mut known, progress)?;
+    timed(bench, candidates, &budget.hopeful(&known), &mut known, exec, progress)?;
     Ok(known)
 }
 
@@ -79,10 +79,11 @@ pub fn choose(
 /// # Errors
 /// As [`time::turn`].
 pub fn timed(
-    bench: &mut Bench<'_>,
+    bench: &mut Bench,
     candidates: &[Candidate],
     of: &[usize],
     known: &mut [Known],
+    exec: &Exec,
     progress: Progress<'_>,
 ) -> Result<()> {
     let mut records: Vec<Record> = of.iter().map(|&i| Record::new(&candidates[i])).collect();
@@ -94,7 +95,7 @@ pub fn timed(
         for (done, i) in time::order(round, of.len()).into_iter().enumerate() {
             let count = of.len() as u64;
             progress("timing", round * count + done as u64, MOST_ROUNDS * count);
-            time::turn(bench, &candidates[of[i]], round, &mut records[i].times)?;
+            time::turn(bench, &candidates[of[i]], round, &mut records[i].times, exec)?;
         }
     }
     for (&i, record) in of.iter().zip(&records) {
@@ -230,7 +231,7 @@ mod tests {
         let mut all = candidates(&file, None).unwrap();
         all.retain(|candidate| !candidate.imitates);
         let (mut bench, all, _) = Bench::load(all, &exec, &quiet).unwrap();
-        let ready = bench.visit(&all[0], &quiet).unwrap().ready;
+        let ready = bench.visit(&all[0], &exec, &quiet).unwrap().ready;
         let camera = ready.camera;
         assert_eq!(small(&camera).size(), [9, 7]);
         let truth = truths::Known::about(&file, &ready.loaded.scene, &exec, &quiet).unwrap();

@@ -4,6 +4,7 @@ use super::squares::{Disc, Squares};
 use crate::composite::decide;
 use crate::frame::NO_ID;
 use crate::method::Job;
+use crate::method::clock::{Work, spend};
 use crate::method::fragment::facing;
 use crate::method::surface::SurfacePixel;
 use crate::method::tiled::Tiled;
@@ -79,6 +80,7 @@ pub(crate) fn nearest<R: Exact>(job: &Job<'_>, squares: &Squares<R>) -> Tiled<Ke
     let view = View::<R>::new(job.camera);
     let none = Kept { depth: R::INFINITY, surfel: NO_ID, offset: R::ZERO, back: false };
     Tiled::new(job, |tile, rect| {
+        spend(Work::Discs);
         let mut pixels = vec![none; rect.pixels()];
         squares.for_each(tile, |square| {
             let inner = square.bounds.intersection(&rect);

@@ -6,6 +6,7 @@ use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{Framebuffer, Plane};
 use crate::method::Job;
+use crate::method::clock::{Work, spend};
 use crate::method::projection::{self, PixelSample};
 use crate::number::{Exact, MapInline};
 use crate::splat::View;
@@ -31,6 +32,7 @@ impl<R: Exact> Polygons<R> {
 
     /// Puts triangles into the pixels where they are nearer than the disc.
     pub(super) fn over(&self, target: &mut Framebuffer<R>, job: &Job<'_>) {
+        spend(Work::Polygons);
         let Framebuffer { depth, id, weight, normal, color, .. } = target;
         let rows = depth.rows_mut().zip(id.rows_mut()).zip(weight.rows_mut());
         let mut rows: Vec<_> = (0..)

@@ -2,6 +2,7 @@
 
 use crate::frame::{Bins, Grid, Rect};
 use crate::method::Job;
+use crate::method::clock::{Work, spend};
 use crate::method::prepare::batch_size;
 use crate::method::projection::surfels::PointProjector;
 use crate::number::{Exact, MapInline, Real, Vector3};
@@ -166,6 +167,7 @@ impl<R: Exact> Squares<R> {
         let size = batch_size(grid, count);
         let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
         let results = job.exec.ordered(ranges.collect(), |range: Range<usize>| {
+            spend(Work::Project);
             let mut squares = Vec::with_capacity(range.len());
             let tally = project(range, &mut squares);
             job.keep_touching(&mut squares, |square| square.bounds);

@@ -4,6 +4,7 @@ use super::part::Whole;
 use super::visibility::{NONE, Nearest};
 use crate::composite::decide;
 use crate::method::Job;
+use crate::method::clock::{Work, spend};
 use crate::method::projection::surfels::PointProjector;
 use crate::method::tiled::Tiled;
 use crate::number::{Exact, Real, Vector3};
@@ -34,6 +35,7 @@ pub(super) fn indices<R: Exact>(
     whole: &Whole<'_>,
     visible: &Tiled<Nearest<R>>,
 ) -> Tiled<Kept<R>> {
+    spend(Work::Indices);
     let mut kept = visible.map(|_| Kept::EMPTY);
     let epsilon = R::from_f32(settings.epsilon.in_units(whole.median_radius()));
     each_centre(job, settings, whole, |id, [x, y], t| {

@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::frame::Exec;
 use crate::index::seen::Seen;
 use crate::method::Job;
+use crate::method::clock::{Work, spend};
 use crate::number::lanes::{LANES, Lanes};
 use crate::scene::merge::join;
 use crate::scene::objects::detail::Mask;
@@ -166,6 +167,7 @@ impl<'a> Whole<'a> {
 
     /// The surfels of ascending ids in their places.
     pub(super) fn surfels(&self, ids: &[u64], exec: &Exec) -> Surfels {
+        spend(Work::Copy);
         match &self.scene.objects {
             Some(objects) => objects.some(ids, exec),
             None if self.has_colors() => {
@@ -175,10 +177,9 @@ impl<'a> Whole<'a> {
         }
     }
 
-    /// The surfels of ascending ids as pass 4 draws them, see [`mod@super::filter`].
+    /// The surfels of ascending ids as pass 4 draws them.
     pub(crate) fn drawn(&self, ids: Vec<u64>, job: &Job<'_>) -> Part {
-        let surfels = filtered(self.surfels(&ids, job.exec), job.camera, job.exec);
-        Part { scene: Scene::unlit(&self.scene.name, surfels), ids }
+        self.part(ids, job.exec).filtered(job)
     }
 
     /// The surfels of ascending ids as a scene without light and environment.
@@ -281,6 +282,13 @@ pub(crate) struct Part {
 }
 
 impl Part {
+    /// The surfels in the colours of pass 4, see [`mod@super::filter`].
+    pub(super) fn filtered(self, job: &Job<'_>) -> Self {
+        spend(Work::Filter);
+        let surfels = filtered(self.scene.surfels, job.camera, job.exec);
+        Self { scene: Scene { surfels, ..self.scene }, ..self }
+    }
+
     /// The job that draws these surfels alone.
     pub(crate) fn job<'j>(&'j self, whole: &Job<'j>) -> Job<'j> {
         Job { scene: &self.scene, ..*whole }

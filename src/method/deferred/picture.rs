@@ -11,11 +11,12 @@ use crate::frame::{NO_ID, NamedPlane, Pool, Wanted};
 use crate::index::seen::Seen;
 use crate::memory;
 use crate::method::Job;
+use crate::method::clock::{Clock, Work, spend};
 use crate::method::ewa::attributes::{Sums, attributes};
 use crate::method::ewa::normalization::resolve;
 use crate::method::ewa::planes::given_attributes;
 use crate::method::input_planes::InputPlanes;
-use crate::method::picture::{Clock, Picture, finish, framebuffer};
+use crate::method::picture::{Picture, finish, framebuffer};
 use crate::method::prepare::Prepared;
 use crate::method::stage::{Keep, unknown};
 use crate::method::surface::{self, SurfacePixel};
@@ -23,7 +24,10 @@ use crate::method::tiled::{Tiled, pixels};
 use crate::number::Exact;
 use crate::splat::Tally;
 use std::borrow::Cow;
-use std::time::Duration;
+
+/// The stages before shading.
+pub(super) const UNSHADED: [&str; 5] =
+    ["visibility", "indices", "difference", "attributes", "normalization"];
 
 /// The definition, in any number type. With `stages`, every stage leaves its planes.
 pub(super) fn define<R: Exact>(
@@ -31,7 +35,7 @@ pub(super) fn define<R: Exact>(
     settings: &Settings,
     stages: bool,
 ) -> Result<Picture<R>> {
-    let mut clock = Clock::default();
+    let mut clock = Clock::of_stages(&UNSHADED);
     let (whole, before) = whole(job, settings)?;
     let polygons = Polygons::draw(job, settings, &whole)?;
     let flagged = whole.part(flagged(&whole, &before)?, job.exec);
@@ -43,8 +47,7 @@ pub(super) fn define<R: Exact>(
     let now = Seen::from_selected(whole.ids(), settings.flags, &list);
     clock.lap("indices");
 
-    // Pass 4 draws the copies, but pass 3 needs them too. Laps stand in the order of the passes.
-    clock.add("difference", Duration::ZERO);
+    // Pass 4 draws the copies, but pass 3 needs their ids.
     let part = whole.drawn(list, job);
     clock.lap("attributes");
     let depth = difference(job, settings, &whole, &before, &part, &visible);
@@ -55,6 +58,12 @@ pub(super) fn define<R: Exact>(
 
     let shown = shown(job, settings, &part, &depth);
     let averages = normalization(job, (&shown, polygons.as_ref()), &sums);
+    let wanted = Wanted {
+        normal: stages || !job.scene.lights.is_empty(),
+        color: whole.has_colors(),
+        observed: false,
+    };
+    let target = surface::framebuffer(job, &averages, wanted);
     clock.lap("normalization");
 
     let mut left = Vec::new();
@@ -67,12 +76,6 @@ pub(super) fn define<R: Exact>(
         left.extend(surface::colors(job, &averages));
         left.extend(planes::shown(job, &ids(&shown, &averages)));
     }
-    let wanted = Wanted {
-        normal: stages || !job.scene.lights.is_empty(),
-        color: whole.has_colors(),
-        observed: false,
-    };
-    let target = surface::framebuffer(job, &averages, wanted);
     Ok(Picture { seen: Some(now), ..finish(target, left, tally, clock, job) })
 }
 
@@ -88,11 +91,8 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
         observed: false,
     };
     let mut target = framebuffer(job, wanted, pool);
-    let (now, tally, laps) = fast::render(job, settings, &mut target)?;
-    Ok(Picture {
-        seen: Some(now),
-        ..finish(target, Vec::new(), tally, Clock::from_laps(laps), job)
-    })
+    let (now, tally, clock) = fast::render(job, settings, &mut target)?;
+    Ok(Picture { seen: Some(now), ..finish(target, Vec::new(), tally, clock, job) })
 }
 
 /// Runs one stage on a client's planes.
@@ -208,6 +208,7 @@ fn difference<R: Exact>(
 /// The ids of `ids`, ascending, that pass 1 did not draw: their flags are not set, or it left out
 /// their object.
 pub(super) fn unseen(whole: &Whole<'_>, before: &Seen, ids: &[u64]) -> Vec<u64> {
+    spend(Work::Difference);
     let mut new = Vec::new();
     for (object, run) in whole.ids().runs(ids) {
         let first = whole.ids().id(object, 0);

@@ -31,6 +31,7 @@ use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{Exec, Framebuffer, NO_ID, Plane};
 use crate::method::Job;
+use crate::method::clock::{Work, spend};
 use crate::method::projection::{self, PixelSample, SampleKind};
 use crate::method::surface::SurfacePixel;
 use crate::number::{Exact, MapInline};
@@ -71,6 +72,7 @@ impl<R: Exact> Polygons<R> {
         whole: &Whole<'_>,
     ) -> Result<Option<Self>> {
         let Some((scene, paint)) = alone(job, whole)? else { return Ok(None) };
+        spend(Work::Polygons);
         let (cull, snap) = (settings.splats.cull, Snap::default());
         let drawn = projection::project::<R>(&Job { scene: &scene, ..*job }, cull, snap)?;
         let paint = paint.map(|color| color.map_inline(R::from_f32));
@@ -90,6 +92,7 @@ impl<R: Exact> Polygons<R> {
 
     /// The surface that a pixel shows.
     pub(super) fn surface(&self, x: u32, y: u32) -> SurfacePixel<R> {
+        spend(Work::ShowPolygons);
         let sample = self.samples.at(x, y);
         if sample.kind == SampleKind::Empty {
             return SurfacePixel::EMPTY;

@@ -6,6 +6,7 @@ use crate::composite::{decide, sum};
 use crate::frame::stencil::{Outcome, Stencil};
 use crate::method::Job;
 use crate::method::buffer_formats::Buffers;
+use crate::method::clock::{Work, spend};
 use crate::method::fragment::{TileSplats, facing};
 use crate::method::prepare::Prepared;
 use crate::method::tiled::Tiled;
@@ -51,6 +52,7 @@ pub(crate) fn sums<R: Exact>(
     nearest: &[Foremost<R>],
     candidate: impl Fn(usize, R) -> bool,
 ) -> Vec<Sums<R>> {
+    spend(Work::Attributes);
     let (shared, epsilon) = (tile.shared(), tile.epsilon());
     let mut pixels = vec![Sums::NONE; tile.rect.pixels()];
     tile.each_inside(|splat, pixel, q, w| {

@@ -9,8 +9,9 @@ use super::{Settings, fast};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool, Wanted};
 use crate::method::Job;
+use crate::method::clock::Clock;
 use crate::method::input_planes::InputPlanes;
-use crate::method::picture::{Clock, Picture, finish, framebuffer};
+use crate::method::picture::{Picture, finish, framebuffer};
 use crate::method::prepare::Prepared;
 use crate::method::stage::{Keep, unknown};
 use crate::method::surface::{self, SurfacePixel};
@@ -31,6 +32,7 @@ pub(super) fn define<R: Exact>(
     let sums = attributes(job, &splats, &visible);
     clock.lap("attributes");
     let averages = visible.with(&sums, resolve);
+    let target = surface::framebuffer(job, &averages, wanted(job.scene, stages));
     clock.lap("normalization");
 
     let mut left = Vec::new();
@@ -42,7 +44,6 @@ pub(super) fn define<R: Exact>(
         left.push(MARGIN.scalar(0, margins.plane(|margin| *margin)));
         left.extend(surface::colors(job, &averages));
     }
-    let target = surface::framebuffer(job, &averages, wanted(job.scene, stages));
     Ok(finish(target, left, splats.tally, clock, job))
 }
 
@@ -72,8 +73,8 @@ pub(super) fn stage<R: Exact>(
 /// The fast path for `f32`.
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
     let mut target = framebuffer(job, wanted(job.scene, false), pool);
-    let (tally, laps) = fast::render(job, settings, &mut target);
-    Ok(finish(target, Vec::new(), tally, Clock::from_laps(laps), job))
+    let (tally, clock) = fast::render(job, settings, &mut target);
+    Ok(finish(target, Vec::new(), tally, clock, job))
 }
 
 /// The planes that a scene needs.

@@ -4,6 +4,7 @@ use crate::composite::decide;
 use crate::frame::NO_ID;
 use crate::method::Job;
 use crate::method::buffer_formats::DepthKey;
+use crate::method::clock::{Work, spend};
 use crate::method::fragment::TileSplats;
 use crate::method::prepare::Prepared;
 use crate::method::tiled::Tiled;
@@ -46,6 +47,7 @@ pub(crate) fn foremost<R: Exact>(
     key: &DepthKey,
     candidate: impl Fn(usize, R) -> bool,
 ) -> Vec<Foremost<R>> {
+    spend(Work::Visibility);
     let shared = tile.shared();
     let mut pixels = vec![Foremost::none(shared); tile.rect.pixels()];
     tile.each_inside(|splat, pixel, _, w| {

@@ -10,12 +10,11 @@ pub(super) mod store;
 pub(super) mod tile;
 
 use super::algorithm::Job;
-use super::picture::wall_shares;
+use super::clock::{Clock, Stopwatch};
 use super::prepare::Prepared;
 use crate::frame::{Framebuffer, Rect};
 use crate::splat::SplatSettings;
 use crate::splat::batch;
-use std::time::{Duration, Instant};
 use tile::{Record, Surface, Tile};
 
 /// Projects the splats and sorts them into tiles.
@@ -35,39 +34,26 @@ pub(super) fn prepare(job: &Job<'_>, settings: &SplatSettings) -> Prepared<f32, 
     )
 }
 
-/// The times of the stages of a tile; the work between two laps belongs to the second.
-pub(super) struct Stopwatch<const N: usize> {
-    last: Instant,
-    times: [Duration; N],
-}
-
-impl<const N: usize> Stopwatch<N> {
-    /// Stage `stage` ends.
-    pub(super) fn lap(&mut self, stage: usize) {
-        let now = Instant::now();
-        self.times[stage] += now - self.last;
-        self.last = now;
-    }
-}
-
-/// Draws every tile of a framebuffer, and returns the stages' shares of the wall time.
+/// Draws every tile of a framebuffer. The stages with these names get their shares of the time since
+/// the last lap of the clock.
 ///
 /// `gather` starts a tile: its splats, in the order of their surfels, and its empty blocks. `stages`
 /// leaves depths, averages and directions in the blocks of a tile that has splats. It ends a lap
-/// after each stage but the last. The first lap includes gathering the splats, the last storing the
-/// pixels.
+/// after each stage but the last. The first lap includes gathering the splats, unless `gather` ends
+/// another lap. The last lap includes storing the pixels.
 pub(super) fn draw<const N: usize>(
     job: &Job<'_>,
     target: &mut Framebuffer<f32>,
-    gather: impl Fn(&mut Tile, usize, Rect) + Sync + Send,
+    (clock, names): (&mut Clock, [&'static str; N]),
+    gather: impl Fn(&mut Tile, usize, Rect, &mut Stopwatch<N>) + Sync + Send,
     stages: impl Fn(&mut Tile, &mut Stopwatch<N>) + Sync + Send,
-) -> [Duration; N] {
-    let start = Instant::now();
+) {
     let times = job.exec.ordered(target.cut(&job.strips(), job.exec), |mut pixels| {
-        let mut watch = Stopwatch { last: Instant::now(), times: [Duration::ZERO; N] };
+        let mut watch = Stopwatch::start();
         let mut tile = Tile::new([pixels.normal.is_some(), pixels.color.is_some()]);
-        gather(&mut tile, pixels.depth.index, pixels.depth.rect);
+        gather(&mut tile, pixels.depth.index, pixels.depth.rect, &mut watch);
         if tile.splats.is_empty() {
+            watch.lap(0);
             store::clear(&mut pixels);
             watch.lap(N - 1);
         } else {
@@ -75,7 +61,7 @@ pub(super) fn draw<const N: usize>(
             store::store(&tile, &mut pixels);
             watch.lap(N - 1);
         }
-        watch.times
+        watch.times()
     });
-    wall_shares(start.elapsed(), &times)
+    clock.shares(names, &times);
 }

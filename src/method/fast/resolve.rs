@@ -2,17 +2,20 @@
 
 use super::tile::{PixelBlock, Tile};
 use crate::composite::{decide, sum};
+use crate::method::clock::{Work, spend};
 use crate::number::lanes::{LANES, components, vectorized};
 use crate::splat::Shared;
 
 impl Tile {
     /// The least nearness of each pixel that passes the epsilon-z test.
     pub(crate) fn limits(&mut self, shared: &Shared<f32>, epsilon: f32) {
+        spend(Work::Limits);
         limits(&mut self.blocks, shared, epsilon);
     }
 
     /// Normalizes in place.
     pub(crate) fn normalize(&mut self, shared: &Shared<f32>) {
+        spend(Work::Normalize);
         match (self.normal, self.color) {
             (false, false) => normalize::<false, false>(&mut self.blocks, shared),
             (false, true) => normalize::<false, true>(&mut self.blocks, shared),

@@ -2,6 +2,7 @@
 
 use super::tile::{BlockGrid, ROW, Tile};
 use crate::frame::{FramebufferTile, NO_ID, TileMut};
+use crate::method::clock::{Work, spend};
 use crate::number::lanes::components;
 
 /// Writes a tile without splats.
@@ -31,6 +32,7 @@ pub(super) fn store(tile: &Tile, pixels: &mut FramebufferTile<'_, f32>) {
 /// Writes one value into a tile of a plane.
 #[inline(always)]
 pub(crate) fn clear_plane<T: Copy>(plane: &mut TileMut<'_, T>, value: T) {
+    spend(Work::Store);
     for row in plane.rows() {
         // A loop, because `fill` is compiled for a value that is not known there.
         for pixel in row {
@@ -46,6 +48,7 @@ pub(crate) fn store_plane<B, T: Copy>(
     plane: &mut TileMut<'_, T>,
     pixel: impl Fn(&B, usize) -> T,
 ) {
+    spend(Work::Store);
     let columns = BlockGrid::new(plane.rect).columns as usize;
     for (y, row) in plane.rows().enumerate() {
         let (blocks, first) = (&blocks[y / ROW * columns..][..columns], y % ROW * ROW);

@@ -2,6 +2,7 @@
 
 use super::fragments::touches;
 use crate::frame::{NO_ID, Rect};
+use crate::method::clock::{Work, spend};
 use crate::method::fragment::facing;
 use crate::method::prepare::Prepared;
 use crate::number::lanes::{LANES, Lanes};
@@ -170,6 +171,7 @@ impl<A: Copy + Send> Prepared<f32, Record<A>> {
     /// Gathers the splats that may touch a tile of these pixels, in the order of the items;
     /// replaces the previous content of `gathered`.
     pub(crate) fn gather_f32(&self, tile: usize, rect: &Rect, gathered: &mut Vec<Record<A>>) {
+        spend(Work::Gather);
         self.gather(tile, |splat| touches(splat, rect, &self.shared), gathered);
     }
 }

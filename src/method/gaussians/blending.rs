@@ -8,6 +8,7 @@ use crate::composite::under::Under;
 use crate::frame::stencil::{Outcome, Stencil};
 use crate::frame::{NO_ID, Rect};
 use crate::method::buffer_formats::{Buffers, DepthKey};
+use crate::method::clock::{Work, spend};
 use crate::method::tiled::pixels;
 use crate::number::real::ordered_f64;
 use crate::number::{Exact, Real};
@@ -167,6 +168,7 @@ type Listed<R> = (usize, GaussianFragment<R>);
 impl<R: Exact> Blending<'_, R> {
     /// The pixels of a rectangle in a tile, row by row.
     pub(crate) fn tile(&self, tile: usize, rect: Rect) -> Vec<GaussianPixel<R>> {
+        spend(Work::Blend);
         let places = self.splats.places(tile, rect);
         pixels(rect).map(|at| self.pixel(&places, at, |_, _, _| ())).collect()
     }

@@ -4,6 +4,7 @@ use super::Order;
 use super::splats::{Beside, GaussianSplat, Source};
 use crate::frame::{Bins, Exec, Grid, Rect};
 use crate::method::Job;
+use crate::method::clock::{Work, spend};
 use crate::method::prepare::batch_size;
 use crate::number::Exact;
 use crate::number::real::ordered_f64;
@@ -43,6 +44,7 @@ struct Batch<R> {
 impl<R: Exact> Batch<R> {
     /// The splats of a run of items, and what became of all of them.
     fn new(job: &Job<'_>, source: &Source<'_, R>, range: Range<usize>) -> (Self, Tally) {
+        spend(Work::Project);
         let (mut splats, mut tally) = (Vec::with_capacity(range.len()), Tally::default());
         for i in range {
             let (splat, fate) = source.splat(i);
@@ -122,6 +124,7 @@ impl<R: Exact> Splats<R> {
 
     /// The places of the splats that may touch a rectangle in a tile, in their order.
     pub(crate) fn places(&self, tile: usize, rect: Rect) -> Vec<usize> {
+        spend(Work::Gather);
         let mut places = Vec::new();
         for (run, Run { bounds, bins }) in self.runs.iter().enumerate() {
             bins.for_each(tile, |i| {

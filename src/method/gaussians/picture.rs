@@ -8,8 +8,9 @@ use super::splats::{Source, in_space};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Plane, Rect};
 use crate::method::Job;
+use crate::method::clock::{Clock, Work, spend};
 use crate::method::input_planes::InputPlanes;
-use crate::method::picture::{Clock, Picture};
+use crate::method::picture::Picture;
 use crate::method::stage::{Keep, unknown};
 use crate::method::surface::{ALPHA, SHADED};
 use crate::method::tiled::{Tiled, pixels};
@@ -23,11 +24,11 @@ pub(super) fn define<R: Exact>(job: &Job<'_>, settings: &Settings, stages: bool)
     let splats = Splats::new(job, &job.grid(), &source);
     clock.lap(STAGES[0].name);
     let blended = blend(job, source, &splats);
-    clock.lap(STAGES[1].name);
     let keep = if stages { Keep::Stages } else { Keep::Picture };
     let mut planes = blended.planes(&GaussianPixel::PLANES, 0, &job.there(keep));
     let color = blended.plane(|pixel| pixel.blend.color);
     let through = blended.plane(|pixel| pixel.blend.through);
+    clock.lap(STAGES[1].name);
     planes.extend(display(job, &source, &color, &through));
     clock.lap(STAGES[2].name);
     let (frame, timings) = (job.frame(planes), clock.into_laps());
@@ -51,6 +52,7 @@ pub(super) fn display<R: Exact>(
     color: &Plane<[R; 3]>,
     through: &Plane<R>,
 ) -> [NamedPlane<R>; 2] {
+    spend(Work::Display);
     let mut shown = color.clone();
     // A power a number is enough work to run in parallel.
     let Rect { x0, y0, .. } = job.window;

@@ -4,12 +4,14 @@ use super::layers::PeeledLayer;
 use crate::composite::under::Under;
 use crate::frame::Plane;
 use crate::method::Job;
+use crate::method::clock::{Work, spend};
 use crate::method::picture::before_environment;
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 
 /// Blends the next layer under the layers before.
 pub(super) fn under<R: Exact>(before: Under<R>, layer: &PeeledLayer<R>) -> Under<R> {
+    spend(Work::Blend);
     before.under(layer.alpha, layer.color)
 }
 

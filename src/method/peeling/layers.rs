@@ -8,6 +8,7 @@ use crate::composite::{decide, sum};
 use crate::frame::{NO_ID, Rect};
 use crate::method::Job;
 use crate::method::buffer_formats::{Buffers, DepthKey};
+use crate::method::clock::{Stopwatch, Work, spend};
 use crate::method::ewa::attributes::{Sums, sums};
 use crate::method::ewa::normalization::resolve;
 use crate::method::ewa::visibility::{Foremost, foremost};
@@ -18,7 +19,7 @@ use crate::number::{Exact, MapInline, Vector3};
 use crate::scene::Surfels;
 use crate::shade::phong::Shader;
 use crate::splat::{Splat, View};
-use std::time::{Duration, Instant};
+use std::time::Duration;
 
 /// A picture whose splats are projected and sorted into tiles.
 #[derive(Debug)]
@@ -87,13 +88,11 @@ impl<'a, R: Exact> Peeling<'a, R> {
     pub(super) fn tile(&self, tile: usize, rect: Rect, most: u32, keep: usize) -> PeeledTile<R> {
         let splats = TileSplats::new(&self.splats, tile, rect);
         let mut pixels = vec![PeeledPixel::new(); rect.pixels()];
-        let (mut kept, mut times) = (Vec::new(), [Duration::ZERO; 2]);
+        let (mut kept, mut watch) = (Vec::new(), Stopwatch::start());
         for _ in 0..most {
-            let start = Instant::now();
             let limits: Vec<_> = pixels.iter().map(|pixel| pixel.limit).collect();
             let layer = self.layer(&splats, &limits);
-            let peeled = Instant::now();
-            times[0] += peeled - start;
+            watch.lap(0);
             let Some(layer) = layer else { break };
             for (pixel, layer) in pixels.iter_mut().zip(&layer) {
                 pixel.add(layer, self.splats.epsilon);
@@ -102,12 +101,12 @@ impl<'a, R: Exact> Peeling<'a, R> {
             if kept.len() < keep {
                 kept.push(layer);
             }
-            times[1] += peeled.elapsed();
+            watch.lap(1);
         }
         // Later stages read a plane for every kept layer, so the missing ones are filled with empty
         // layers.
         kept.resize_with(keep, || vec![PeeledLayer::NONE; rect.pixels()]);
-        PeeledTile { pixels, kept, times }
+        PeeledTile { pixels, kept, times: watch.times() }
     }
 
     /// The layer of the fragments strictly beyond the limit of each pixel; none if no pixel has
@@ -117,6 +116,7 @@ impl<'a, R: Exact> Peeling<'a, R> {
         splats: &TileSplats<'_, R>,
         limits: &[R],
     ) -> Option<Vec<PeeledLayer<R>>> {
+        spend(Work::Peel);
         let shared = splats.shared();
         let beyond = |pixel: usize, w: R| decide::beyond(shared.depth(w), limits[pixel]);
         let mut nearest = foremost(splats, &self.key, beyond);
@@ -136,6 +136,7 @@ impl<'a, R: Exact> Peeling<'a, R> {
         sums: &Sums<R>,
         (x, y): (u32, u32),
     ) -> PeeledLayer<R> {
+        spend(Work::Shade);
         let average = resolve(nearest, sums);
         let [nx, ny, nz] = average.normal;
         let surface = if self.surfels.color().is_some() { average.color } else { self.own };

@@ -7,9 +7,10 @@ use super::planes::{self, STAGES};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Rect};
 use crate::method::Job;
+use crate::method::clock::Clock;
 use crate::method::fragment::TileSplats;
 use crate::method::input_planes::InputPlanes;
-use crate::method::picture::{Clock, Picture};
+use crate::method::picture::Picture;
 use crate::method::stage::{Keep, unknown};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
@@ -26,12 +27,14 @@ pub(super) fn define<R: Exact>(
     clock.lap("projection");
     let keep = if stages { settings.layers.min(STAGES) as usize } else { 0 };
     let peeled = peel(job, &peeling, settings, keep, &mut clock);
-    let mut left = peeled.layer_planes(job);
     let (color, alpha) = shown(job, &peeled.pixels.map(|pixel| pixel.blend));
     let (color, alpha) =
         (color.map(|color| job.buffers.color(*color)), alpha.map(|alpha| job.buffers.sum(*alpha)));
+    let pixels = planes::pixels(&peeled.pixels);
+    clock.lap("blending");
+    let mut left = peeled.layer_planes(job);
     left.extend(planes::shown((color, alpha)));
-    left.extend(planes::pixels(&peeled.pixels));
+    left.extend(pixels);
     let (frame, timings) = (job.frame(left), clock.into_laps());
     Ok(Picture { frame, tally: peeling.splats.tally, timings, seen: None })
 }

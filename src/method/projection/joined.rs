@@ -7,7 +7,8 @@
 use super::{Has, Projected};
 use crate::frame::Plane;
 use crate::method::Job;
-use crate::method::picture::{Clock, Picture};
+use crate::method::clock::{Clock, Work, spend};
+use crate::method::picture::Picture;
 use crate::method::stage::{Holds, PlaneRow};
 use crate::number::Exact;
 use crate::splat::View;
@@ -27,14 +28,16 @@ pub(crate) struct Joined {
 }
 
 impl<R: Exact> Projected<R> {
-    /// Makes the picture of a region: the planes of the projection alone.
-    pub(crate) fn alone(self, job: &Job<'_>, clock: Clock) -> Picture<R> {
+    /// Makes the picture of a region: the planes of the projection alone. They end its lap.
+    pub(crate) fn alone(self, job: &Job<'_>, mut clock: Clock) -> Picture<R> {
         let mut planes = self.planes(job);
         if let Some(environment) = &job.scene.environment {
+            spend(Work::Environment);
             let view = View::<R>::new(job.camera);
             let light = |x, y| environment.radiance(view.ray(x, y));
             planes.push(BEHIND.triple(0, Plane::of_window(job.window, light)));
         }
+        clock.lap("projection");
         let (frame, timings) = (job.frame(planes), clock.into_laps());
         Picture { frame, tally: self.tally, timings, seen: None }
     }

@@ -7,6 +7,7 @@ use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
 use crate::frame::{Bins, Plane, Rect};
 use crate::method::Job;
+use crate::method::clock::{Work, spend};
 use crate::number::{Exact, MapInline, Vector3};
 use crate::splat::{Fate, Tally};
 use std::ops::Range;
@@ -71,6 +72,7 @@ fn draw<R: Exact>(
     let size = (ids.len() / 64).min(8192).max(2 * grid.len());
     let ranges = ids.clone().step_by(size).map(|first| first..ids.end.min(first + size));
     let batches = exec.ordered(ranges.collect(), |range: Range<usize>| {
+        spend(Work::Project);
         let mut drawn = Vec::with_capacity(range.len());
         let mut tally = Tally::default();
         for id in range {
@@ -87,6 +89,7 @@ fn draw<R: Exact>(
     let Projected { samples, tally } = projected;
     *tally = batches.iter().fold(*tally, |sum, (_, tally)| sum.plus(tally));
     exec.ordered(grid.cut(samples, exec), |mut pixels| {
+        spend(Work::Project);
         let rect = pixels.rect;
         for ((drawn, bins), _) in &batches {
             bins.for_each(pixels.index, |i| match &drawn[i as usize] {

@@ -3,6 +3,7 @@
 use super::Cell;
 use crate::frame::{Plane, Pool};
 use crate::method::Job;
+use crate::method::clock::{Work, spend};
 use crate::method::picture::before_environment;
 use crate::method::projection::{Has, world};
 use crate::number::Exact;
@@ -52,6 +53,7 @@ impl<R: Exact> GBuffer<R> {
         has: Has,
         normals: bool,
     ) -> Self {
+        spend(Work::Store);
         let view = View::new(camera);
         Self {
             kind: cells.map(|cell| cell.kind as u8),
@@ -66,6 +68,7 @@ impl<R: Exact> GBuffer<R> {
 
     /// The planes with shaded colours, before the environment of the scene, if it has one.
     pub(super) fn shaded(mut self, job: &Job<'_>) -> Self {
+        spend(Work::Shade);
         let Job { scene, camera, exec, .. } = *job;
         let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
         let (normal, tangent) = (self.normal.as_ref(), self.tangent.as_ref());

@@ -10,8 +10,9 @@ use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{Frame, NamedPlane, Plane, Pool, pyramid};
 use crate::method::Job;
+use crate::method::clock::Clock;
 use crate::method::input_planes::InputPlanes;
-use crate::method::picture::{Clock, Picture};
+use crate::method::picture::Picture;
 use crate::method::projection::{self, Has, Projected};
 use crate::method::stage::unknown;
 use crate::number::Exact;
@@ -27,10 +28,10 @@ pub(super) fn define<R: Exact>(
     let snap = Snap::new(settings.subpixel_bits)?;
     let mut clock = Clock::default();
     let projected = projection::project::<R>(job, settings.cull, snap)?;
-    clock.lap("projection");
     if job.is_part() {
         return Ok(projected.alone(job, clock));
     }
+    clock.lap("projection");
     Ok(reconstruct(job, settings, stages, (projected, clock)))
 }
 
@@ -59,6 +60,8 @@ fn reconstruct<R: Exact>(
     let pulled = pull_all(&projected.samples, exec);
     clock.lap("pull");
     let pushed = push_all(&pulled, settings, exec);
+    let normals = stages || !scene.lights.is_empty();
+    let target = GBuffer::from_cells(&pushed[0], camera, has, normals);
     clock.lap("push");
     let mut planes = Vec::new();
     if stages {
@@ -66,8 +69,6 @@ fn reconstruct<R: Exact>(
         planes.extend(write(&Cell::PULL, 1, &pulled[1..], job));
         planes.extend(write(&Cell::PUSH, 0, &pushed[..pushed.len() - 1], job));
     }
-    let normals = stages || !scene.lights.is_empty();
-    let target = GBuffer::from_cells(&pushed[0], camera, has, normals);
     finish(target, planes, projected.tally, clock, job)
 }
 
@@ -83,8 +84,8 @@ pub(super) fn draw(
     }
     let Job { scene, camera, .. } = *job;
     let mut target = GBuffer::new(scene, camera, pool);
-    let (tally, laps) = levels.draw(job, settings, &mut target)?;
-    Ok(finish(target, Vec::new(), tally, Clock::from_laps(laps), job))
+    let (tally, clock) = levels.draw(job, settings, &mut target)?;
+    Ok(finish(target, Vec::new(), tally, clock, job))
 }
 
 /// Shades a picture, and makes its planes.

@@ -30,6 +30,7 @@
 use super::Cell;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
+use crate::method::clock::{Work, spend};
 use crate::method::projection::PixelSample;
 use crate::number::{Exact, MapInline, Real, Vector2};
 
@@ -54,6 +55,7 @@ pub fn pull_all<R: Exact>(samples: &Plane<PixelSample<R>>, exec: &Exec) -> Vec<P
 /// Pulls the next coarser level; `side` is the side of the finer cells in pixels.
 #[must_use]
 pub fn pull<R: Exact>(fine: &Plane<Cell<R>>, side: R, exec: &Exec) -> Plane<Cell<R>> {
+    spend(Work::Pull);
     let (width, height) = (fine.width().div_ceil(2), fine.height().div_ceil(2));
     let mut coarse = Plane::filled(width, height, Cell::empty());
     let rows = coarse.rows_mut();

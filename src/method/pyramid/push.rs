@@ -32,6 +32,7 @@ use super::{Cell, Occlusion, Settings, Weights};
 use crate::composite::decide;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
+use crate::method::clock::{Work, spend};
 use crate::number::{Exact, MapInline, Real, Vector2};
 use crate::splat::Ellipse;
 
@@ -61,6 +62,7 @@ pub fn push<R: Exact>(
     settings: &Settings,
     exec: &Exec,
 ) -> Plane<Cell<R>> {
+    spend(Work::Push);
     let mut pushed = fine.clone();
     let rows = pushed.rows_mut();
     exec.ordered((0_u32..).zip(rows).collect(), |(y, row): (u32, &mut [Cell<R>])| {

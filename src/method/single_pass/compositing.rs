@@ -4,6 +4,7 @@ use super::geometry::ImagePixel;
 use crate::composite::groups::{WeightedFragment, compose};
 use crate::composite::{decide, sum};
 use crate::frame::NO_ID;
+use crate::method::clock::{Work, spend};
 use crate::method::surface::SurfacePixel;
 use crate::number::Exact;
 
@@ -26,6 +27,7 @@ pub(crate) fn composites<R: Exact>(
     epsilon: R,
     empty: R,
 ) -> Vec<Composite<R>> {
+    spend(Work::Composite);
     let mut samples = Vec::with_capacity(images.len());
     let composite = |pixel: usize| {
         samples.clear();
@@ -46,6 +48,7 @@ pub(crate) fn composites<R: Exact>(
 impl<R: Exact> Composite<R> {
     /// Normalizes the sums.
     pub(crate) fn surface(&self) -> SurfacePixel<R> {
+        spend(Work::Normalize);
         let Self { sums, id, .. } = *self;
         SurfacePixel {
             depth: sums.depth,

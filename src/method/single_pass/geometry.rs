@@ -8,6 +8,7 @@ use crate::error::Result;
 use crate::frame::{NO_ID, Rect};
 use crate::method::Job;
 use crate::method::buffer_formats::DepthKey;
+use crate::method::clock::{Work, spend};
 use crate::method::fragment::{TileSplats, facing};
 use crate::method::prepare::Prepared;
 use crate::number::{Exact, MapInline, Real};
@@ -79,6 +80,7 @@ impl<'a, R: Exact> Geometry<'a, R> {
 
     /// The geometry pass over some pixels of a tile: the image of each group, row by row.
     pub(crate) fn images(&self, tile: usize, rect: Rect) -> Vec<Vec<ImagePixel<R>>> {
+        spend(Work::Images);
         let mut images = vec![vec![self.empty(); rect.pixels()]; self.groups.len()];
         TileSplats::new(&self.splats, tile, rect).each_inside(|splat, pixel, q, nearness| {
             self.offer(splat, q, nearness, &mut images[self.group(splat)][pixel]);

@@ -6,15 +6,15 @@ use super::{Settings, fast, planes};
 use crate::error::Result;
 use crate::frame::{NamedPlane, Pool, Rect, Wanted};
 use crate::method::Job;
+use crate::method::clock::{Clock, Stopwatch};
 use crate::method::input_planes::InputPlanes;
-use crate::method::picture::{Clock, Picture, finish, framebuffer};
+use crate::method::picture::{Picture, finish, framebuffer};
 use crate::method::stage::{Keep, unknown};
 use crate::method::surface::{self, SurfacePixel};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
 use crate::scene::Scene;
 use crate::splat::{Shared, View};
-use std::time::Instant;
 
 /// The stages that run tile by tile.
 const STAGES: [&str; 2] = ["geometry", "compositing"];
@@ -35,13 +35,14 @@ pub(super) fn define<R: Exact>(
     let Passes { images, composites } = passes(job, &geometry, stages, STAGES, &mut clock);
 
     let averages = composites.map(Composite::surface);
+    let target = surface::framebuffer(job, &averages, wanted(job.scene, stages));
+    clock.lap("compositing");
     let mut left = Vec::new();
     if stages {
         left.extend(planes::image_planes(job, &ImagePixel::GROUPS, settings.depth, &images));
         left.extend(planes::sums(job, &composites));
         left.extend(surface::colors(job, &averages));
     }
-    let target = surface::framebuffer(job, &averages, wanted(job.scene, stages));
     Ok(finish(target, left, geometry.splats.tally, clock, job))
 }
 
@@ -64,11 +65,12 @@ pub(crate) fn passes<R: Exact>(
     let (epsilon, empty) = (geometry.splats.epsilon, geometry.shared().empty());
     let tiles = grid.rects().into_iter().enumerate().collect();
     let done = job.exec.ordered(tiles, |(tile, rect): (usize, Rect)| {
-        let start = Instant::now();
+        let mut watch = Stopwatch::start();
         let images = geometry.images(tile, rect);
-        let drawn = Instant::now();
+        watch.lap(0);
         let composites = composites(&images, rect.pixels(), epsilon, empty);
-        ((keep.then_some(images), composites), [drawn - start, drawn.elapsed()])
+        watch.lap(1);
+        ((keep.then_some(images), composites), watch.times())
     });
     let (done, times): (Vec<_>, Vec<_>) = done.into_iter().unzip();
     clock.shares(stages, &times);
@@ -120,8 +122,8 @@ pub(super) fn stage<R: Exact>(
 /// The fast path for `f32`.
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
     let mut target = framebuffer(job, wanted(job.scene, false), pool);
-    let (tally, laps) = fast::render(job, settings, &mut target)?;
-    Ok(finish(target, Vec::new(), tally, Clock::from_laps(laps), job))
+    let (tally, clock) = fast::render(job, settings, &mut target)?;
+    Ok(finish(target, Vec::new(), tally, clock, job))
 }
 
 /// The planes that a scene needs.

@@ -3,6 +3,7 @@
 use super::reconstruction::Gathered;
 use crate::composite::sum;
 use crate::frame::{Framebuffer, Plane};
+use crate::method::clock::{Work, spend};
 use crate::method::projection::{Has, world};
 use crate::number::{Exact, Real, Vector3};
 use crate::scene::Camera;
@@ -15,6 +16,7 @@ pub(super) fn normalize<R: Exact>(
     has: Has,
     normals: bool,
 ) -> Framebuffer<R> {
+    spend(Work::Normalize);
     let view = View::new(camera);
     Framebuffer {
         width: camera.width,

@@ -10,8 +10,9 @@ use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{NamedPlane, Plane, Pool, Wanted, pyramid};
 use crate::method::Job;
+use crate::method::clock::Clock;
 use crate::method::input_planes::InputPlanes;
-use crate::method::picture::{Clock, Picture, finish, framebuffer};
+use crate::method::picture::{Picture, finish, framebuffer};
 use crate::method::projection::{self, Has, Projected};
 use crate::method::stage::unknown;
 use crate::number::Exact;
@@ -26,10 +27,10 @@ pub(super) fn define<R: Exact>(
 ) -> Result<Picture<R>> {
     let mut clock = Clock::default();
     let projected = projection::project::<R>(job, settings.cull, Snap::default())?;
-    clock.lap("projection");
     if job.is_part() {
         return Ok(projected.alone(job, clock));
     }
+    clock.lap("projection");
     Ok(reconstruct(job, settings, stages, (projected, clock)))
 }
 
@@ -89,8 +90,8 @@ pub(super) fn draw(
     let color = Has::in_scene(scene).color;
     let wanted = Wanted { normal: !scene.lights.is_empty(), color, observed: false };
     let mut target = framebuffer(job, wanted, pool);
-    let (tally, laps) = levels.draw(scene, camera, settings, exec, &mut target);
-    Ok(finish(target, Vec::new(), tally, Clock::from_laps(laps), job))
+    let (tally, clock) = levels.draw(scene, camera, settings, exec, &mut target);
+    Ok(finish(target, Vec::new(), tally, clock, job))
 }
 
 /// Runs one stage on a client's planes, see [`super::planes`].

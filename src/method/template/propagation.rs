@@ -24,6 +24,7 @@ use super::{Center, Settings};
 use crate::composite::decide;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
+use crate::method::clock::{Work, spend};
 use crate::method::projection::PixelSample;
 use crate::number::{Exact, MapInline, Real, Vector2, Vector3};
 
@@ -65,6 +66,7 @@ pub(super) fn coarser<R: Exact>(
     reach: R,
     exec: &Exec,
 ) -> Plane<Center<R>> {
+    spend(Work::Propagate);
     let (width, height) = (fine.width().div_ceil(2), fine.height().div_ceil(2));
     let mut coarse = Plane::filled(width, height, Center::empty());
     let rows = coarse.rows_mut();

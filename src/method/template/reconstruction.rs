@@ -42,6 +42,7 @@ use super::{Center, Falloff, Settings, propagation};
 use crate::composite::decide::Ternary;
 use crate::composite::{decide, sum};
 use crate::frame::{Exec, NO_ID, Plane};
+use crate::method::clock::{Work, spend};
 use crate::number::{Exact, Real, Truth};
 use crate::splat::Ellipse;
 
@@ -175,6 +176,7 @@ pub fn gather<R: Exact>(
     settings: &Settings,
     exec: &Exec,
 ) -> Plane<Gathered<R>> {
+    spend(Work::Search);
     let (width, height) = (levels[0].width(), levels[0].height());
     let mut gathered = Plane::filled(width, height, Gathered::empty());
     let rows = gathered.rows_mut();

@@ -5,6 +5,7 @@ use super::blending::GroupLayers;
 use crate::composite::decide;
 use crate::composite::over::Blend;
 use crate::frame::NO_ID;
+use crate::method::clock::{Work, spend};
 use crate::number::{Exact, MapInline, Real};
 
 /// The average of all groups at a pixel.
@@ -30,6 +31,7 @@ pub(crate) fn averages<R: Exact>(
     pixels: usize,
     holes: Holes,
 ) -> Vec<GroupAverage<R>> {
+    spend(Work::Average);
     let average = |pixel: usize| {
         let mut sum = GroupAverage::EMPTY;
         let mut count = 0_u8;

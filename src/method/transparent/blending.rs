@@ -10,6 +10,7 @@ use crate::frame::{NO_ID, Rect};
 use crate::index::Item;
 use crate::method::Job;
 use crate::method::buffer_formats::Buffers;
+use crate::method::clock::{Work, spend};
 use crate::method::fragment::{each_in_bounds, each_inside, facing};
 use crate::method::prepare::Prepared;
 use crate::number::{Exact, MapInline, Real, Vector3};
@@ -151,6 +152,7 @@ impl<R: Exact> Blending<R> {
         rect: Rect,
         stays: impl Fn(usize, R) -> bool,
     ) -> Vec<Vec<GroupLayers<R>>> {
+        spend(Work::Blend);
         let shared = self.shared();
         let mut images = vec![vec![GroupLayers::EMPTY; rect.pixels()]; self.groups()];
         self.prepared.for_each(tile, |drawn| {

@@ -7,12 +7,12 @@ use crate::composite::over::Blend;
 use crate::error::Result;
 use crate::frame::{NamedPlane, Rect};
 use crate::method::Job;
+use crate::method::clock::{Clock, Stopwatch};
 use crate::method::input_planes::InputPlanes;
-use crate::method::picture::{Clock, Picture};
+use crate::method::picture::Picture;
 use crate::method::stage::{Keep, unknown};
 use crate::method::tiled::Tiled;
 use crate::number::Exact;
-use std::time::Instant;
 
 /// The definition of Algorithm 2, in any number type. With `stages`, every stage leaves its planes.
 pub(crate) fn define<R: Exact>(
@@ -25,10 +25,12 @@ pub(crate) fn define<R: Exact>(
     clock.lap("projection");
     let passes = BlendPasses { blending: &blending, holes: settings.holes, keep: stages };
     let Blended { images, averages } = passes.run(job, |_, _, _| true, &mut clock);
+    let shown = picture(job, &averages);
+    clock.lap("averaging");
     let there = job.there(if stages { Keep::Stages } else { Keep::Picture });
     let mut left = planes::images(&images, &there);
     left.extend(averages.planes(&GroupAverage::PLANES, 0, &there));
-    left.extend(picture(job, &averages));
+    left.extend(shown);
     let (frame, timings) = (job.frame(left), clock.into_laps());
     Ok(Picture { frame, tally: blending.tally(), timings, seen: None })
 }
@@ -68,11 +70,12 @@ impl<R: Exact> BlendPasses<'_, R> {
         let grid = job.grid();
         let tiles = grid.rects().into_iter().enumerate().collect();
         let done = job.exec.ordered(tiles, |(tile, rect): (usize, Rect)| {
-            let start = Instant::now();
+            let mut watch = Stopwatch::start();
             let images = self.blending.images(tile, rect, |pixel, t| stays(tile, pixel, t));
-            let drawn = Instant::now();
+            watch.lap(0);
             let averages = averages(&images, rect.pixels(), self.holes);
-            ((self.keep.then_some(images), averages), [drawn - start, drawn.elapsed()])
+            watch.lap(1);
+            ((self.keep.then_some(images), averages), watch.times())
         });
         let (done, times): (Vec<_>, Vec<_>) = done.into_iter().unzip();
         clock.shares(["blending", "averaging"], &times);

@@ -4,6 +4,7 @@ use super::Settings;
 use super::nearest::FrontLayer;
 use crate::composite::over::Blend;
 use crate::method::Job;
+use crate::method::clock::{Work, spend};
 use crate::method::tiled::{Tiled, pixels};
 use crate::method::transparent::averaging::GroupAverage;
 use crate::number::{Exact, MapInline, Real, Truth, Vector3};
@@ -18,6 +19,7 @@ pub(super) fn compositing<R: Exact>(
     nearest: &Tiled<FrontLayer<R>>,
     others: &Tiled<GroupAverage<R>>,
 ) -> Tiled<Blend<R>> {
+    spend(Work::Over);
     let through = Through::new(job, settings, Environment::radiance);
     Tiled::new(job, |tile, rect| {
         let layers = nearest.tile(tile).iter().zip(others.tile(tile));

@@ -4,6 +4,7 @@ use super::Settings;
 use crate::composite::decide;
 use crate::frame::stencil::{Function, Operation, Outcome, Stencil};
 use crate::method::Job;
+use crate::method::clock::{Work, spend};
 pub(crate) use crate::method::single_pass;
 use crate::method::single_pass::compositing::Composite;
 use crate::method::surface::SurfacePixel;
@@ -49,6 +50,7 @@ pub(super) fn nearest<R: Exact>(
     job: &Job<'_>,
     composites: &Tiled<Composite<R>>,
 ) -> Tiled<FrontLayer<R>> {
+    spend(Work::Shade);
     let shading = Shading::new(job);
     Tiled::new(job, |tile, rect| {
         let composites = pixels(rect).zip(composites.tile(tile));

@@ -6,8 +6,9 @@ use super::{Settings, planes};
 use crate::error::{Error, Result};
 use crate::frame::NamedPlane;
 use crate::method::Job;
+use crate::method::clock::Clock;
 use crate::method::input_planes::InputPlanes;
-use crate::method::picture::{Clock, Picture};
+use crate::method::picture::Picture;
 use crate::method::single_pass::geometry::{Geometry, ImagePixel};
 use crate::method::single_pass::picture as first;
 use crate::method::single_pass::planes::{given_images, image_planes};
@@ -39,24 +40,27 @@ pub(super) fn define<R: Exact>(
         first::passes(job, &geometry, stages, FIRST, &mut clock);
     let near = nearest(job, &composites);
     clock.lap("nearest");
-    let mut left = image_planes(job, &ImagePixel::NEAREST, settings.nearest, &images);
 
     // 2. The other layers.
-    let second::Blended { images, averages } =
+    let second::Blended { images: others_images, averages } =
         others(job, settings, &blending, &near, stages, &mut clock);
 
     // 3. Compositing.
     let blends = compositing(job, settings, &near, &averages);
+    let shown = planes::compositing(job, &blends, &near, &averages);
+    let pictured = near.planes(&FrontLayer::PICTURE, 0, &job.there(Keep::Picture));
     clock.lap("compositing");
+
+    let mut left = image_planes(job, &ImagePixel::NEAREST, settings.nearest, &images);
     if stages {
         let there = job.there(Keep::Stages);
         left.extend(near.planes(&FrontLayer::STAGES, 0, &there));
-        left.extend(layers::images(&images, &there));
+        left.extend(layers::images(&others_images, &there));
         left.extend(averages.planes(&GroupAverage::PLANES, 0, &there));
         left.push(planes::layers_by_opacity(&near, &averages));
     }
-    left.extend(planes::compositing(job, &blends, &near, &averages));
-    left.extend(near.planes(&FrontLayer::PICTURE, 0, &job.there(Keep::Picture)));
+    left.extend(shown);
+    left.extend(pictured);
     let (frame, timings) = (job.frame(left), clock.into_laps());
     Ok(Picture { frame, tally: geometry.splats.tally, timings, seen: None })
 }

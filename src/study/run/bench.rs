@@ -13,8 +13,7 @@ use std::time::{Duration, Instant};
 
 /// The scenes and groups of the candidates.
 #[derive(Debug)]
-pub struct Bench<'e> {
-    exec: &'e Exec,
+pub struct Bench {
     /// Scenes of objects as they were read; candidates at several levels of detail share them.
     files: Vec<(SceneFile, Loaded)>,
     loads: Vec<Load>,
@@ -61,7 +60,7 @@ pub struct Visit<'a> {
     pub prepared: Duration,
 }
 
-impl<'e> Bench<'e> {
+impl Bench {
     /// Loads the scenes of candidates. Candidates whose methods cannot draw the scene are left out,
     /// with the reason. Candidates that need opacities are dropped if there are none.
     ///
@@ -69,13 +68,13 @@ impl<'e> Bench<'e> {
     /// As [`SceneFile::ready`] if no candidate can be drawn.
     pub fn load(
         candidates: Vec<Candidate>,
-        exec: &'e Exec,
+        exec: &Exec,
         progress: Progress<'_>,
     ) -> Result<(Self, Vec<Candidate>, Vec<LeftOut>)> {
-        let mut bench = Self { exec, files: Vec::new(), loads: Vec::new(), groups: Vec::new() };
+        let mut bench = Self { files: Vec::new(), loads: Vec::new(), groups: Vec::new() };
         let (mut kept, mut left_out, mut first) = (Vec::new(), Vec::<LeftOut>::new(), None);
         for candidate in candidates {
-            match bench.scene(&candidate, progress) {
+            match bench.scene(&candidate, exec, progress) {
                 Ok(load) if candidate.needs_opacity && bench.loads[load].is_opaque() => {}
                 Ok(_) => kept.push(candidate),
                 Err(error @ Error::Invalid(_)) => {
@@ -95,7 +94,12 @@ impl<'e> Bench<'e> {
     }
 
     /// The scene of a candidate: one that is already loaded, if it is the same.
-    fn scene(&mut self, candidate: &Candidate, progress: Progress<'_>) -> Result<usize> {
+    fn scene(
+        &mut self,
+        candidate: &Candidate,
+        exec: &Exec,
+        progress: Progress<'_>,
+    ) -> Result<usize> {
         let method = candidate.file.method.method()?;
         let plain = SceneFile {
             method: MethodChoice::default(),
@@ -111,9 +115,9 @@ impl<'e> Bench<'e> {
             return Ok(found);
         }
         let ready = if is_flat {
-            candidate.file.ready(self.exec, progress)?
+            candidate.file.ready(exec, progress)?
         } else {
-            candidate.file.ready_of(self.file(&plain, progress)?, self.exec)?
+            candidate.file.ready_of(self.file(&plain, exec, progress)?, exec)?
         };
         self.loads.push(Load { key: (plain, objects), ready });
         Ok(self.loads.len() - 1)
@@ -121,12 +125,12 @@ impl<'e> Bench<'e> {
 
     /// The content of a scene of objects, read once for all levels of detail; geometries are
     /// shared.
-    fn file(&mut self, plain: &SceneFile, progress: Progress<'_>) -> Result<Loaded> {
+    fn file(&mut self, plain: &SceneFile, exec: &Exec, progress: Progress<'_>) -> Result<Loaded> {
         let all = SceneFile { refinement: Refinement::default(), ..plain.clone() };
         if let Some((_, loaded)) = self.files.iter().find(|(file, _)| *file == all) {
             return Ok(loaded.clone());
         }
-        let loaded = all.load(self.exec, progress)?;
+        let loaded = all.load(exec, progress)?;
         self.files.push((all, loaded.clone()));
         Ok(loaded)
     }
@@ -135,14 +139,19 @@ impl<'e> Bench<'e> {
     ///
     /// # Errors
     /// As [`Session::prepare`].
-    pub fn visit(&mut self, candidate: &Candidate, progress: Progress<'_>) -> Result<Visit<'_>> {
+    pub fn visit<'a>(
+        &'a mut self,
+        candidate: &Candidate,
+        exec: &'a Exec,
+        progress: Progress<'_>,
+    ) -> Result<Visit<'a>> {
         let method = candidate.file.method.method()?;
         let chosen = candidate.file.grouping(&method)?;
-        let load = self.scene(candidate, progress)?;
+        let load = self.scene(candidate, exec, progress)?;
         let start = Instant::now();
-        let known = self.known_groups(load, &method, chosen, progress)?.cloned();
+        let known = self.known_groups(load, &method, chosen, exec, progress)?.cloned();
         let ready = &self.loads[load].ready;
-        let session = Session::with_groups(&ready.loaded.scene, method, known, self.exec)?;
+        let session = Session::with_groups(&ready.loaded.scene, method, known, exec)?;
         Ok(Visit { session, ready, prepared: start.elapsed() })
     }
 
@@ -152,6 +161,7 @@ impl<'e> Bench<'e> {
         load: usize,
         method: &Method,
         chosen: Option<Grouping>,
+        exec: &Exec,
         progress: Progress<'_>,
     ) -> Result<Option<&Groups>> {
         let Some(default) = method.grouping() else { return Ok(None) };
@@ -164,7 +174,7 @@ impl<'e> Bench<'e> {
         let found = match self.groups.iter().position(is_it) {
             Some(found) => found,
             None => {
-                let (groups, ..) = grouping.groups(&scene.surfels, self.exec, progress)?;
+                let (groups, ..) = grouping.groups(&scene.surfels, exec, progress)?;
                 self.groups.push(Grouped { load, grouping, groups });
                 self.groups.len() - 1
             }
@@ -191,7 +201,7 @@ mod tests {
         assert_eq!(bench.files.len(), 1, "one file, whatever is asked of it");
         let (mut least, mut most) = (usize::MAX, 0);
         for candidate in kept.iter().filter(|one| one.method == "pyramid") {
-            let found = bench.visit(candidate, &quiet).unwrap().ready.clone();
+            let found = bench.visit(candidate, &exec, &quiet).unwrap().ready.clone();
             let alone = candidate.file.ready(&exec, &quiet).unwrap();
             assert_eq!(found.identity().unwrap(), alone.identity().unwrap(), "{candidate:?}");
             let surfels = found.loaded.scene.surfels.len();

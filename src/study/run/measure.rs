@@ -6,7 +6,7 @@ use super::loss::Loss;
 use super::record::Measured;
 use super::truths::Truths;
 use crate::compare::metrics::{Better, Errors, Flicker, METRICS, Metric};
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::frame::{Exec, Frame};
 use crate::io::scene_file::{Number, Ready};
 use crate::method::Picture;
@@ -45,6 +45,18 @@ pub fn losses() -> Vec<Loss> {
     METRICS.iter().map(of).chain(FLICKERS.iter().map(flicker)).collect()
 }
 
+/// The loss of the figure with this name.
+///
+/// # Errors
+/// [`Error::Usage`] with all names, if no figure has this name.
+pub fn loss(name: &str) -> Result<Loss> {
+    let all = losses();
+    all.iter().find(|loss| loss.figure == name).cloned().ok_or_else(|| {
+        let names: Vec<&str> = all.iter().map(|loss| loss.figure).collect();
+        Error::Usage(format!("give one of {}", names.join(", ")))
+    })
+}
+
 /// How many surfels a scene shows.
 fn drawn(ready: &Ready) -> u64 {
     let scene = &ready.loaded.scene;
@@ -56,13 +68,13 @@ fn drawn(ready: &Ready) -> u64 {
 /// # Errors
 /// As [`measure`].
 pub fn picture_error(
-    bench: &mut Bench<'_>,
+    bench: &mut Bench,
     candidate: &Candidate,
     metric: &Metric,
     truth: &Truth,
     exec: &Exec,
 ) -> Result<(Option<f64>, f64)> {
-    let mut visit = bench.visit(candidate, &|_, _, _| ())?;
+    let mut visit = bench.visit(candidate, exec, &|_, _, _| ())?;
     let camera = visit.ready.camera;
     let (time, picture) = second(&mut visit, candidate, &camera)?;
     Ok((metric.between(&picture.frame, &truth.frame, exec)?, time))
@@ -93,13 +105,13 @@ pub fn second<'v>(
 /// # Errors
 /// As [`Bench::visit`] and as drawing.
 pub fn measure(
-    bench: &mut Bench<'_>,
+    bench: &mut Bench,
     candidate: &Candidate,
     truths: &Truths,
     exec: &Exec,
 ) -> Result<(Measured, Frame<f32>)> {
     let output = candidate.file.output;
-    let mut visit = bench.visit(candidate, &|_, _, _| ())?;
+    let mut visit = bench.visit(candidate, exec, &|_, _, _| ())?;
     let camera = visit.ready.camera;
     if candidate.imitates {
         // Only the state after the first picture counts.

@@ -45,16 +45,17 @@ pub fn order(round: u64, count: usize) -> Vec<usize> {
 /// # Errors
 /// As [`Bench::visit`] and as drawing.
 pub fn turn(
-    bench: &mut Bench<'_>,
+    bench: &mut Bench,
     candidate: &Candidate,
     round: u64,
     times: &mut Vec<f64>,
+    exec: &Exec,
 ) -> Result<()> {
     let is_slow = times.first().is_some_and(|first| *first >= SLOW);
     if is_slow && round >= SLOW_ROUNDS {
         return Ok(());
     }
-    let mut visit = bench.visit(candidate, &|_, _, _| ())?;
+    let mut visit = bench.visit(candidate, exec, &|_, _, _| ())?;
     let camera = visit.ready.camera;
     if !is_slow {
         candidate.file.output.draw(&mut visit.session, &camera)?;

@@ -77,10 +77,13 @@ impl Known {
         Ok(Self { scene, surfaces, cull, unknown })
     }
 
-    /// Why no surface is known, if none is.
+    /// How a true picture was computed, and why it is no better.
     #[must_use]
-    pub fn unknown(&self) -> Option<&str> {
-        self.unknown.as_deref()
+    pub fn in_words(&self, truth: &Truth) -> String {
+        match &self.unknown {
+            None => truth.how.to_string(),
+            Some(why) => format!("{} ({why})", truth.how),
+        }
     }
 
     /// The true picture from a camera, and its colours under shifts.
@@ -217,7 +220,7 @@ mod tests {
     #[test]
     fn what_has_no_surface_says_why() {
         let (known, truth) = known(|file| file.models[0].opacity = Some(0.5));
-        assert_eq!(known.unknown(), Some("surfaces have no opacity"));
+        assert_eq!(known.unknown.as_deref(), Some("surfaces have no opacity"));
         assert_eq!(truth.how, How::Layers);
     }
 }

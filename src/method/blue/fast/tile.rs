@@ -4,6 +4,7 @@ use crate::composite::decide;
 use crate::frame::{FramebufferTile, NO_ID, Rect, TileMut};
 use crate::method::blue::discs::{DiscFragment, column, row};
 use crate::method::blue::squares::{Square, Squares};
+use crate::method::clock::{Work, spend};
 use crate::method::fast::store::clear;
 use crate::method::fragment::facing;
 use crate::number::lanes::{LANES, vectorized};
@@ -31,6 +32,7 @@ pub(super) struct TileOfDiscs {
 impl TileOfDiscs {
     /// Starts a tile of these pixels, with the squares that touch it.
     pub(super) fn gather(&mut self, squares: &Squares<f32>, tile: usize, rect: Rect) {
+        spend(Work::Gather);
         self.rect = rect;
         self.squares.clear();
         squares.for_each(tile, |square| {
@@ -50,6 +52,7 @@ impl TileOfDiscs {
         if self.squares.is_empty() {
             return;
         }
+        spend(Work::Discs);
         let Rect { x0, y0, .. } = self.rect;
         let (columns, rows) = (self.stride(), self.rect.rows() + SIDE - 1);
         self.a.clear();
@@ -69,6 +72,7 @@ impl TileOfDiscs {
 
     /// Writes the surface of each pixel.
     pub(super) fn store(&self, scene: &Scene, pixels: &mut FramebufferTile<'_, f32>) {
+        spend(Work::Store);
         let rect = &self.rect;
         if self.squares.is_empty() {
             return clear(pixels);

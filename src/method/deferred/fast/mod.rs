@@ -10,7 +10,7 @@ mod ranks;
 
 use super::Settings;
 use super::part::{Part, Whole};
-use super::picture::{flagged, unseen, whole};
+use super::picture::{UNSHADED, flagged, unseen, whole};
 use super::polygons::Polygons;
 use super::queries::Limits;
 use super::visibility::POLYGON;
@@ -19,31 +19,35 @@ use crate::error::Result;
 use crate::frame::{Exec, Framebuffer, NO_ID, Rect, Wanted};
 use crate::index::seen::Seen;
 use crate::method::Job;
+use crate::method::clock::{Clock, Stopwatch, Work, spend};
 use crate::method::fast::fragments::touches;
 use crate::method::fast::tile::{Record, SIDE, Tile};
 use crate::method::fast::{draw, prepare};
-use crate::method::picture::{Clock, Laps};
 use crate::method::prepare::Prepared;
 use crate::number::lanes::LANES;
 use crate::splat::{Shared, SplatSettings, Tally};
 use ranks::Ranks;
 
 /// Draws a frame into a framebuffer, every pixel of it, with pass 3. Returns what the frame saw,
-/// the fates of the selected surfels, and the wall times. The fused passes have shares of their
-/// common time.
+/// the fates of the selected surfels, and the laps.
 pub(super) fn render(
     job: &Job<'_>,
     settings: &Settings,
     target: &mut Framebuffer<f32>,
-) -> Result<(Seen, Tally, Laps)> {
+) -> Result<(Seen, Tally, Clock)> {
     let splats = &settings.splats;
     let (whole, before) = whole(job, settings)?;
     let grid = job.strips();
-    let mut clock = Clock::default();
+    let mut clock = Clock::of_stages(&UNSHADED);
     let polygons = Polygons::draw(job, settings, &whole)?;
-    let ids = flagged(&whole, &before)?;
-    let flagged = Projected::new(job, splats, whole.drawn(ids, job));
-    let mut first = First::draw(job, &flagged.splats);
+    let flagged = whole.part(flagged(&whole, &before)?, job.exec);
+    clock.lap("visibility");
+    let flagged = flagged.filtered(job);
+    clock.lap("attributes");
+    let flagged = Projected::new(job, splats, flagged);
+    // The tiles of pass 1 share the time from here on.
+    clock.lap("visibility");
+    let mut first = First::draw(job, &flagged.splats, &mut clock);
     if let Some(polygons) = &polygons {
         first.add(polygons, job.exec);
     }
@@ -55,7 +59,10 @@ pub(super) fn render(
     let now = Seen::from_selected(whole.ids(), settings.flags, &list);
     clock.lap("indices");
 
-    let fresh = whole.drawn(unseen(&whole, &before, &list), job);
+    let fresh = whole.part(unseen(&whole, &before, &list), job.exec);
+    clock.lap("difference");
+    let fresh = fresh.filtered(job);
+    clock.lap("attributes");
     let fresh = Projected::new(job, splats, fresh);
     clock.lap("difference");
 
@@ -64,11 +71,16 @@ pub(super) fn render(
     let shared = &flagged.splats.shared;
     clock.lap("attributes");
 
-    let gather =
-        |tile: &mut Tile, index, rect| gather(tile, (index, rect), [&flagged, &fresh], &ranks);
-    let passes = draw::<3>(job, target, gather, |tile, watch| {
-        first.load(&ranks, tile);
+    let stages = (&mut clock, ["difference", "attributes", "normalization"]);
+    let gather = |tile: &mut Tile, index, rect, watch: &mut Stopwatch<3>| {
+        gather(tile, (index, rect), [&flagged, &fresh], &ranks);
+        // Pass 4 needs the depth of pass 1 even where pass 3 draws nothing.
+        if !tile.splats.is_empty() {
+            first.load(&ranks, tile);
+        }
         watch.lap(1);
+    };
+    draw(job, target, stages, gather, |tile, watch| {
         let index = grid.place(tile.grid.rect.x0, tile.grid.rect.y0).0;
         more(tile, &fresh.splats, &ranks, index);
         watch.lap(0);
@@ -78,15 +90,11 @@ pub(super) fn render(
         tile.normalize(shared);
         name(tile, &ranks);
     });
-    for (name, time) in ["difference", "attributes", "normalization"].into_iter().zip(passes) {
-        clock.add(name, time);
-    }
-    clock.restart();
     if let Some(polygons) = &polygons {
         polygons.fill(target, job.exec);
     }
     clock.lap("normalization");
-    Ok((now, tally, clock.into_laps()))
+    Ok((now, tally, clock))
 }
 
 /// Surfels in the colours of pass 4, and their splats.
@@ -131,6 +139,7 @@ fn gather(
     [flagged, fresh]: [&Projected; 2],
     ranks: &Ranks,
 ) {
+    spend(Work::GatherRanked);
     let shared = &flagged.splats.shared;
     let splats = &mut tile.splats;
     flagged.splats.for_each(index, |splat| {
@@ -158,18 +167,20 @@ struct First {
 }
 
 impl First {
-    fn draw(job: &Job<'_>, flagged: &Prepared<f32, Record>) -> Self {
+    fn draw(job: &Job<'_>, flagged: &Prepared<f32, Record>, clock: &mut Clock) -> Self {
         let shared = flagged.shared;
         let wanted = Wanted { normal: false, color: false, observed: false };
         let [width, height] = job.camera.size();
         let mut target = Framebuffer::new(width, height, shared.empty(), wanted);
-        let gather = |tile: &mut Tile, index, rect| tile.gather(flagged, index, rect);
-        draw::<1>(job, &mut target, gather, |tile, _| tile.visibility(&shared));
+        let stages = (clock, ["visibility"]);
+        let gather = |tile: &mut Tile, index, rect, _: &mut _| tile.gather(flagged, index, rect);
+        draw(job, &mut target, stages, gather, |tile, _| tile.visibility(&shared));
         Self { shared, target }
     }
 
     /// Puts polygons where no surfel is as near.
     fn add(&mut self, polygons: &Polygons<f32>, exec: &Exec) {
+        spend(Work::Polygons);
         let Framebuffer { depth, id, .. } = &mut self.target;
         let rows = (0..).zip(depth.rows_mut().zip(id.rows_mut()));
         exec.ordered(rows.collect(), |(y, (depth, ids)): (u32, (&mut [f32], &mut [u32]))| {
@@ -184,6 +195,7 @@ impl First {
 
     /// The greatest depth of pass 2 at each pixel.
     fn limits(&self, epsilon: f32, exec: &Exec) -> Limits {
+        spend(Work::Indices);
         let (nearness, ids) = (self.target.depth.values(), self.target.id.values());
         let depth = |i: usize| match ids[i] {
             NO_ID => f32::INFINITY,
@@ -196,6 +208,7 @@ impl First {
 
     /// Puts the pixels of a tile into its blocks.
     fn load(&self, ranks: &Ranks, tile: &mut Tile) {
+        spend(Work::Load);
         let rect = tile.grid.rect;
         for index in 0..tile.blocks.len() {
             let (x0, y0) = tile.grid.corner(index);
@@ -219,6 +232,7 @@ impl First {
 /// Runs pass 3 in one tile with the number `index`; afterwards the tile holds the splats of pass 4
 /// again.
 fn more(tile: &mut Tile, fresh: &Prepared<f32, Record>, ranks: &Ranks, index: usize) {
+    spend(Work::Difference);
     let mut splats = Vec::new();
     fresh.gather_f32(index, &tile.grid.rect, &mut splats);
     for splat in &mut splats {
@@ -232,6 +246,7 @@ fn more(tile: &mut Tile, fresh: &Prepared<f32, Record>, ranks: &Ranks, index: us
 /// Puts ids in the place of ranks. Pixels without weight are empty, whatever depth passes 1 and 3
 /// left. So are pixels where a polygon is nearest.
 fn name(tile: &mut Tile, ranks: &Ranks) {
+    spend(Work::Normalize);
     for block in &mut tile.blocks {
         for lane in 0..LANES {
             if !(block.weight[lane] > 0.0) || block.id[lane] == ranks::POLYGON {

@@ -13,6 +13,7 @@ use super::super::queries::{Limits, Queries};
 use super::super::visibility::NONE;
 use crate::composite::decide;
 use crate::method::Job;
+use crate::method::clock::{Work, spend};
 use crate::method::projection::surfels::{PlacedPoint, PointProjector};
 use crate::number::lanes::{LANES, Lanes, each, mask, select, vectorized};
 use crate::number::{Real, Vector3};
@@ -28,6 +29,7 @@ pub(super) fn selected(
     whole: &Whole<'_>,
     limits: &Limits,
 ) -> Vec<u64> {
+    spend(Work::Indices);
     let points = PointProjector::new(View::new(job.camera), settings.splats.cull);
     let queries = Queries::new(job.camera, limits);
     let shares = whole.shares(job.exec.threads().min(SHARES));

@@ -2,6 +2,7 @@
 //! pass 4 draws.
 
 use super::super::visibility::NONE;
+use crate::method::clock::{Work, spend};
 
 /// Stands for a polygon in the place of a rank; higher than the rank of any surfel.
 pub(super) const POLYGON: u32 = crate::frame::NO_ID - 1;
@@ -20,6 +21,7 @@ impl Ranks {
     /// Merges the ids of passes 1 and 3, which have none in common. `selected` are the ids of pass
     /// 4. All three ascend.
     pub(super) fn new(flagged: &[u64], fresh: &[u64], selected: &[u64]) -> Self {
+        spend(Work::Rank);
         let most = flagged.len() + fresh.len();
         let mut ranks = Self {
             ids: Vec::with_capacity(most),

@@ -1,5 +1,6 @@
 //! Run the geometry passes over one tile, compiled for every vector width.
 
+use crate::method::clock::{Work, spend};
 use crate::method::fast::fragments::{add, each_block, inside};
 use crate::method::fast::tile::Tile;
 use crate::number::elementary::exp_f32_in_range;
@@ -10,6 +11,7 @@ use multiversion::target::target_cfg_f;
 impl Tile {
     /// Visibility splatting.
     pub(crate) fn visibility(&mut self, shared: &Shared<f32>) {
+        spend(Work::Visibility);
         if shared.ray_cast {
             visibility::<true, false>(self, shared);
         } else {
@@ -20,6 +22,7 @@ impl Tile {
     /// Visibility splatting over the result of another pass; if fragments are equally near, the
     /// lower surfel stays.
     pub(crate) fn visibility_over(&mut self, shared: &Shared<f32>) {
+        spend(Work::Visibility);
         if shared.ray_cast {
             visibility::<true, true>(self, shared);
         } else {
@@ -29,6 +32,7 @@ impl Tile {
 
     /// Attribute splatting.
     pub(crate) fn attributes(&mut self, shared: &Shared<f32>) {
+        spend(Work::Attributes);
         match (shared.ray_cast, self.normal, self.color) {
             (false, false, false) => attributes::<false, false, false>(self, shared),
             (false, false, true) => attributes::<false, false, true>(self, shared),

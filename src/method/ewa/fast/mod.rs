@@ -5,9 +5,9 @@ mod kernels;
 use super::Settings;
 use crate::frame::Framebuffer;
 use crate::method::Job;
+use crate::method::clock::Clock;
 use crate::method::fast::tile::Tile;
 use crate::method::fast::{draw, prepare};
-use crate::method::picture::{Clock, Laps};
 use crate::splat::Tally;
 
 /// Draws a scene into a framebuffer: both geometry passes and the normalization. The wall times of
@@ -23,14 +23,15 @@ pub(super) fn render(
     job: &Job<'_>,
     settings: &Settings,
     target: &mut Framebuffer<f32>,
-) -> (Tally, Laps) {
+) -> (Tally, Clock) {
     assert_eq!([target.width, target.height], job.size(), "framebuffer size");
     let mut clock = Clock::default();
     let prepared = prepare(job, settings);
     clock.lap("projection");
     let shared = &prepared.shared;
-    let gather = |tile: &mut Tile, index, rect| tile.gather(&prepared, index, rect);
-    let passes = draw::<3>(job, target, gather, |tile, watch| {
+    let stages = (&mut clock, ["visibility", "attributes", "normalization"]);
+    let gather = |tile: &mut Tile, index, rect, _: &mut _| tile.gather(&prepared, index, rect);
+    draw(job, target, stages, gather, |tile, watch| {
         tile.visibility(shared);
         watch.lap(0);
         tile.limits(shared, prepared.epsilon);
@@ -38,7 +39,5 @@ pub(super) fn render(
         watch.lap(1);
         tile.normalize(shared);
     });
-    let mut laps = clock.into_laps();
-    laps.extend(["visibility", "attributes", "normalization"].into_iter().zip(passes));
-    (prepared.tally, laps)
+    (prepared.tally, clock)
 }

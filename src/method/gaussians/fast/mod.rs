@@ -20,8 +20,9 @@ use crate::frame::{Grid, NO_ID, NamedPlane, Plane, Pool, TileMut};
 use crate::memory;
 use crate::method::Job;
 use crate::method::buffer_formats::Buffers;
+use crate::method::clock::{Clock, Work, spend};
 use crate::method::fast::store::{clear_plane, store_plane};
-use crate::method::picture::{Clock, Picture};
+use crate::method::picture::Picture;
 use blending::{Block, Blocks, Limits};
 
 /// Draws the picture.
@@ -76,6 +77,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
 
 /// Blends the splats at these places into the blocks of a tile.
 fn blend(blending: &Blending<'_, f32>, places: &[usize], blocks: &mut Blocks) {
+    spend(Work::Blend);
     let (source, splats) = (&blending.source, blending.splats);
     let limits = Limits::new(source.settings);
     if source.settings.meets_rays() {

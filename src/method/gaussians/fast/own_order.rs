@@ -3,6 +3,7 @@
 use super::blending::{Block, Limits, before, fragments, inside, opaque};
 use super::discs;
 use crate::frame::Rect;
+use crate::method::clock::{Work, spend};
 use crate::method::fast::tile::{BlockGrid, SIDE};
 use crate::method::gaussians::blending::{Blending, GaussianPixel};
 use crate::method::gaussians::splats::{Beside, GaussianSplat, Solid};
@@ -36,6 +37,7 @@ pub(super) const BYTES_A_SPLAT: u64 =
 
 /// The blocks of a tile.
 pub(super) fn blend(blending: &Blending<'_, f32>, places: &[usize], rect: Rect) -> Vec<Block> {
+    spend(Work::Blend);
     let splats = blending.splats;
     let near = |&place: &usize| {
         let (splat, beside) = (*splats.at(place), splats.beside(place)?);

@@ -6,6 +6,7 @@ use super::{Attributes, FastPeeling};
 use crate::composite::under::Under;
 use crate::composite::{decide, sum};
 use crate::frame::NO_ID;
+use crate::method::clock::{Work, spend};
 use crate::method::fast::fragments::add;
 use crate::method::fast::layered::LayeredBlock;
 use crate::method::fast::resolve::least_nearness;
@@ -40,11 +41,13 @@ impl FastPeeling<'_> {
         let shared = &self.prepared.shared;
         let mut through = [1.0; LANES];
         for layer in 0..self.most {
+            spend(Work::Peel);
             let Some(nearest) = foremost(fragments, shared) else { break };
             let sums = sums(fragments, attributes, &nearest, shared, self.prepared.epsilon);
             if layer == 0 {
                 block.id = nearest.id;
             }
+            spend(Work::Blend);
             let shown = (layer == 0, corner, self.own);
             resolve(block, &mut through, (&nearest, &sums), shown, (&self.shader, shared));
         }

@@ -3,7 +3,8 @@
 //! Block after block is finished. The fragments of a block's splats are computed once, with their
 //! weights, and then layer after layer is taken from them. A fragment that is in a layer is struck
 //! out, and a splat without fragments left is dropped. So a layer costs only the fragments at it
-//! and beyond it. Splats stay in ascending order, and so do the sums.
+//! and beyond it. Splats stay in ascending order, and so do the sums. A layer is blended at once, so
+//! both stages have one lap.
 
 mod fragments;
 mod layers;
@@ -11,17 +12,17 @@ mod layers;
 use super::{Settings, planes};
 use crate::frame::{Pool, Rect};
 use crate::method::Job;
+use crate::method::clock::Clock;
 use crate::method::fast::layered::{LayeredBlock, LayeredPlanes};
 use crate::method::fast::lists::BlockLists;
 use crate::method::fast::prepare;
 use crate::method::fast::tile::{BlockGrid, Record, Surface};
-use crate::method::picture::{Clock, Picture, before_environment};
+use crate::method::picture::{Picture, before_environment};
 use crate::method::prepare::Prepared;
 use crate::scene::Surfels;
 use crate::shade::phong::Shader;
 use crate::splat::View;
 use fragments::Fragments;
-use std::time::Instant;
 
 /// A picture whose splats are projected and sorted into tiles.
 struct FastPeeling<'a> {
@@ -45,20 +46,17 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Pictu
     clock.lap("projection");
     let (size, grid) = (job.size(), job.strips());
     let mut target = LayeredPlanes::new(size, pool.count(size), pool);
-    let times = job.exec.ordered(target.cut(&grid, job.exec), |mut pixels| {
-        let start = Instant::now();
+    job.exec.ordered(target.cut(&grid, job.exec), |mut pixels| {
         match peeling.tile(pixels.depth.index, pixels.depth.rect) {
             Some(blocks) => pixels.store(&blocks, |layers| layers as u8),
             None => pixels.clear(0),
         }
-        [start.elapsed()]
     });
-    clock.shares(["layers"], &times);
     let LayeredPlanes { color, alpha, depth, id, layers } = target;
     let shown = before_environment(job, color, alpha);
     let mut left: Vec<_> = planes::shown(shown).into();
     left.extend(planes::pixel_planes(depth, id, layers));
-    clock.lap("blending");
+    clock.lap("layers and blending");
     let (frame, timings) = (job.frame(left), clock.into_laps());
     Picture { frame, tally: peeling.prepared.tally, timings, seen: None }
 }

@@ -7,6 +7,7 @@
 
 use super::points::{CHUNK, Points, depth};
 use crate::frame::{Exec, NO_ID};
+use crate::method::clock::{Work, spend};
 use crate::method::projection::surfels::PointProjector;
 use crate::number::lanes::{LANES, Lanes, each, put_vector, transposed, vector};
 use crate::number::{Real, Vector3};
@@ -39,6 +40,7 @@ impl Points {
     ) {
         let width = lens.view.width.to_pixel() as usize;
         exec.chunks(rows, self.rows(), |first, rows| {
+            spend(Work::Project);
             let mut kept = vec![NONE; rows.len() * width];
             for slots in self.slots(first / self.rows()) {
                 for (slot, key) in slots.clone().zip(&self.keys[slots]) {

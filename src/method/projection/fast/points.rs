@@ -6,6 +6,7 @@
 )]
 
 use crate::frame::Exec;
+use crate::method::clock::{Work, spend};
 use crate::method::projection::surfels::PointProjector;
 use crate::number::lanes::{LANES, Lanes, vectorized};
 use crate::number::{MapInline, Real, Vector3};
@@ -120,6 +121,7 @@ impl Points {
         let (bands, spare) = (self.bands, &self.spare);
         let spare = || spare.lock().unwrap_or_else(PoisonError::into_inner);
         let tallies = exec.ordered(jobs, |(index, ((keys, carried), starts))| {
+            spend(Work::Project);
             let mut chunk = spare().pop().unwrap_or_else(Chunk::new);
             let range = index * CHUNK..n.min((index + 1) * CHUNK);
             let (count, tally) = points(surfels, lens, range, bands, &mut chunk);

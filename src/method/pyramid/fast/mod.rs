@@ -21,7 +21,7 @@ use crate::error::Result;
 use crate::frame::raster::Snap;
 use crate::frame::{Exec, pyramid};
 use crate::method::Job;
-use crate::method::picture::{Clock, Laps};
+use crate::method::clock::Clock;
 use crate::method::projection::fast::{NearestPoints, Points, RowLayout};
 use crate::method::projection::surfels::PointProjector;
 use crate::method::projection::{self, Has, Projected, SampleKind};
@@ -51,7 +51,7 @@ impl CellLevels {
         job: &Job<'_>,
         settings: &Settings,
         target: &mut GBuffer<f32>,
-    ) -> Result<(Tally, Laps)> {
+    ) -> Result<(Tally, Clock)> {
         let Job { scene, camera, exec, .. } = *job;
         let mut clock = Clock::default();
         self.reshape(camera, Has::in_scene(scene));
@@ -71,7 +71,7 @@ impl CellLevels {
         }
         self.finish(&View::new(camera), settings, exec, target);
         clock.lap("push");
-        Ok((tally, clock.into_laps()))
+        Ok((tally, clock))
     }
 
     /// Makes the memory for a picture.

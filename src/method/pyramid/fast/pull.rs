@@ -3,6 +3,7 @@
 use super::level::{BACK, CellLevel, FRONT, FURTHER, KIND, NORMAL, PLACE, RADIUS, TILT, tangent};
 use super::mix::{FourCells, pairs, tilts};
 use crate::frame::Exec;
+use crate::method::clock::{Work, spend};
 use crate::method::projection::fast::RowLayout;
 use crate::number::MapInline;
 use crate::number::lanes::{LANES, Lanes, any_above_0, load_halves, store, vectorized};
@@ -12,6 +13,7 @@ const ROWS: usize = 4;
 
 /// Pulls a coarser level from the finer one; `side` is the side of a finer cell in pixels.
 pub(super) fn pull(fine: &CellLevel, coarse: &mut CellLevel, side: f32, tubes: bool, exec: &Exec) {
+    spend(Work::Pull);
     let finest = side == 1.0;
     let run = match (finest, tubes) {
         (false, false) => pull_row::<false, false>,

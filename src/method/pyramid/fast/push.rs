@@ -9,6 +9,7 @@
 use super::level::{BACK, CellLevel, FRONT, FURTHER, KIND, NORMAL, PLACE, RADIUS, TILT, tangent};
 use super::mix::{FourCells, Mix, pairs, tilts};
 use crate::frame::Exec;
+use crate::method::clock::{Work, spend};
 use crate::method::projection::fast::{PAD, RowLayout};
 use crate::method::pyramid::{Occlusion, Settings, Weights};
 use crate::number::MapInline;
@@ -39,6 +40,7 @@ pub(super) fn push<T: Send>(
     beside: impl Iterator<Item = T>,
     done: impl Fn(&[f32], T) + Sync + Send,
 ) {
+    spend(Work::Push);
     let layouts = [fine.layout, coarse.layout];
     let PushRules { side, settings, .. } = *rules;
     let outside = settings.occlusion == Occlusion::Outside;

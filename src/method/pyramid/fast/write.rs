@@ -3,6 +3,7 @@
 use super::super::gbuffer::GBuffer;
 use super::level::{FRONT, FURTHER, KIND, NORMAL};
 use crate::frame::Plane;
+use crate::method::clock::{Work, spend};
 use crate::method::projection::fast::RowLayout;
 use crate::method::projection::world;
 use crate::number::MapInline;
@@ -39,6 +40,7 @@ pub(super) fn rows(target: &mut GBuffer<f32>) -> impl Iterator<Item = GBufferRow
 impl GBufferRow<'_> {
     /// Overwrites the row of the picture with a row of level 0.
     pub(super) fn write(self, cells: &[f32], layout: &RowLayout, view: &View<f32>) {
+        spend(Work::Store);
         let tangent = layout.attributes - 3;
         write(cells, layout, (self.kind, self.depth, self.alpha));
         if let Some(normals) = self.normal {

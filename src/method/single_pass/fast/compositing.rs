@@ -1,6 +1,7 @@
 //! Run the compositing pass over one tile, compiled for every vector width.
 
 use super::images::{GroupImages, ImageBlock};
+use crate::method::clock::{Work, spend};
 use crate::method::fast::resolve::least_nearness;
 use crate::method::fast::tile::Tile;
 use crate::number::MapInline;
@@ -11,6 +12,7 @@ use crate::splat::Shared;
 impl GroupImages {
     /// The nearest fragment of each pixel.
     pub(crate) fn nearest(&self, tile: &mut Tile) {
+        spend(Work::Composite);
         for (block, nearest) in tile.blocks.iter_mut().zip(&self.nearest) {
             block.nearest = nearest.nearness;
             block.id = each(|i| self.surfels[nearest.splat[i] as usize]);
@@ -20,6 +22,7 @@ impl GroupImages {
     /// Sums the fragments that pass the epsilon-z test; fragments that do not pass lose their
     /// weight.
     pub(crate) fn composite(&mut self, tile: &mut Tile, shared: &Shared<f32>) {
+        spend(Work::Composite);
         composite(self, tile, shared);
     }
 }

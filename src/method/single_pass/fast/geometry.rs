@@ -2,6 +2,7 @@
 
 use super::images::{GroupImages, ImageBlock, NearestFragments};
 use crate::composite::bins::DepthBins;
+use crate::method::clock::{Work, spend};
 use crate::method::fast::fragments::{each_block, inside};
 use crate::method::fast::tile::{Record, Tile};
 use crate::number::elementary::exp_f32_in_range;
@@ -31,6 +32,7 @@ impl GroupImages {
         shared: &Shared<f32>,
         bins: Option<&DepthBins<f32>>,
     ) {
+        spend(Work::Images);
         match (shared.ray_cast, bins) {
             (false, None) => geometry::<false, false>(self, tile, shared, bins),
             (false, Some(_)) => geometry::<false, true>(self, tile, shared, bins),

@@ -18,10 +18,10 @@ use super::Settings;
 use crate::error::Result;
 use crate::frame::Framebuffer;
 use crate::method::Job;
+use crate::method::clock::Clock;
 use crate::method::fast::groups::own;
 use crate::method::fast::tile::Tile;
 use crate::method::fast::{draw, prepare};
-use crate::method::picture::{Clock, Laps};
 use crate::splat::Tally;
 use images::GroupImages;
 
@@ -42,7 +42,7 @@ pub(super) fn render(
     job: &Job<'_>,
     settings: &Settings,
     target: &mut Framebuffer<f32>,
-) -> Result<(Tally, Laps)> {
+) -> Result<(Tally, Clock)> {
     assert_eq!([target.width, target.height], job.size(), "framebuffer size");
     let (surfels, groups) = (&job.scene.surfels, job.index.groups()?);
     groups.check(surfels)?;
@@ -51,8 +51,9 @@ pub(super) fn render(
     let prepared = prepare(job, &settings.splats);
     clock.lap("projection");
     let shared = &prepared.shared;
-    let gather = |tile: &mut Tile, index, rect| tile.gather(&prepared, index, rect);
-    let passes = draw::<2>(job, target, gather, |tile, watch| {
+    let stages = (&mut clock, ["geometry", "compositing"]);
+    let gather = |tile: &mut Tile, index, rect, _: &mut _| tile.gather(&prepared, index, rect);
+    draw(job, target, stages, gather, |tile, watch| {
         let own = own(&tile.splats, groups);
         let mut images = GroupImages::new(tile, (&own, groups.len()), shared.empty(), None);
         images.draw(tile, shared, bins.as_ref());
@@ -62,7 +63,5 @@ pub(super) fn render(
         images.composite(tile, shared);
         tile.normalize(shared);
     });
-    let mut laps = clock.into_laps();
-    laps.extend(["geometry", "compositing"].into_iter().zip(passes));
-    Ok((prepared.tally, laps))
+    Ok((prepared.tally, clock))
 }

@@ -5,6 +5,7 @@ use super::level::{
 };
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, NO_ID};
+use crate::method::clock::{Work, spend};
 use crate::method::projection::fast::{PAD, RowLayout};
 use crate::number::MapInline;
 use crate::number::lanes::{LANES, Lanes, Mask, any, each, load_halves, mask, store, vectorized};
@@ -15,6 +16,7 @@ const ROWS: usize = 8;
 /// Makes the next level from the centres that do not stay within the first `reach`; the second
 /// `reach` is the next level's.
 pub(super) fn merge(fine: &CenterLevel, coarse: &mut CenterLevel, reach: [f32; 2], exec: &Exec) {
+    spend(Work::Propagate);
     let layouts = [fine.layout, coarse.layout];
     exec.chunks(coarse.rows_mut(), ROWS, |first, rows| {
         for (y, mut row) in (first..).zip(rows) {

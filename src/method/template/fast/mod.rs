@@ -14,7 +14,7 @@ mod tests;
 
 use super::{Falloff, Settings, propagation};
 use crate::frame::{Exec, Framebuffer, Plane, pyramid};
-use crate::method::picture::{Clock, Laps};
+use crate::method::clock::{Clock, Work, spend};
 use crate::method::projection::Has;
 use crate::method::projection::fast::{NearestPoints, PAD, Points, RowLayout};
 use crate::method::projection::surfels::PointProjector;
@@ -37,14 +37,14 @@ impl CenterLevels {
     ///
     /// # Panics
     /// If the framebuffer does not have the size of the camera's picture.
-    pub fn draw(
+    pub(super) fn draw(
         &mut self,
         scene: &Scene,
         camera: &Camera,
         settings: &Settings,
         exec: &Exec,
         target: &mut Framebuffer<f32>,
-    ) -> (Tally, Laps) {
+    ) -> (Tally, Clock) {
         assert_eq!((target.width, target.height), (camera.width, camera.height), "its size");
         let mut clock = Clock::default();
         let has = Has::in_scene(scene);
@@ -66,8 +66,8 @@ impl CenterLevels {
         }
         clock.lap("propagation");
         self.search(camera, settings, has.color, exec, target);
-        clock.lap("reconstruction");
-        (tally, clock.into_laps())
+        clock.lap("reconstruction and normalization");
+        (tally, clock)
     }
 
     /// Fills level 0.
@@ -89,7 +89,7 @@ impl CenterLevels {
         tally
     }
 
-    /// Reconstructs the picture.
+    /// Reconstructs and normalizes the picture, a few pixels at a time.
     fn search(
         &self,
         camera: &Camera,
@@ -98,6 +98,7 @@ impl CenterLevels {
         exec: &Exec,
         target: &mut Framebuffer<f32>,
     ) {
+        spend(Work::Search);
         let searched = self.levels.iter().enumerate().filter(|(_, level)| level.is_searched());
         let (which, levels): (Vec<usize>, Vec<&CenterLevel>) = searched.unzip();
         let (view, half) = (View::new(camera), settings.half() as usize);

@@ -8,6 +8,7 @@
 use super::level::{COLOR, CenterLevel, CenterRow, DEPTH, NORMAL, PLACE, RADIUS, SQUARE, TILT};
 use crate::composite::sum;
 use crate::frame::NO_ID;
+use crate::method::clock::{Work, spend};
 use crate::method::projection::fast::PAD;
 use crate::method::projection::world;
 use crate::method::template::Falloff;
@@ -247,6 +248,7 @@ fn normalize<const COLORED: bool>(
     view: &View<f32>,
     target: &mut Target<'_>,
 ) {
+    spend(Work::Normalize);
     let GatheredLanes { id, weight, depths, normals, colors, .. } = gathered;
     let pixels = x..target.depth.len().min(x + LANES);
     let depth = each(|i| if weight[i] > 0.0 { depths[i] / weight[i] } else { f32::INFINITY });

@@ -2,6 +2,7 @@
 
 use super::blending::LayersBlock;
 use crate::frame::NO_ID;
+use crate::method::clock::{Work, spend};
 use crate::method::transparent::Holes;
 use crate::number::lanes::{LANES, Lanes, each, mask, select, select_u32};
 
@@ -65,6 +66,7 @@ impl AverageBlock {
     /// Divides the sums by the count of the groups that [`Holes`] takes.
     #[inline(always)]
     pub(super) fn divide<const TOTALS: bool>(&mut self, holes: Holes, groups: usize) {
+        spend(Work::Average);
         let count = match holes {
             // An average of no group is 0, like its sums.
             Holes::Skipped => each(|i| if self.groups[i] > 0.0 { self.groups[i] } else { 1.0 }),

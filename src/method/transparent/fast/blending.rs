@@ -7,6 +7,7 @@ use crate::composite::bins::DepthBins;
 use crate::composite::decide;
 use crate::frame::NO_ID;
 use crate::index::members::Set;
+use crate::method::clock::{Work, spend};
 use crate::method::fast::fragments::{fragments, inside};
 use crate::method::fast::tile::Record;
 use crate::method::transparent::Holes;
@@ -69,6 +70,7 @@ impl<A: Blended> FastBlending<A> {
         corner: (u32, u32),
         nearest: &Nearest,
     ) {
+        spend(Work::Blend);
         let shared = &self.prepared.shared;
         let blocks = (average, images, corner, nearest);
         let with = (shared, self.bins.as_slice(), self.holes);

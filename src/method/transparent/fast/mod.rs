@@ -3,7 +3,7 @@
 //! A surfel is projected once for all groups that draw it with the same radius, and its fragments
 //! are computed once for them. Block after block is finished. A fragment is blended into the images
 //! of its groups, which the nearest cache holds. Then the groups are averaged, in their order. So
-//! no image of a group is kept beyond its block.
+//! no image of a group is kept beyond its block, and both stages have one lap.
 
 mod averaging;
 mod blending;
@@ -19,14 +19,14 @@ use crate::error::Result;
 use crate::frame::Pool;
 use crate::index::members::Set;
 use crate::method::Job;
+use crate::method::clock::Clock;
 use crate::method::fast::layered::{LayeredBlock, LayeredPlanes};
 use crate::method::fast::lists::BlockLists;
 use crate::method::fast::tile::{BlockGrid, Record};
-use crate::method::picture::{Clock, Picture};
+use crate::method::picture::Picture;
 use crate::method::prepare::Prepared;
 use blending::LayersBlock;
 use projection::Blended;
-use std::time::Instant;
 
 /// The splats of all groups as records with `A`, projected, shaded and sorted into tiles.
 pub(crate) struct FastBlending<A> {
@@ -43,8 +43,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     clock.lap("projection");
     let (size, grid) = (job.size(), job.strips());
     let mut target = LayeredPlanes::new(size, pool.scalar(size), pool);
-    let times = job.exec.ordered(target.cut(&grid, job.exec), |mut pixels| {
-        let start = Instant::now();
+    job.exec.ordered(target.cut(&grid, job.exec), |mut pixels| {
         let mut splats = Vec::new();
         blending.prepared.gather_f32(pixels.depth.index, &pixels.depth.rect, &mut splats);
         if splats.is_empty() {
@@ -55,13 +54,11 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
             let blocks: Vec<_> = averages.iter().map(AverageBlock::layers).collect();
             pixels.store(&blocks, |layers| layers);
         }
-        [start.elapsed()]
     });
-    clock.shares(["blending"], &times);
     let LayeredPlanes { color, alpha, depth, id, layers } = target;
     let mut left: Vec<_> = planes::before(job, color, alpha).into();
     left.extend(planes::nearest_planes(depth, id, layers));
-    clock.lap("averaging");
+    clock.lap("blending and averaging");
     let (frame, timings) = (job.frame(left), clock.into_laps());
     Ok(Picture { frame, tally: blending.tally(), timings, seen: None })
 }

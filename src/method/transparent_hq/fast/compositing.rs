@@ -2,6 +2,7 @@
 
 use super::nearest::FrontBlock;
 use crate::composite::over::Blend;
+use crate::method::clock::{Work, spend};
 use crate::method::fast::layered::LayeredBlock;
 use crate::method::fast::tile::{PixelBlock, ROW, Tile};
 use crate::method::transparent::averaging::GroupAverage;
@@ -20,6 +21,7 @@ pub(super) fn compositing(
     fronts: &[FrontBlock],
     others: &[AverageBlock],
 ) -> Vec<LayeredBlock> {
+    spend(Work::Over);
     let blocks = tile.blocks.iter().zip(fronts).zip(others).enumerate();
     let shown = |(index, ((nearest, front), others)): (usize, Behind<'_>)| {
         let mut block = over(nearest, front, others);

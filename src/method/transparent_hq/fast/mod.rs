@@ -11,9 +11,10 @@ use super::{Settings, picture, planes};
 use crate::error::Result;
 use crate::frame::Pool;
 use crate::method::Job;
+use crate::method::clock::{Clock, Stopwatch};
 use crate::method::fast::layered::LayeredPlanes;
 use crate::method::fast::store::{clear_plane, store_plane};
-use crate::method::picture::{Clock, Picture};
+use crate::method::picture::Picture;
 use crate::method::transparent::fast::Nearest;
 use crate::method::transparent::planes as layers;
 use crate::number::lanes::components;
@@ -21,7 +22,6 @@ use crate::scene::Environment;
 use compositing::compositing;
 use nearest::FastNearest;
 use projection::Splats;
-use std::time::{Duration, Instant};
 
 /// Draws the picture.
 pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
@@ -38,30 +38,34 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     let beside = normals.zip(grid.cut(&mut weight, job.exec));
     let jobs = target.cut(&grid, job.exec).into_iter().zip(beside).collect();
     let times = job.exec.ordered(jobs, |(mut pixels, (mut normal, mut weight))| {
-        let start = Instant::now();
+        let mut watch = Stopwatch::start();
         let mut gathered = splats.gather(pixels.depth.index, pixels.depth.rect);
         if gathered.nearest.splats.is_empty() {
             // Without a nearest layer nothing is seen, because pass 2 drops all fragments there.
+            watch.lap(0);
             pixels.clear(0.0);
             clear_plane(&mut normal, [0.0; 3]);
             clear_plane(&mut weight, 0.0);
-            return [start.elapsed(), Duration::ZERO, Duration::ZERO, Duration::ZERO];
+            watch.lap(3);
+            return watch.times();
         }
         let mut images = nearest.geometry(&gathered);
-        let drawn = Instant::now();
+        watch.lap(0);
         let fronts = nearest.resolve(&mut gathered.nearest, &mut images);
-        let resolved = Instant::now();
+        watch.lap(1);
         let (layers, blocks) = (&gathered.layers, &gathered.nearest);
         let band = |block: usize| Nearest(blocks.blocks[block].least);
         let others = splats.blending.averages::<true>(layers, &blocks.grid, band);
-        let blended = Instant::now();
+        watch.lap(2);
         let shown = compositing(&through, blocks, &fronts, &others);
         pixels.store(&shown, |layers| layers);
         store_plane(&blocks.blocks, &mut normal, |block, i| components(&block.normal, i));
         store_plane(&blocks.blocks, &mut weight, |block, i| block.weight[i]);
-        [drawn - start, resolved - drawn, blended - resolved, blended.elapsed()]
+        watch.lap(3);
+        watch.times()
     });
-    clock.shares(["geometry", "nearest", "blending", "compositing"], &times);
+    let stages = ["geometry", "nearest", "blending and averaging", "compositing"];
+    clock.shares(stages, &times);
     let LayeredPlanes { color, alpha, depth, id, layers: counts } = target;
     let mut left: Vec<_> = layers::before(job, color, alpha).into();
     left.push(planes::layers(counts));

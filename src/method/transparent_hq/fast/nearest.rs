@@ -6,6 +6,7 @@ use crate::composite::bins::DepthBins;
 use crate::composite::sum;
 use crate::error::Result;
 use crate::method::Job;
+use crate::method::clock::{Work, spend};
 use crate::method::fast::tile::{PixelBlock, ROW, Tile};
 use crate::method::single_pass;
 use crate::method::single_pass::fast::images::GroupImages;
@@ -73,6 +74,7 @@ impl<'a> FastNearest<'a> {
         tile.normalize(shared);
         let (grid, material) = (tile.grid, self.scene.material.color.to_array());
         let own = (!tile.color).then_some(material);
+        spend(Work::Shade);
         let blocks = tile.blocks.iter().zip(&images.opacities).enumerate();
         let front = |(index, (block, opacity)): (usize, (&PixelBlock, &Lanes))| {
             shaded(&self.shader, block, opacity, (grid.corner(index), own))
