@@ -34,11 +34,8 @@ pub fn chart(frames: &[FrameTimes], wanted: f64) -> Drawing {
     let mut out = Drawing::new(SIZE, title, note);
     let [left, right] = ACROSS;
     out.text([left, 24.0], &Label { size: 15.0, ..Label::new(title, Anchor::Start) });
-    let columns: [(&str, fn(&FrameTimes) -> f64); 3] = [
-        ("placing", |one| one.placing),
-        ("drawing", |one| one.drawing),
-        ("frame", FrameTimes::frame),
-    ];
+    let columns = ["placing", "drawing", "frame"];
+    let of = |one: &FrameTimes| [one.placing, one.drawing, one.frame()];
     let most = frames.iter().map(FrameTimes::frame).fold(wanted, f64::at_least);
     let axis = Axis::from_zero(most, [DOWN[1], DOWN[0]]);
     for tick in axis.ticks() {
@@ -49,8 +46,8 @@ pub fn chart(frames: &[FrameTimes], wanted: f64) -> Drawing {
     let label = Label { size: 12.0, turned: true, ..Label::new("milliseconds", Anchor::Middle) };
     out.text([18.0, (DOWN[0] + DOWN[1]) / 2.0], &label);
     let slot = (right - left) / columns.len() as f64;
-    for (i, ((name, time), color)) in columns.into_iter().zip(COLORS).enumerate() {
-        let mut times: Vec<f64> = frames.iter().map(time).collect();
+    for (i, (name, color)) in columns.into_iter().zip(COLORS).enumerate() {
+        let mut times: Vec<f64> = frames.iter().map(|one| of(one)[i]).collect();
         times.sort_by(f64::total_cmp);
         let x = left + slot * (i as f64 + 0.5);
         violin::draw(&mut out, &times, (&axis, x, slot / 3.0), color);
