@@ -40,6 +40,7 @@ mod surfels;
 mod tile;
 mod tried;
 mod verify;
+mod walk;
 mod words;
 
 use clap::error::ErrorKind;

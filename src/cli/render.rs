@@ -4,6 +4,7 @@ use super::destination::{Depth, Destination, write};
 use super::options::{ExecOptions, SceneOptions};
 use super::rows::{OfFiles, RowOptions};
 use super::sequence::{self, Frames};
+use super::walk::{self, Walk};
 use super::{Ended, Ending, bands, draw, progress, region, report};
 use splatref::frame::{Exec, Rect};
 use splatref::io::client::{DepthConvention, DepthFile};
@@ -26,6 +27,7 @@ Examples:
   splatref render scene.toml --frames 0..60 -o out/walk.exr
   splatref render scan.ply --cameras transforms.json --view r_12
   splatref render bunny.ply --turntable 60 -o out/turn.exr
+  splatref render walk.toml --method blue --frames all --target-ms 40
   splatref render bunny.ply --size 4096x4096 --region 0,0,4096,512 -o parts/0.exr
   splatref render bunny.ply --write-depth png --depth-as t,1000 -o bunny.exr")]
 pub(super) struct Args {
@@ -61,6 +63,12 @@ pub(super) struct Args {
     #[arg(long, value_name = "A..B|all", value_parser = sequence::frames,
         conflicts_with_all = ["repeat", "frame"])]
     frames: Option<Frames>,
+    /// Choose the size of ordered points by the time of the last frame, so that placing and drawing a
+    /// frame take about MS milliseconds [BJFM19, 4.3]. The first frame has --surfel-size. Writes the sizes
+    /// and times into NAME.frames.csv and NAME.frames.svg
+    #[arg(long, value_name = "MS", value_parser = walk::milliseconds,
+        conflicts_with_all = ["bands", "repeat", "frame"])]
+    target_ms: Option<f64>,
     /// Write the depth too: 16-bit codes into NAME.depth.png, or floats into NAME.depth.npy. Beside it,
     /// NAME.depth.toml says how it is stored; `verify` reads that
     #[arg(long, value_name = "png|npy", value_parser = depth_file)]
@@ -149,7 +157,13 @@ pub(super) fn run(args: &Args) -> Ended {
     if let Some(frames) = args.sequence(&file)? {
         file.check_frame(frames.end - 1)?;
         file.frame = frames.start;
-        return sequence::render(&destination, &file, frames, &exec);
+        let walk = |target| Walk::new(target, file.refinement.surfel_size);
+        let walk = args.target_ms.map(walk).transpose()?;
+        return sequence::render(&destination, &file, (frames, walk), &exec);
+    }
+    if args.target_ms.is_some() {
+        let what = "--target-ms needs a sequence; give --frames, --turntable or several --cameras";
+        return Err(Error::Usage(what.into()));
     }
     let picture = destination.place(&file, None)?;
     let mut ready = draw::ready_in_parts(&file, &exec)?;

@@ -1,6 +1,7 @@
 //! `splatref render --frames`: renders each frame of a sequence.
 
 use super::destination::{Depth, Destination, write};
+use super::walk::Walk;
 use super::{Ended, Ending, draw, progress, render, report};
 use splatref::Result;
 use splatref::frame::Exec;
@@ -35,11 +36,12 @@ pub(super) fn frames(text: &str) -> std::result::Result<Frames, String> {
     }
 }
 
-/// Renders the frames of a scene file, whose own frame is the first of them.
+/// Renders the frames of a scene file, whose own frame is the first of them. A walk chooses the size of
+/// its ordered points from frame to frame.
 pub(super) fn render(
     to: &Destination<'_>,
     file: &SceneFile,
-    frames: Range<u32>,
+    (frames, mut walk): (Range<u32>, Option<Walk>),
     exec: &Exec,
 ) -> Ended {
     let start = Instant::now();
@@ -67,23 +69,32 @@ pub(super) fn render(
     let last = frames.end - 1;
     let all: Vec<_> = frames.zip(&places).collect();
     let show = |done: usize| steps.show("rendering", done as u64, all.len() as u64);
-    if ready.is_still() {
+    if ready.is_still() && walk.is_none() {
         let mut session = times.of("preparing", || ready.session(exec, &|_, _, _| ()))?.0;
         for (done, (frame, path)) in all.iter().enumerate() {
             show(done);
             session.resume(seen);
             let camera = ready.camera_at(*frame)?;
             let picture = (to, file.output, path.as_path());
-            seen = one(&mut session, &camera, picture, exec, &mut times)?;
+            seen = one(&mut session, &camera, picture, exec, &mut times)?.0;
         }
     } else {
         for (done, (frame, path)) in all.iter().enumerate() {
             show(done);
-            ready = times.of("placing", || ready.at(*frame, exec))?;
+            let start = Instant::now();
+            ready = times.of("placing", || match &walk {
+                Some(walk) => walk.at(ready, *frame, exec),
+                None => ready.at(*frame, exec),
+            })?;
             let mut session = times.of("preparing", || ready.session(exec, &|_, _, _| ()))?.0;
+            let placing = start.elapsed();
             session.resume(seen);
             let picture = (to, file.output, path.as_path());
-            seen = one(&mut session, &ready.camera, picture, exec, &mut times)?;
+            let drawing;
+            (seen, drawing) = one(&mut session, &ready.camera, picture, exec, &mut times)?;
+            if let Some(walk) = &mut walk {
+                walk.note(&ready, [placing, drawing]);
+            }
         }
     }
     drop(steps);
@@ -92,26 +103,30 @@ pub(super) fn render(
     report::line("time", format!("{}, sums over {} frames", report::threads(exec), places.len()));
     times.0.into_iter().for_each(|(what, time)| report::time(what, vec![time]));
     report::time("total", vec![start.elapsed()]);
+    let walked = walk.map_or(Ok(Vec::new()), |walk| walk.finish(&to.place(file, None)?))?;
     files(&places, (!projects, to.depth));
+    walked.iter().for_each(|file| report::line("", file.display()));
     Ok(Ending::Good)
 }
 
-/// Draws and writes one frame, and returns the state after it.
+/// Draws and writes one frame, and returns the state after it, and how long drawing took.
 fn one(
     session: &mut Session<'_>,
     camera: &Camera,
     (to, output, path): (&Destination<'_>, OutputSettings, &Path),
     exec: &Exec,
     times: &mut Times,
-) -> Result<Option<Seen>> {
+) -> Result<(Option<Seen>, Duration)> {
+    let start = Instant::now();
     let (scene, method, groups) = (session.scene(), *session.method(), session.groups().cloned());
     let window = to.limit(session, camera)?;
     let drawing = output.draw(session, camera)?;
+    let drawn = start.elapsed();
     drawing.timings.iter().for_each(|(stage, time)| times.add(stage, *time));
     let text = || to.text((scene, groups.as_ref()), (camera, &method), output);
     let pixels = (&drawing.frame, window);
     times.of("writing", || write(path, pixels, text, (output, to.depth), exec))?;
-    Ok(drawing.seen.clone())
+    Ok((drawing.seen.clone(), drawn))
 }
 
 /// Prints the first and the last of the files.

@@ -314,3 +314,41 @@ fn levels_of_detail_follow_the_camera() {
     let line = fails(at.path(), &["render", "bad.toml", "-o", "x.exr"], 1);
     assert!(line.contains("`detail` does not apply to torus: remove it"), "{line}");
 }
+
+/// The size of ordered points follows the time that the last frame took. The wanted times are far below and
+/// far above what a frame can take, so that the sizes are known.
+#[test]
+fn a_walk_tells_its_sizes_and_each_frame_can_be_drawn_again() {
+    let at = TempDir::new().unwrap();
+    let ball = concat!(env!("CARGO_MANIFEST_DIR"), "/golden/ball.ply");
+    succeeds(at.path(), &["surfels", ball, "-o", "blue.ply", "--count", "500", "--side", "128"]);
+    let draw = ["render", "blue.ply", "--method", "blue", "--size", "48x32", "--turntable", "7"];
+    let wanted = [("1e-6", ["4", "8", "8"]), ("1e12", ["4", "3", "2.25"])];
+    for (target, first) in wanted {
+        let more = ["--surfel-size", "4", "--target-ms", target, "-o", "w.exr"];
+        let said = succeeds(at.path(), &[&draw[..], &more].concat());
+        let last = if target == "1e12" { "1.000 to 4.000 px" } else { "4.000 to 8.000 px" };
+        for word in [last, "wanted", "w.frames.csv", "w.frames.svg"] {
+            assert!(said.contains(word), "{word} in {said}");
+        }
+        let table = fs::read_to_string(at.path().join("w.frames.csv")).unwrap();
+        let rows: Vec<Vec<&str>> = table.lines().map(|line| line.split(',').collect()).collect();
+        assert_eq!(rows[0][..4], ["frame", "surfel_size", "surfels", "primitives"]);
+        assert_eq!(rows.len(), 8, "a line a frame");
+        assert_eq!([1, 2, 3].map(|row| rows[row][1]), first);
+        let one = ["--frame", rows[3][0], "--surfel-size", rows[3][1], "-o", "one.exr"];
+        succeeds(at.path(), &[&draw[..], &one].concat());
+        let read = |name: &str| fs::read(at.path().join(name)).unwrap();
+        assert!(read("one.exr") == read("w.0002.exr"), "{target}");
+        let chart = fs::read_to_string(at.path().join("w.frames.svg")).unwrap();
+        assert!(chart.contains("Times of frames") && chart.contains("placing"), "{chart}");
+    }
+    let refused = |more: &[&str], word: &str| {
+        let line =
+            fails(at.path(), &[&["render", "blue.ply", "--method", "blue"], more].concat(), 2);
+        assert!(line.contains(word), "{line}");
+    };
+    refused(&["--surfel-size", "4", "--target-ms", "9"], "--target-ms needs a sequence");
+    refused(&["--turntable", "2", "--target-ms", "9"], "give --surfel-size");
+    refused(&["--turntable", "2", "--target-ms", "0"], "greater than 0");
+}

@@ -52,19 +52,19 @@ impl Hierarchy {
     }
 
     /// The objects of [`Hierarchy::outlined`] as a camera [sees](Objects::seen_from) them, loaded
-    /// with what the camera draws. `progress` gets "loading", the number of nodes read, and their
-    /// total.
+    /// with what the camera draws. Reads what [is missing](Objects::missing) beside what an earlier
+    /// view of these objects read. `progress` gets "loading", the number of nodes read, and their total.
     ///
     /// # Errors
     /// As [`Hierarchy::surfels`] and [`Hierarchy::triangles`]; [`crate::Error::Invalid`] if the
     /// process may not hold what is drawn.
     pub fn needed_by(&self, view: Objects, exec: &Exec, progress: Progress<'_>) -> Result<Objects> {
-        let (has, needed) = (self.has(), view.needed());
+        let (has, missing) = (self.has(), view.missing());
         let node = |i: usize| &self.nodes()[has[i] as usize];
-        self.ask(needed.iter().enumerate().map(|(i, &needed)| (node(i), needed)))?;
-        view.with_needed(|i, needed| {
+        self.ask(missing.iter().enumerate().map(|(i, &missing)| (node(i), missing)))?;
+        view.with_needed(|i, missing| {
             progress("loading", i as u64, has.len() as u64);
-            self.read(has[i], needed, exec)
+            self.read(has[i], missing, exec)
         })
     }
 }

@@ -11,6 +11,7 @@ use crate::io::state::{self, State};
 use crate::method::session::{Made, Making};
 use crate::method::{Method, Picture, Session, deferred};
 use crate::progress::Progress;
+use crate::scene::objects::detail::refine::Refinement;
 use crate::scene::{Camera, Objects, Primitives, Scene, Surfels};
 use crate::source::flatten;
 use std::borrow::Cow;
@@ -127,6 +128,26 @@ impl Ready {
             self.place(exec, &|_, _, _| ())?;
         }
         Ok(self)
+    }
+
+    /// The same scene, whose next [frame](Ready::at) draws ordered points this size in pixels, see
+    /// [`Refinement`](crate::scene::objects::detail::refine::Refinement).
+    ///
+    /// # Errors
+    /// [`crate::Error::Invalid`] if the size is out of range.
+    pub fn with_surfel_size(mut self, surfel_size: f32) -> Result<Self> {
+        let scene = &mut self.loaded.scene;
+        if let Some(objects) = scene.objects.take() {
+            let refinement = Refinement { surfel_size, ..objects.refinement().clone() };
+            scene.objects = Some(objects.with_refinement(refinement)?);
+        }
+        Ok(self)
+    }
+
+    /// Whether the scene has points in an order, of which a view draws as many as it needs.
+    #[must_use]
+    pub fn has_ordered_points(&self) -> bool {
+        self.loaded.scene.objects.as_ref().is_some_and(Objects::have_prefixes)
     }
 
     /// The camera in a frame.

@@ -112,8 +112,30 @@ impl Objects {
         all
     }
 
-    /// Loads what the view draws of each geometry, and nothing else. `read` gets the index of a
-    /// geometry and returns the needed part of it.
+    /// What has to be read of each geometry before memory holds all that the view draws: nothing, if an
+    /// earlier view read as much, and at most twice as many surfels. Of a geometry whose surfels in memory
+    /// are too few, up to half as many again as are drawn, so that a camera that comes closer does not
+    /// read it in every frame.
+    #[must_use]
+    pub fn missing(&self) -> Vec<Needed> {
+        let missing = |(index, needed): (usize, Needed)| {
+            let (geometry, count) = (&self.geometries[index], self.extents[index].count);
+            let held = geometry.surfels.len() as u32;
+            let surfels = match held {
+                _ if keeps(held, needed) => 0,
+                0 => needed.surfels,
+                held if held > needed.surfels => needed.surfels,
+                _ => count.min(needed.surfels.saturating_add(needed.surfels / 2)),
+            };
+            let primitives = needed.primitives && geometry.primitives.is_empty();
+            Needed { surfels, primitives }
+        };
+        self.needed().into_iter().enumerate().map(missing).collect()
+    }
+
+    /// Loads what the view draws of each geometry: what [is missing](Objects::missing) comes from
+    /// `read`, which gets the index of a geometry and what to read of it, and the rest is kept from an
+    /// earlier view. Frees what is not drawn.
     ///
     /// # Errors
     /// The errors of `read`.
@@ -121,21 +143,52 @@ impl Objects {
         mut self,
         mut read: impl FnMut(usize, Needed) -> Result<(Surfels, Primitives)>,
     ) -> Result<Self> {
-        let needed = self.needed();
-        let known = |geometry: &Geometry| (geometry.name.clone(), geometry.detail.clone());
-        let known: Vec<_> = self.geometries.iter().map(known).collect();
-        // Frees what another view needed.
-        self.geometries = Arc::new([]);
-        let (mut geometries, mut extents) = (Vec::new(), Vec::new());
-        for (index, (needed, (name, detail))) in needed.into_iter().zip(known).enumerate() {
-            let nothing = needed == Needed::default();
-            let (surfels, primitives) = match nothing {
-                true => (Surfels::none(), Primitives::default()),
-                false => read(index, needed)?,
-            };
-            extents.push(Extent { boxes: Boxes::new(&surfels), ..self.extents[index].clone() });
-            geometries.push(Geometry { name, surfels, primitives, detail });
+        let (needed, missing) = (self.needed(), self.missing());
+        let (mut geometries, mut extents) = (self.taken(), self.extents.to_vec());
+        // Frees first, so that memory never holds two views.
+        for (index, needed) in needed.into_iter().enumerate() {
+            let geometry = &mut geometries[index];
+            if !keeps(geometry.surfels.len() as u32, needed) {
+                geometry.surfels = Surfels::none();
+                extents[index].boxes = Boxes::new(&geometry.surfels);
+            }
+            if !needed.primitives {
+                geometry.primitives = Primitives::default();
+            }
+        }
+        for (missing, index) in missing.into_iter().zip(0..) {
+            if missing == Needed::default() {
+                continue;
+            }
+            let (surfels, primitives) = read(index, missing)?;
+            let geometry = &mut geometries[index];
+            if missing.surfels > 0 {
+                extents[index].boxes = Boxes::new(&surfels);
+                geometry.surfels = surfels;
+            }
+            if missing.primitives {
+                geometry.primitives = primitives;
+            }
         }
         Ok(Self { geometries: geometries.into(), extents: extents.into(), ..self })
     }
+
+    /// Takes the geometries out, without a copy if nobody else holds them.
+    fn taken(&mut self) -> Vec<Geometry> {
+        let mut all = std::mem::replace(&mut self.geometries, Arc::new([]));
+        let Some(all) = Arc::get_mut(&mut all) else { return all.to_vec() };
+        let taken = |geometry: &mut Geometry| Geometry {
+            name: std::mem::take(&mut geometry.name),
+            surfels: std::mem::replace(&mut geometry.surfels, Surfels::none()),
+            primitives: std::mem::take(&mut geometry.primitives),
+            detail: geometry.detail.take(),
+        };
+        all.iter_mut().map(taken).collect()
+    }
+}
+
+/// Whether a view keeps the surfels of a geometry that are in memory: all that it draws are there, and
+/// not too many more.
+fn keeps(held: u32, needed: Needed) -> bool {
+    (needed.surfels..=needed.surfels.saturating_mul(2)).contains(&held)
 }

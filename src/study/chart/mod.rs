@@ -17,6 +17,7 @@
 //! - [`scatter`]: points on two logarithmic axes, with their front.
 //! - [`text`]: widths of texts.
 //! - [`violin`]: distributions of values.
+//! - [`walk`]: times of the frames of a sequence.
 
 pub mod axis;
 pub mod curve;
@@ -28,6 +29,7 @@ pub mod scatter;
 mod svg;
 pub mod text;
 pub mod violin;
+pub mod walk;
 
 pub use raster::{Picture, SCALE};
 pub use svg::escaped;

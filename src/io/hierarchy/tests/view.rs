@@ -6,6 +6,7 @@ use crate::io::checksum;
 use crate::io::scene_file::Ready;
 use crate::number::Real;
 use crate::scene::bounds::Bounds;
+use crate::scene::objects::detail::refine::Refinement;
 use crate::scene::objects::outline::Needed;
 use crate::scene::{Objects, Primitives, Surfels};
 use glam::DVec3;
@@ -134,7 +135,79 @@ fn frames_read_what_they_need() {
         assert_eq!(identities, [identity.clone(), identity.clone()], "whatever is read");
         sizes.push(held(needed.loaded.scene.objects.as_ref().unwrap()));
     }
-    assert!(sizes[0] != sizes[3] && sizes[0] == sizes[4], "{sizes:?}");
+    // The last frame keeps at most twice as many surfels as it draws.
+    assert!(
+        sizes[0] != sizes[3] && sizes[4] >= sizes[0] && sizes[4].0 <= 2 * sizes[0].0,
+        "{sizes:?}"
+    );
+}
+
+/// What the last frame drew is in memory: without files, the next one draws it again, and a finer one
+/// does not.
+#[test]
+fn a_walk_reads_a_node_once() {
+    let at = made();
+    let exec = Exec::sequential();
+    let file = scene(&at, VIEWS[1], "blue");
+    let ready = file.ready(&exec, &quiet).unwrap();
+    let expected = picture(&ready);
+    for (name, _) in bytes(&at.path().join("out")) {
+        if name.starts_with("surfels-") || name.starts_with("mesh-") {
+            fs::remove_file(at.path().join("out").join(name)).unwrap();
+        }
+    }
+    let again = ready.with_surfel_size(VIEWS[1].1).unwrap();
+    assert!(again.has_ordered_points());
+    let placed = |ready: Ready| {
+        let objects = ready.loaded.scene.objects.clone().unwrap();
+        let view = objects.at(0).unwrap().seen_from(&ready.camera, &exec).unwrap();
+        drop((ready, objects));
+        let hierarchy = Hierarchy::open(&at.path().join("out")).unwrap();
+        hierarchy.needed_by(view, &exec, &quiet)
+    };
+    let known = placed(again.clone()).unwrap();
+    assert!(
+        held(&known).0 > 0
+            && known.needed() == again.loaded.scene.objects.as_ref().unwrap().needed()
+    );
+    let mut same = again.clone();
+    same.loaded.scene.objects = Some(known);
+    assert!(picture(&same) == expected);
+    let finer = again.with_surfel_size(VIEWS[1].1 / 2.0).unwrap();
+    let line = placed(finer).unwrap_err().to_string();
+    assert!(line.contains("out/surfels-") || line.contains("out/mesh-"), "{line}");
+}
+
+/// A prefix that has to grow is read half as far again, and not beyond its end.
+#[test]
+fn a_prefix_that_grows_is_read_ahead() {
+    let at = made();
+    let exec = Exec::sequential();
+    let hierarchy = Hierarchy::open(&at.path().join("out")).unwrap();
+    let camera = scene(&at, VIEWS[0], "blue").ready(&exec, &quiet).unwrap().camera;
+    let sized = |objects: Objects, surfel_size: f32| {
+        let refinement = Refinement { surfel_size, ..Refinement::default() };
+        objects.with_refinement(refinement).unwrap().seen_from(&camera, &exec).unwrap()
+    };
+    let far = sized(hierarchy.outlined(&exec, &quiet).unwrap(), 9.0);
+    let root = |objects: &Objects| {
+        let all = objects.geometries().iter().zip(objects.needed()).zip(objects.missing());
+        let at = all.into_iter().find(|((_, needed), _)| needed.surfels > 0).unwrap();
+        (at.0.0.surfels.len() as u32, at.0.1.surfels, at.1.surfels)
+    };
+    let (held, needed, missing) = root(&far);
+    assert_eq!((held, missing), (0, needed), "the first view reads what it draws");
+    let far = hierarchy.needed_by(far, &exec, &quiet).unwrap();
+    assert_eq!(root(&far), (needed, needed, 0));
+    let near = sized(far, 8.0);
+    let (held, grown, missing) = root(&near);
+    assert!(held == needed && grown > needed);
+    assert_eq!(missing, (grown + grown / 2).min(hierarchy.nodes()[0].surfels));
+    let near = hierarchy.needed_by(near, &exec, &quiet).unwrap();
+    assert_eq!(root(&near), (missing, grown, 0));
+    // Coarser again: kept up to twice what is drawn.
+    let (held, needed, missing) = root(&sized(near, 9.0));
+    assert_eq!(missing, if held <= 2 * needed { 0 } else { needed });
 }
 
 #[test]

@@ -243,6 +243,13 @@ impl Objects {
         (0..self.objects.len() as u32).map(|object| self.drawn_of(object)).sum()
     }
 
+    /// How many triangles, ribbons and tubes all objects draw.
+    #[must_use]
+    pub fn drawn_primitives(&self) -> u64 {
+        let drawn = (0..).zip(self.shown.iter()).filter(|(_, shown)| shown.primitives);
+        drawn.map(|(object, _)| self.geometry(object).primitives.len() as u64).sum()
+    }
+
     /// The ids of all surfels that are drawn, ascending.
     #[must_use]
     pub fn drawn_ids(&self) -> Vec<u64> {
