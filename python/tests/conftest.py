@@ -1,9 +1,11 @@
-"""What several tests need: a small scene, the repository, and the program if it was built."""
+"""What several tests need: a small scene, the repository, the program if it was built, and Ctrl-C."""
 
 from __future__ import annotations
 
 import os
+import signal
 from pathlib import Path
+from typing import Iterator
 
 import numpy as np
 import pytest
@@ -49,3 +51,11 @@ def sphere(count: int = 500) -> dict[str, np.ndarray]:
     p = np.stack([ring * np.cos(turn), ring * np.sin(turn), z], axis=1).astype(np.float32)
     radii = np.full(count, 2.5 / count**0.5, np.float32)
     return {"positions": p, "normals": p.copy(), "radii": radii}
+
+
+@pytest.fixture(autouse=True)
+def heeds_ctrl_c() -> Iterator[None]:
+    """Python heeds Ctrl-C in these tests, even where a shell started it in the background, which ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)

@@ -32,6 +32,7 @@ def test_ctrl_c_stops_a_call() -> None:
 def test_ctrl_c_in_a_long_call_leaves_no_file(tmp_path: Path) -> None:
     code = """
 import os, signal, splatref as sr, threading, sys
+signal.signal(signal.SIGINT, signal.default_int_handler)
 scene = sr.Scene.open("cluster", count=20000)
 threading.Timer(0.4, lambda: os.kill(os.getpid(), signal.SIGINT)).start()
 try:

@@ -64,8 +64,8 @@ pub(super) struct Args {
         conflicts_with_all = ["repeat", "frame"])]
     frames: Option<Frames>,
     /// Choose the size of ordered points by the time of the last frame, so that placing and drawing a
-    /// frame take about MS milliseconds [BJFM19, 4.3]. The first frame has --surfel-size. Writes the sizes
-    /// and times into NAME.frames.csv and NAME.frames.svg
+    /// frame take about MS milliseconds [BJFM19, 4.3]. The first frame has --surfel-size; every size is moved
+    /// into 1 to 8 px. Writes the sizes and times into NAME.frames.csv and NAME.frames.svg
     #[arg(long, value_name = "MS", value_parser = walk::milliseconds,
         conflicts_with_all = ["bands", "repeat", "frame"])]
     target_ms: Option<f64>,
