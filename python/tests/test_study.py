@@ -110,7 +110,8 @@ def test_a_worker_that_dies_changes_no_error(client: Any, last: int, known: Any,
 
     loads = tmp_path / "loads"
     assert_same(cluster.study(dying, CAMERA, client=client, method="template", cull=False), known)
-    assert len(loads.read_text().splitlines()) > last
+    # The other worker may measure everything before the dead one is there again.
+    assert len(loads.read_text().splitlines()) >= last
 
 
 def test_what_cannot_be_studied_is_said(client: Any, monkeypatch: pytest.MonkeyPatch) -> None:
