@@ -150,11 +150,15 @@ def test_workers_with_different_scenes_are_refused(client: Any, tmp_path: Path) 
 
 
 def test_ctrl_c_ends_a_study(client: Any, monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:
-    person, begun = os.getpid(), tmp_path / "begun"
+    person, begun, pressed = os.getpid(), tmp_path / "begun", tmp_path / "pressed"
 
     def measuring(*_: object) -> None:
         with begun.open("a") as file:
             file.write("a candidate\n")
+        try:
+            pressed.touch(exist_ok=False)
+        except FileExistsError:
+            return
         os.kill(person, signal.SIGINT)
 
     monkeypatch.setattr(cluster, "_measured", measuring)
