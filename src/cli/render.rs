@@ -157,7 +157,8 @@ pub(super) fn run(args: &Args) -> Ended {
     if let Some(frames) = args.sequence(&file)? {
         file.check_frame(frames.end - 1)?;
         file.frame = frames.start;
-        let walk = |target| Walk::new(target, file.refinement.surfel_size);
+        let size = file.refinement.surfel_size;
+        let walk = |target| Walk::new(target, size, &destination.place(&file, None)?);
         let walk = args.target_ms.map(walk).transpose()?;
         return sequence::render(&destination, &file, (frames, walk), &exec);
     }

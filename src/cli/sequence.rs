@@ -93,7 +93,7 @@ pub(super) fn render(
             let drawing;
             (seen, drawing) = one(&mut session, &ready.camera, picture, exec, &mut times)?;
             if let Some(walk) = &mut walk {
-                walk.note(&ready, [placing, drawing]);
+                walk.note(&ready, [placing, drawing])?;
             }
         }
     }
@@ -103,9 +103,9 @@ pub(super) fn render(
     report::line("time", format!("{}, sums over {} frames", report::threads(exec), places.len()));
     times.0.into_iter().for_each(|(what, time)| report::time(what, vec![time]));
     report::time("total", vec![start.elapsed()]);
-    let walked = walk.map_or(Ok(Vec::new()), |walk| walk.finish(&to.place(file, None)?))?;
+    let walked = walk.map(Walk::finish).transpose()?;
     files(&places, (!projects, to.depth));
-    walked.iter().for_each(|file| report::line("", file.display()));
+    walked.iter().flatten().for_each(|file| report::line("", file.display()));
     Ok(Ending::Good)
 }
 

@@ -19,6 +19,8 @@ pub(super) struct Walk {
     /// The size for the next frame.
     size: f32,
     drawn: Vec<FrameRow>,
+    /// The table and the chart.
+    files: [PathBuf; 2],
 }
 
 /// A frame as it was drawn.
@@ -37,11 +39,14 @@ pub(super) fn milliseconds(text: &str) -> std::result::Result<f64, String> {
 }
 
 impl Walk {
-    /// A walk whose first frame has this size, moved into the controller's range.
-    pub(super) fn new(target: f64, size: f32) -> Result<Self> {
+    /// A walk whose first frame has this size, moved into the controller's range. Its table and its
+    /// chart get the name of the sequence.
+    pub(super) fn new(target: f64, size: f32, sequence: &Path) -> Result<Self> {
         let controller = Controller::new(target)?;
         // A frame that takes exactly as long as wanted keeps its size.
-        Ok(Self { size: controller.next(size, target), controller, drawn: Vec::new() })
+        let size = controller.next(size, target);
+        let files = ["frames.csv", "frames.svg"].map(|end| sequence.with_extension(end));
+        Ok(Self { controller, size, drawn: Vec::new(), files })
     }
 
     /// The scene in the next frame, with the size that the controller chose.
@@ -54,8 +59,9 @@ impl Walk {
         ready.with_surfel_size(self.size)?.at(frame, exec)
     }
 
-    /// Notes what a frame took, and chooses the next size.
-    pub(super) fn note(&mut self, ready: &Ready, [placing, drawing]: [Duration; 2]) {
+    /// Notes what a frame took, and chooses the next size. The table has every frame at once: after an
+    /// interruption, nothing else tells the sizes of the pictures that are there.
+    pub(super) fn note(&mut self, ready: &Ready, [placing, drawing]: [Duration; 2]) -> Result<()> {
         let [placing, drawing] = [placing, drawing].map(|time| time.as_secs_f64() * 1e3);
         let objects = ready.loaded.scene.objects.as_ref();
         self.drawn.push(FrameRow {
@@ -66,11 +72,12 @@ impl Walk {
             times: FrameTimes { placing, drawing },
         });
         self.size = self.controller.next(self.size, placing + drawing);
+        let table = self.table();
+        write_atomically(&self.files[0], |out| out.write_all(table.as_bytes()))
     }
 
-    /// Prints the sizes and the times of all frames, and writes both beside the pictures, as a table
-    /// and as a chart. Returns the files.
-    pub(super) fn finish(&self, picture: &Path) -> Result<Vec<PathBuf>> {
+    /// Prints the sizes and the times of all frames, and writes the chart. Returns the files.
+    pub(super) fn finish(self) -> Result<[PathBuf; 2]> {
         let sorted = |value: &dyn Fn(&FrameRow) -> f64| {
             let mut all: Vec<f64> = self.drawn.iter().map(value).collect();
             all.sort_by(f64::total_cmp);
@@ -88,12 +95,9 @@ impl Walk {
         );
 
         let times: Vec<FrameTimes> = self.drawn.iter().map(|one| one.times).collect();
-        let files = ["frames.csv", "frames.svg"].map(|end| picture.with_extension(end));
-        let texts = [self.table(), chart(&times, target).svg()];
-        for (file, text) in files.iter().zip(texts) {
-            write_atomically(file, |out| out.write_all(text.as_bytes()))?;
-        }
-        Ok(files.into())
+        let chart = chart(&times, target).svg();
+        write_atomically(&self.files[1], |out| out.write_all(chart.as_bytes()))?;
+        Ok(self.files)
     }
 
     /// A line a frame.

@@ -343,6 +343,13 @@ fn a_walk_tells_its_sizes_and_each_frame_can_be_drawn_again() {
         let chart = fs::read_to_string(at.path().join("w.frames.svg")).unwrap();
         assert!(chart.contains("Times of frames") && chart.contains("placing"), "{chart}");
     }
+    // A sequence that stops has told the sizes of the frames before.
+    fs::create_dir(at.path().join("late.0002.exr")).unwrap();
+    let late = ["--surfel-size", "4", "--target-ms", "1e12", "-o", "late.exr"];
+    fails(at.path(), &[&draw[..], &late].concat(), 1);
+    let table = fs::read_to_string(at.path().join("late.frames.csv")).unwrap();
+    let sizes: Vec<&str> = table.lines().filter_map(|line| line.split(',').nth(1)).collect();
+    assert_eq!(sizes, ["surfel_size", "4", "3"]);
     let refused = |more: &[&str], word: &str| {
         let line =
             fails(at.path(), &[&["render", "blue.ply", "--method", "blue"], more].concat(), 2);

@@ -118,7 +118,11 @@ impl Objects {
     /// read it in every frame.
     #[must_use]
     pub fn missing(&self) -> Vec<Needed> {
-        let missing = |(index, needed): (usize, Needed)| {
+        self.missing_of(&self.needed())
+    }
+
+    fn missing_of(&self, needed: &[Needed]) -> Vec<Needed> {
+        let missing = |(index, &needed): (usize, &Needed)| {
             let (geometry, count) = (&self.geometries[index], self.extents[index].count);
             let held = geometry.surfels.len() as u32;
             let surfels = match held {
@@ -130,7 +134,7 @@ impl Objects {
             let primitives = needed.primitives && geometry.primitives.is_empty();
             Needed { surfels, primitives }
         };
-        self.needed().into_iter().enumerate().map(missing).collect()
+        needed.iter().enumerate().map(missing).collect()
     }
 
     /// Loads what the view draws of each geometry: what [is missing](Objects::missing) comes from
@@ -143,7 +147,8 @@ impl Objects {
         mut self,
         mut read: impl FnMut(usize, Needed) -> Result<(Surfels, Primitives)>,
     ) -> Result<Self> {
-        let (needed, missing) = (self.needed(), self.missing());
+        let needed = self.needed();
+        let missing = self.missing_of(&needed);
         let (mut geometries, mut extents) = (self.taken(), self.extents.to_vec());
         // Frees first, so that memory never holds two views.
         for (index, needed) in needed.into_iter().enumerate() {
