@@ -1,13 +1,12 @@
 """Measures what the package costs beside the library: time of a call, and memory of large arrays.
 
-    python python/benches/measure.py target/release/splatref
+    python python/benches/measure.py
 
-Needs a release build of the package and a quiet machine. Prints Markdown.
+Needs the package as `pip install ./python` builds it, and a quiet machine. Prints Markdown.
 """
 
 from __future__ import annotations
 
-import re
 import statistics
 import subprocess
 import sys
@@ -31,19 +30,16 @@ print(f"{{size:.0f}} {{held() - before:.0f}} {{peak - before:.0f}}")
 """
 
 
-def library(program: str) -> list[float]:
-    """Milliseconds of pictures by the library: the least of each turn, in one session that keeps its memory."""
-    command = [program, "render", "torus", "--count", str(COUNT), "--size", f"{SIZE}x{SIZE}"]
-    said = subprocess.run(
-        [*command, "--repeat", str(ROUNDS), "-o", "/tmp/measure.exr"], capture_output=True, text=True, check=True
-    )
-    found = re.search(r"picture +([\d.]+) ms +([\d.]+) ms", said.stdout)
-    assert found, said.stdout
-    return [float(found[1]), float(found[2])]
+def library() -> list[float]:
+    """Milliseconds of pictures by the library, the least and the median; each has a session of its own."""
+    bench = ["cargo", "bench", "-p", "splatref-python", "--profile", "release", "--bench", "library", "--"]
+    numbers = [str(COUNT), str(SIZE), str(ROUNDS)]
+    said = subprocess.run([*bench, *numbers], stdout=subprocess.PIPE, text=True, check=True).stdout
+    return [float(number) for number in said.split()]
 
 
 def package() -> list[float]:
-    """The same through Python: each call makes a session and hands its planes over."""
+    """The same through Python."""
     import splatref as sr
 
     scene, camera = sr.Scene.open("torus", count=COUNT), sr.Camera(size=(SIZE, SIZE))
@@ -57,8 +53,7 @@ def package() -> list[float]:
 
 
 def main() -> None:
-    program = sys.argv[1]
-    pairs = [(library(program), package()) for _ in range(TURNS)]
+    pairs = [(library(), package()) for _ in range(TURNS)]
     print(f"`sr.render` of {COUNT} surfels at {SIZE} x {SIZE}, {ROUNDS} pictures a turn:\n")
     print("| turn | library, least and median | Python, least and median | more |\n|---|---|---|---|")
     for turn, (ours, theirs) in enumerate(pairs):
