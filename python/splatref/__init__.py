@@ -10,6 +10,7 @@ True
 
 - `Scene`, `Camera`: what is drawn, from files or arrays, and from where.
 - `render`, `explain`, `truth`, `read`: pictures, as arrays by name.
+- `project`: projected splats, as structured arrays.
 - `verify`: whether your renderer's planes are right, and the likely mistake.
 - `study`: the error and the time of every method and setting.
 - `compare`, `metrics`: equality of planes, and errors that rank methods.
@@ -25,6 +26,7 @@ from ._call import use
 from ._compare import Comparison, compare, sha256
 from ._picture import Picture, Planes, explain, read, render, truth
 from ._scene import Camera, ResolvedCamera, Scene
+from ._records import project
 from ._splatref import __version__
 from ._study import Candidate, Study, study
 from ._verdict import DOUBTS, Stage, Verdict, Worst, verify
@@ -53,6 +55,7 @@ __all__ = [
     "laws",
     "methods",
     "metrics",
+    "project",
     "read",
     "render",
     "sha256",

@@ -14,6 +14,7 @@ from . import _splatref
 from ._arrays import Array, stored_plane
 from ._call import calling
 from ._picture import Picture, _rust, pixel_of
+from ._records import packed_records
 from ._scene import AnyCamera, Path, ResolvedCamera, Scene, choice_of
 from ._text import choices, table, toml
 
@@ -195,6 +196,7 @@ class _Asked:
     """What the Rust side reads of a call."""
 
     text: str
+    records: Optional[bytes]
     lenient: bool
     promise: Optional[str]
     budget: float
@@ -216,6 +218,7 @@ def verify(
     accumulator: Optional[str] = None,
     origin: Optional[str] = None,
     depth: Optional[Mapping[str, object]] = None,
+    records: Optional[object] = None,
     budget: float = 0.02,
     cause: bool = True,
     progress: Optional[bool] = None,
@@ -233,6 +236,9 @@ def verify(
     accumulator: how sums are stored between two additions: "f32" (the default) or "f16".
     origin: "top-left" (the default), or "bottom-left" where rows run up.
     depth: what all depths mean: {"meaning": "reversed-z", "near": 0.1, "far": inf}.
+    records: your projected splats, one for each that you draw, in any order: a structured array as `project`
+        returns it, or a dictionary of arrays by the names of its fields. Then the projection is judged by its
+        fields, and the rest from your records.
     budget: "undecidable" if more than this fraction of the pixels has undecided sums, 0 to 1.
     cause: whether to look for the mistake behind wrong planes, which takes about as long as the verdict.
     settings: as for `render`; number="f64" if the renderer computed in f64 and stored float32.
@@ -259,6 +265,7 @@ def verify(
     of_all = {"accumulator": accumulator, "ties": ties, "origin": origin}
     text = "".join(f"{key} = {toml(key, one)}\n" for key, one in of_all.items() if one is not None)
     text += table("depth", depth or {}) + tables
-    asked = _Asked(text, isinstance(planes, Picture), promise, float(budget), bool(cause))
+    own = None if records is None else packed_records(records, scene, chosen)
+    asked = _Asked(text, own, isinstance(planes, Picture), promise, float(budget), bool(cause))
     with calling(progress) as how:
         return Verdict(_splatref.verify(how, _rust(scene), choice_of(camera), chosen, arrays, asked))

@@ -10,6 +10,7 @@ mod choose;
 mod compare;
 mod error;
 mod laws;
+mod project;
 mod render;
 mod rows;
 mod scene;
@@ -39,6 +40,8 @@ fn _splatref(module: &Bound<'_, PyModule>) -> PyResult<()> {
         wrap_pyfunction!(render::save_png, module)?,
         wrap_pyfunction!(render::png, module)?,
         wrap_pyfunction!(render::read, module)?,
+        wrap_pyfunction!(project::project, module)?,
+        wrap_pyfunction!(project::record_layout, module)?,
         wrap_pyfunction!(verify::verify, module)?,
         wrap_pyfunction!(surfels::order, module)?,
         wrap_pyfunction!(surfels::quality, module)?,

@@ -9,6 +9,7 @@ use crate::scene::Scene;
 use crate::setup::Setup;
 use numpy::PyReadonlyArrayDyn;
 use pyo3::prelude::*;
+use pyo3::pybacked::PyBackedBytes;
 use pyo3::types::PyDict;
 use splatref::io::client::{Array, Description};
 use splatref::io::replace::Pending;
@@ -50,6 +51,8 @@ fn replay((x, y): (u32, u32)) -> String {
 pub(crate) struct Asked {
     /// The description of the planes, see `splatref::io::client`.
     text: String,
+    /// The renderer's records.
+    records: Option<PyBackedBytes>,
     /// Whether planes that the method does not have are left out.
     lenient: bool,
     promise: Option<String>,
@@ -91,7 +94,10 @@ pub(crate) fn verify(
         let array = Array::new(size, components(&numbers)?, &format);
         arrays.insert(name, array.map_err(raised)?);
     }
-    let described = Description::of_arrays(&asked.text, arrays).map_err(raised)?;
+    let mut described = Description::of_arrays(&asked.text, arrays).map_err(raised)?;
+    if let Some(records) = &asked.records {
+        described = described.with_records(records.to_vec());
+    }
     let scene = scene.get();
     call(py, &how, |exec, show| {
         let setup = Setup::new(scene, &file, exec, show)?;

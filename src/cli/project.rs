@@ -34,7 +34,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let file = args.options.scene_file(&args.scene)?;
     let exec = args.exec.exec()?;
     let method = file.method.method()?;
-    check(args, method.has_records(), file.output.number)?;
+    check(args, method.record_layout().is_some(), file.output.number)?;
     file.output.check_kept("records are f32")?;
     output::check(&args.output, &args.scene, &file)?;
     let ready = draw::ready(&file, &exec)?;
@@ -48,8 +48,8 @@ pub(super) fn run(args: &Args) -> Ended {
     report::camera(camera);
     report::method(method, &loaded.scene, camera);
     report::tally(&records.tally);
-    report::line("records", format!("{} of {} bytes", records.tally.visible, records.size()));
-    for (name, offset, kind) in records.fields() {
+    report::line("records", format!("{} of {} bytes", records.tally.visible, records.layout.size));
+    for (name, offset, kind) in records.layout.fields {
         report::line("", format!("{offset:>3} {name:<12} {kind}"));
     }
     if !records.shared.is_empty() {

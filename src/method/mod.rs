@@ -98,7 +98,7 @@ pub use algorithm::{Algorithm, Job};
 pub use clock::Laps;
 pub use input_planes::InputPlanes;
 pub use picture::Picture;
-pub use records::Records;
+pub use records::{RecordLayout, Records};
 pub use session::Session;
 pub use stage::{Holds, PlaneRow, Stage, When};
 pub use table::Method;

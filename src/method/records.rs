@@ -14,6 +14,8 @@ use std::io::{self, Write};
 #[derive(Clone, Debug)]
 pub struct Records {
     all: Kind,
+    /// How each record is laid out.
+    pub layout: RecordLayout,
     /// The numbers that all records share, each with its name.
     pub shared: Vec<(&'static str, f32)>,
     /// The fates of all surfels or Gaussians.
@@ -29,25 +31,21 @@ enum Kind {
     Gaussians(Vec<GaussianRecord>),
 }
 
+/// The bytes of a record.
+#[derive(Clone, Copy, Debug)]
+pub struct RecordLayout {
+    /// The number of bytes of a record, and the distance from one to the next.
+    pub size: usize,
+    /// Name, offset in bytes and type of each field, in order: `u32`, `f32 x 3`.
+    pub fields: &'static [(&'static str, usize, &'static str)],
+}
+
+impl RecordLayout {
+    const SPLATS: Self = Self { size: SplatRecord::SIZE, fields: &SplatRecord::FIELDS };
+    const GAUSSIANS: Self = Self { size: GaussianRecord::SIZE, fields: &GaussianRecord::FIELDS };
+}
+
 impl Records {
-    /// The number of bytes of a record.
-    #[must_use]
-    pub fn size(&self) -> usize {
-        match self.all {
-            Kind::Splats(_) => SplatRecord::SIZE,
-            Kind::Gaussians(_) => GaussianRecord::SIZE,
-        }
-    }
-
-    /// Name, offset in bytes and type of each field of a record.
-    #[must_use]
-    pub fn fields(&self) -> &'static [(&'static str, usize, &'static str)] {
-        match self.all {
-            Kind::Splats(_) => &SplatRecord::FIELDS,
-            Kind::Gaussians(_) => &GaussianRecord::FIELDS,
-        }
-    }
-
     /// Writes the records one after the other.
     ///
     /// # Errors
@@ -61,24 +59,28 @@ impl Records {
 }
 
 impl Method {
-    /// Whether the method draws splats, so that it has records.
+    /// How the records of the method are laid out; none: the method draws no splats.
     #[must_use]
-    pub fn has_records(&self) -> bool {
-        matches!(self, Self::Gaussians(_)) || self.splats().is_some()
+    pub fn record_layout(&self) -> Option<RecordLayout> {
+        match self {
+            Self::Gaussians(_) => Some(RecordLayout::GAUSSIANS),
+            _ => self.splats().map(|_| RecordLayout::SPLATS),
+        }
     }
 
     /// Projects the visible splats of a picture; none: the method draws no splats.
     #[must_use]
     pub fn records(&self, scene: &Scene, camera: &Camera, exec: &Exec) -> Option<Records> {
+        let layout = self.record_layout()?;
         if let Self::Gaussians(settings) = self {
             let index = Index::default();
             let job = Job::new(scene, &index, camera, exec);
             let (all, tally) = record::project_records(&job, settings);
-            return Some(Records { all: Kind::Gaussians(all), shared: Vec::new(), tally });
+            return Some(Records { all: Kind::Gaussians(all), layout, shared: Vec::new(), tally });
         }
         let splats = self.splats()?;
         let (all, tally) = project_records(&scene.surfels, camera, &splats.kernel, splats.cull);
         let shared = shared_numbers(camera, &splats.kernel);
-        Some(Records { all: Kind::Splats(all), shared, tally })
+        Some(Records { all: Kind::Splats(all), layout, shared, tally })
     }
 }

@@ -4,6 +4,7 @@ use super::Description;
 use super::format::Format;
 use super::numbers::Numbers;
 use super::parse::{PlaneKeys, Sidecar};
+use super::records::Place;
 use crate::error::{Error, Result};
 use crate::setting::Words;
 use std::collections::BTreeMap;
@@ -49,5 +50,12 @@ impl Description {
         }
         sidecar.arrays = arrays.into_iter().map(|(key, Array(numbers))| (key, numbers)).collect();
         Ok(Self { path: PathBuf::new(), sidecar })
+    }
+
+    /// Adds projected splats in memory, as the file of the key `records` holds them.
+    #[must_use]
+    pub fn with_records(mut self, bytes: Vec<u8>) -> Self {
+        self.sidecar.records = Some(Place::Memory(bytes));
+        self
     }
 }

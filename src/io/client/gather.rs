@@ -62,12 +62,12 @@ pub(super) fn client(
     client.ties = sidecar.ties;
     client.depth_test = sidecar.depth_test;
     client.unknown = unknown;
-    if let Some(file) = &sidecar.records {
+    if let Some(place) = &sidecar.records {
         // Each of the two kinds of records has its method.
         if stages == <gaussians::Settings as Algorithm>::STAGES {
-            client.gaussian_records = Some(records::gaussians(file)?);
+            client.gaussian_records = Some(records::gaussians(place)?);
         } else {
-            client.records = Some(records::splats(file)?);
+            client.records = Some(records::splats(place)?);
         }
     }
     Ok(client)

@@ -4,6 +4,7 @@ use super::convert;
 use super::format::Format;
 use super::keys::Keys;
 use super::numbers::Numbers;
+use super::records::Place;
 use crate::error::{Error, Result};
 use crate::io::{Reason, input};
 use crate::setting::Words;
@@ -20,8 +21,8 @@ pub(super) struct Sidecar {
     pub(super) ties: Ties,
     pub(super) upwards: bool,
     pub(super) size: Option<[u32; 2]>,
-    /// The file of the projected splats.
-    pub(super) records: Option<PathBuf>,
+    /// The projected splats.
+    pub(super) records: Option<Place>,
     pub(super) depth: DepthKeys,
     pub(super) depth_test: Storage,
     /// The planes, by their names in the file.
@@ -152,7 +153,8 @@ impl Sidecar {
         // `join` keeps an absolute path as it is.
         let folder = path.parent().unwrap_or(Path::new(""));
         let files = read.planes.iter_mut().map(|(_, plane)| &mut plane.file);
-        for file in files.chain([&mut read.file, &mut read.records]).flatten() {
+        let records = read.records.as_mut().and_then(Place::file_mut);
+        for file in files.chain([&mut read.file]).flatten().chain(records) {
             *file = folder.join(&file);
         }
         Ok(read)
@@ -161,7 +163,8 @@ impl Sidecar {
     /// All files that the description names.
     pub(super) fn files(&self) -> impl Iterator<Item = &Path> {
         let planes = self.planes.iter().filter_map(|(_, plane)| plane.file.as_deref());
-        planes.chain(self.file.as_deref()).chain(self.records.as_deref())
+        let records = self.records.as_ref().and_then(Place::file);
+        planes.chain(self.file.as_deref()).chain(records)
     }
 
     fn of_keys(mut keys: Keys, has_arrays: bool) -> Reason<Self> {
@@ -185,7 +188,7 @@ impl Sidecar {
             ties: keys.word("ties")?.unwrap_or_default(),
             upwards: keys.word("origin")? == Some(Origin::BottomLeft),
             size: keys.size("size")?,
-            records: keys.path("records")?,
+            records: keys.path("records")?.map(Place::File),
             arrays: BTreeMap::new(),
         };
         depth.done()?;

@@ -23,7 +23,7 @@ pub(super) fn text(method: &Method, options: &str, rules: &[Rule]) -> String {
     if !method.draws_gaussians() {
         page += OTHERS;
     }
-    if method.has_records() {
+    if method.record_layout().is_some() {
         page += "| records.bin | the visible splats, projected |\n";
     }
     page += "\n## The scenes\n\nThe pictures are splatref's own.\n\n";

@@ -117,12 +117,12 @@ fn draw(page: &mut String, case: &Case, records: Option<&Records>) -> std::fmt::
         writeln!(page, "| {name} | {value} |")?;
     }
     let Some(records) = records else { return Ok(()) };
-    let (size, shared) = (records.size(), &records.shared);
+    let (size, shared) = (records.layout.size, &records.shared);
     writeln!(
         page,
         "\nA record has {size} bytes, little-endian:\n\n| offset | field | type |\n|---|---|---|"
     )?;
-    for (name, offset, kind) in records.fields() {
+    for (name, offset, kind) in records.layout.fields {
         writeln!(page, "| {offset} | {name} | {kind} |")?;
     }
     if shared.is_empty() {
