@@ -20,6 +20,7 @@ use splatref::number::random::unit;
 use splatref::scene::gaussians::{Encoding, GaussianArrays, Gaussians};
 use splatref::scene::{Camera, Cloud, Geometry, Groups, Lens, Motion, Object, Objects, Pose};
 use splatref::scene::{Primitives, Scene, Similarity, Surfels};
+use splatref::setting::Fields;
 use splatref::source::Shape;
 use splatref::source::sampler::{Greedy, Progressive, Schedule, Start, shuffled};
 use splatref::splat::SplatSettings;
@@ -77,6 +78,15 @@ const MAKINGS: [Making; 4] = [
     Making::Define { number: 8, stages: true },
 ];
 
+/// A method that draws the backs of surfels, too: nothing is culled.
+fn of_both_sides(method: &Method) -> Method {
+    let mut all = *method;
+    if let Some(Ok(off)) = method.read("cull", "off") {
+        all.set("cull", &off).expect("a setting of the method");
+    }
+    all
+}
+
 /// What a picture is said to take, and what it takes in this process, which has drawn no other.
 fn said_and_taken(
     (method, making, count, [width, height]): (Method, Making, usize, [u32; 2]),
@@ -91,7 +101,7 @@ fn said_and_taken(
     if making == Making::Verdict {
         return (said, taken_by_a_verdict(&mut session, &camera));
     }
-    let before = status("VmHWM").expect("a peak");
+    let before = before_a_picture();
     let pixels = match making {
         Making::Render => session.render(&camera).expect("renders").frame.width,
         Making::Define { number: 4, stages } => {
@@ -104,6 +114,13 @@ fn said_and_taken(
     };
     assert_eq!(pixels, width);
     (said, status("VmHWM").expect("a peak") - before)
+}
+
+/// What the process holds before it makes a picture. What it held while the session was made counts no more.
+fn before_a_picture() -> u64 {
+    // Writing 5 resets the peak of the process to what it holds now.
+    let reset = std::fs::write("/proc/self/clear_refs", "5").is_ok();
+    status(if reset { "VmRSS" } else { "VmHWM" }).expect("a size")
 }
 
 /// What a verdict takes of planes in which every pixel is wrong, the planes included; drawing them, but
@@ -119,9 +136,7 @@ fn taken_by_a_verdict(session: &mut Session<'_>, camera: &Camera) -> u64 {
             Samples::Index(_) | Samples::Count(_) => {}
         }
     }
-    // Writing 5 resets the peak of the process to what it holds now.
-    let reset = std::fs::write("/proc/self/clear_refs", "5").is_ok();
-    let before = status(if reset { "VmRSS" } else { "VmHWM" }).expect("a size");
+    let before = before_a_picture();
     let client = Client::from(&frame);
     let verdict = session.verify(camera, &client, 1.0).expect("a verdict");
     let pixels = u64::from(camera.width) * u64::from(camera.height);
@@ -325,6 +340,8 @@ fn a_picture_takes_what_it_is_said_to() {
     // Where surfels count, and not pixels: what the margin needs of each.
     let ewa = SplatSettings { cull: false, ..SplatSettings::default() }.into();
     let many = (ewa, Making::Define { number: 4, stages: true }, 1_000_000, [300, 200]);
+    // What a picture needs of each.
+    let crowded = |method: &Method| (of_both_sides(method), Making::Render, POINTS, [300, 200]);
     // What a verdict needs of each.
     let judged = (ewa, Making::Verdict, 1_000_000, [300, 200]);
     // What it needs of each surfel of a scene of which few are drawn.
@@ -332,7 +349,8 @@ fn a_picture_takes_what_it_is_said_to() {
     let placed = (placed, Making::Verdict, 1_000_000, [300, 200]);
     let wrong = |method: &Method| (*method, Making::Verdict, 20_000, [700, 500]);
     let verdicts = all.iter().map(wrong).chain([judged, placed]);
-    let cases = all.iter().flat_map(large).chain([many]).chain(verdicts);
+    let cases =
+        all.iter().flat_map(large).chain([many]).chain(verdicts).chain(all.iter().map(crowded));
     if let Some(case) = std::env::var(CASE).ok().and_then(|case| case.parse::<usize>().ok()) {
         let (said, taken) = said_and_taken(cases.clone().nth(case).expect("a case"));
         println!("\nmemory {said} {taken}");

@@ -43,28 +43,53 @@ pub(super) fn check(method: &Method) -> Result<()> {
     Err(Error::Usage(what))
 }
 
-/// The most rows of a band with which every band fits into half of the memory that is left: all, or half
-/// as many, and so on. The other half is for the blocks of the file.
-fn most_rows(session: &mut Session<'_>, ready: &Ready, output: OutputSettings) -> Result<u32> {
+/// The fewest columns of a part of a band.
+const LEAST_COLUMNS: u32 = 32;
+
+/// The largest parts that fit into half of the memory that is left, in columns and rows: the whole
+/// picture, a band of half its rows, and so on. If the lowest band that a file may have still shows too
+/// many surfels of a folder, a part of half its columns, and so on. The other half of the memory is for
+/// the blocks of the file.
+fn largest_part(
+    session: &mut Session<'_>,
+    ready: &Ready,
+    output: OutputSettings,
+) -> Result<[u32; 2]> {
     let Ready { camera, .. } = ready;
     let making = output.making();
     let [width, height] = camera.size();
-    let mut rows = height;
+    let [mut columns, mut rows] = [width, height.next_multiple_of(exr::BLOCK_LINES)];
     loop {
-        rows = rows.next_multiple_of(exr::BLOCK_LINES);
-        let band = |y: u32| Rect { x0: 0, y0: y, x1: width, y1: height.min(y + rows) };
-        session.set_region(Some(band(0)))?;
-        // What a band reads of a folder is not in the session yet.
-        let read = (0..height).step_by(rows as usize).map(|y| {
-            let (surfels, held) = ready.most_of_part(band(y));
+        let bands = bands_of(Rect::of_size([width, height]), rows);
+        let parts: Vec<Rect> = bands.flat_map(|band| parts_of(band, columns)).collect();
+        session.set_region(parts.first().copied())?;
+        // What a part reads of a folder is not in the session yet.
+        let read = parts.iter().map(|part| {
+            let (surfels, held) = ready.most_of_part(*part);
             surfels * session.needs_a_splat(making) + held
         });
-        let needs = session.needs(camera, making) + read.max().unwrap_or(0);
-        if rows == exr::BLOCK_LINES || needs <= memory::left() / 2 {
-            return Ok(rows);
+        let read = read.max().unwrap_or(0);
+        if session.needs(camera, making) + read <= memory::left() / 2 {
+            return Ok([columns, rows]);
         }
-        rows = rows.div_ceil(2);
+        match (rows > exr::BLOCK_LINES, read > 0 && columns > LEAST_COLUMNS) {
+            (true, _) => rows = rows.div_ceil(2).next_multiple_of(exr::BLOCK_LINES),
+            (false, true) => columns = columns.div_ceil(2),
+            (false, false) => return Ok([columns, rows]),
+        }
     }
+}
+
+/// The bands of so many rows, from the top.
+fn bands_of(whole: Rect, rows: u32) -> impl Iterator<Item = Rect> {
+    let tops = (whole.y0..whole.y1).step_by(rows as usize);
+    tops.map(move |y0| Rect { y0, y1: whole.y1.min(y0 + rows), ..whole })
+}
+
+/// The parts of a band of so many columns, from the left.
+fn parts_of(band: Rect, columns: u32) -> impl Iterator<Item = Rect> {
+    let sides = (band.x0..band.x1).step_by(columns as usize);
+    sides.map(move |x0| Rect { x0, x1: band.x1.min(x0 + columns), ..band })
 }
 
 /// Draws a picture in bands of rows into the file `picture`.
@@ -79,19 +104,21 @@ pub(super) fn render(
     let Ready { loaded, camera, method, .. } = ready;
     to.make_folder()?;
     let text = provenance::text(&loaded.scene, session.groups(), camera, method, output);
-    let rows = match count {
-        Count::About(count) => camera.height.div_ceil(count),
-        Count::Auto => most_rows(session, ready, output)?,
+    let [columns, rows] = match count {
+        Count::About(count) => [camera.width, camera.height.div_ceil(count)],
+        Count::Auto => largest_part(session, ready, output)?,
     };
     let steps = progress::Steps::new("rendering");
     let mut bands = 0_u32;
     let mut draw = |band: Rect| {
         steps.show("bands", band.y0.into(), camera.height.into());
         bands += 1;
-        match ready.part(Some(band), exec)? {
-            Some(part) => drawn(&mut Session::new(&part, *method, exec)?, camera, band, output),
-            None => drawn(session, camera, band, output),
-        }
+        let mut parts = parts_of(band, columns).map(|part| match ready.part(Some(part), exec)? {
+            Some(scene) => drawn(&mut Session::new(&scene, *method, exec)?, camera, part, output),
+            None => drawn(session, camera, part, output),
+        });
+        let first = parts.next().unwrap_or_else(|| Err(Error::Invalid("an empty band".into())))?;
+        parts.try_fold(first, |band, part| band.beside(&part?))
     };
     let how = (output.compression, exec);
     exr::pending_bands(picture, (camera.size(), rows), &text, how, &mut draw)?.put()?;
@@ -99,7 +126,11 @@ pub(super) fn render(
     report::scene(loaded);
     report::camera(camera);
     report::picture(camera, output);
-    report::line("bands", bands);
+    let parts = camera.width.div_ceil(columns);
+    report::line(
+        "bands",
+        if parts > 1 { format!("{bands} of {parts} parts") } else { bands.to_string() },
+    );
     report::method(method, &loaded.scene, camera);
     report::line("time", report::threads(exec));
     report::time("bands", vec![start.elapsed()]);
@@ -107,7 +138,7 @@ pub(super) fn render(
     Ok(Ending::Good)
 }
 
-/// Draws a band.
+/// Draws a part of a band.
 fn drawn(
     session: &mut Session<'_>,
     camera: &Camera,
@@ -121,5 +152,5 @@ fn drawn(
         Cow::Borrowed(_) => None,
     };
     let drawn = drawn.or_else(|| session.take_picture());
-    drawn.map(|drawn| drawn.frame).ok_or_else(|| Error::Invalid("no band was drawn".into()))
+    drawn.map(|drawn| drawn.frame).ok_or_else(|| Error::Invalid("no part was drawn".into()))
 }

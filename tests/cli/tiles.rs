@@ -166,13 +166,12 @@ fn a_scene_four_times_as_large_as_memory_is_tiled_and_drawn() {
     let limit = (u64::from(SIDE * SIDE) * 72 / 4).to_string();
     let limited = ["--memory", &limit, "--threads", "2"];
     succeeds(at, &[&["tile", "wall.ply", "-o", "tiled/wall"], &limited[..]].concat());
-    let draw = |scene: &'static str, more: &[&str]| -> Vec<String> {
-        let first = [
-            "render", scene, "--size", "128x2048", "--eye", "0,0,3", "--target", "0,0,0", "--fov",
-            "40",
-        ];
-        first.iter().chain(more).map(|word| word.to_string()).collect()
+    let draw_of = |[size, fov]: [&'static str; 2], scene: &'static str, more: &[&str]| {
+        let first =
+            ["render", scene, "--size", size, "--eye", "0,0,3", "--target", "0,0,0", "--fov", fov];
+        first.iter().chain(more).map(|word| word.to_string()).collect::<Vec<_>>()
     };
+    let draw = |scene, more: &[&str]| draw_of(["128x2048", "40"], scene, more);
     let run =
         |words: Vec<String>| splatref(at, &words.iter().map(String::as_str).collect::<Vec<_>>());
     let output = run(draw("wall.ply", &[&["-o", "no.exr"], &limited[..]].concat()));
@@ -188,6 +187,18 @@ fn a_scene_four_times_as_large_as_memory_is_tiled_and_drawn() {
     assert!(bands.status.success() && bands.stderr.is_empty(), "{bands:?}");
     let read = |name: &str| fs::read(at.join(name)).unwrap();
     assert!(read("whole.exr") == read("bands.exr"));
+    // The lowest band shows more surfels than fit, so that it is drawn in parts side by side.
+    let draw_strip = |scene: &'static str, more: &[&str]| {
+        let output = run(draw_of(["1024x32", "4"], scene, more));
+        assert!(output.status.success(), "{output:?}");
+        String::from_utf8(output.stdout).unwrap()
+    };
+    draw_strip("wall.ply", &["-o", "strip.exr"]);
+    let half = (u64::from(SIDE * SIDE) * 72 / 2).to_string();
+    let more = ["-o", "parts.exr", "--bands", "auto", "--memory", &half, "--threads", "2"];
+    let said = draw_strip("tiled/wall", &more);
+    assert!(said.contains("1 of ") && said.contains(" parts"), "{said}");
+    assert!(read("strip.exr") == read("parts.exr"));
     // A few regions, because every process takes its time.
     for region in ["0,0,128,32", "0,1000,128,1032", "3,2040,9,2048"] {
         let more = ["-o", "part.exr", "--region", region];

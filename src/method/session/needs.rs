@@ -67,6 +67,7 @@ impl Session<'_> {
     pub fn needs_a_splat(&self, making: Making) -> u64 {
         let (number, stages) = match making {
             Making::Define { number, stages } => (number, stages),
+            _ if self.method.fast_bytes_a_pixel().is_some() => return OF_A_FAST_SPLAT,
             _ => (4, false),
         };
         let mut rows = self.method.stages().iter().flat_map(|stage| stage.leaves);
@@ -163,6 +164,8 @@ fn copies_of(row: &PlaneRow) -> Copies {
 const OF_A_PIXEL: u64 = 80;
 /// Numbers of a splat, with the bins that list it.
 const OF_A_SPLAT: u64 = 64;
+/// Bytes of a splat of a fast path, with the bins that list it: 127 for the method that takes most.
+const OF_A_FAST_SPLAT: u64 = 160;
 /// Bytes of a splat in a verdict, and of a pixel beside the planes of a client.
 const OF_A_JUDGED_SPLAT: u64 = 704;
 /// A Gaussian in balls, twice where batches are joined.
