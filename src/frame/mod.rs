@@ -11,8 +11,8 @@
 //! - [`bin`]: sort screen bounds into tiles.
 //! - [`tile`]: tiles, and the one parallel loop of the crate.
 
-pub mod beside;
-mod bin;
+mod beside;
+pub mod bin;
 pub mod framebuffer;
 pub mod image;
 pub mod named;
