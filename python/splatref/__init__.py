@@ -25,8 +25,8 @@ from . import cluster, laws, methods, metrics, surfels, testing
 from ._call import use
 from ._compare import Comparison, compare, sha256
 from ._picture import Picture, Planes, explain, read, render, truth
-from ._scene import Camera, ResolvedCamera, Scene
 from ._records import project
+from ._scene import Camera, ResolvedCamera, Scene
 from ._splatref import __version__
 from ._study import Candidate, Study, study
 from ._verdict import DOUBTS, Stage, Verdict, Worst, verify

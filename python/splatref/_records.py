@@ -72,17 +72,18 @@ def packed_records(value: object, scene: Scene, chosen: Any) -> bytes:
     if missing or unknown:
         what = f"without {', '.join(missing)}" if missing else f"with {', '.join(map(repr, unknown))}"
         raise ValueError(f"records: {what}; give the fields {', '.join(names)}")
-    count = len(as_array(f"records[{names[0]!r}]", columns[names[0]]))
+    first = as_array(f"records[{names[0]!r}]", columns[names[0]])
+    count = len(first) if first.ndim else 0
     _splatref.ask(2 * count * wanted.itemsize, "a copy of records")
-    all = np.zeros(count, wanted)
+    rows = np.zeros(count, wanted)
     for name in names:
         field, label = wanted[name], f"records[{name!r}]"
         shape = (count, *field.shape)
         if field.base.kind == "f":
-            all[name] = float32(label, columns[name], shape)
+            rows[name] = float32(label, columns[name], shape)
         else:
             whole = as_array(label, columns[name])
             if whole.shape != shape:
                 raise ValueError(f"{label}: an array with the shape {whole.shape}; give {shape}")
-            all[name] = indices(label, whole.reshape(-1), 1 << 32).reshape(shape)
-    return all.tobytes()
+            rows[name] = indices(label, whole.reshape(-1), 1 << 32).reshape(shape)
+    return rows.tobytes()

@@ -63,7 +63,9 @@ def test_bad_records_are_one_clear_error() -> None:
         (columns | {"amplitude": third[:-1].astype(np.float32)}, r"the shape \(\d+,\); give \(\d+,\)"),
         (columns | {"bounds": right["bounds"][:, 0]}, r"records\['bounds'\]: an array with the shape"),
         (columns | {"surfel": right["surfel"].astype(np.int64) - 1000}, "indices from -"),
-        (columns | {"surfel": right["center"]}, "records"),
+        (columns | {"surfel": right["center"]}, r"records\['surfel'\]: an array with the shape"),
+        (columns | {"center": 3.0}, r"records\['center'\]: an array with the shape \(\)"),
+        (columns | {"center": "many"}, r"records\['center'\]"),
     ]:
         with pytest.raises(ValueError, match=text):
             sr.verify(scene, camera, planes, records=records)
