@@ -3,7 +3,6 @@
 use crate::error::{raised, value};
 use pyo3::prelude::*;
 use splatref::Error;
-use splatref::io::cameras;
 use splatref::io::scene_file::{
     self, Choice, GroupChoice, MethodChoice, OutputSettings, SceneFile, Views,
 };
@@ -29,7 +28,7 @@ impl CameraChoice {
 /// The number of views of a camera file.
 #[pyfunction]
 pub(crate) fn views(path: PathBuf) -> PyResult<usize> {
-    Ok(cameras::read(&path).map_err(raised)?.len())
+    Ok(Views::read(&path, None).map_err(raised)?.count())
 }
 
 /// A scene file with this text, and a model that does not count.

@@ -37,6 +37,7 @@
 //! - `checksum`: notice damage in files of this crate.
 //! - [`replace`]: write files that are complete or absent.
 
+mod activation;
 pub mod blocks;
 pub mod cameras;
 mod checksum;

@@ -1,9 +1,7 @@
 //! Hand in the planes of your renderer: planes by the names of a method's rows, and how exactly
 //! each is stored.
 
-mod storage;
-
-pub use storage::Storage;
+pub use super::storage::Storage;
 
 use crate::error::{Error, Result};
 use crate::frame::{Frame, NamedPlane, Plane, Rect, Samples};

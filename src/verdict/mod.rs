@@ -43,6 +43,7 @@ pub mod pyramid;
 mod session;
 pub mod shift;
 pub mod single_pass;
+mod storage;
 mod supposed;
 mod table;
 pub mod template;

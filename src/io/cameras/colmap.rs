@@ -31,7 +31,7 @@
 //!
 //! Then as [`crate::scene::camera::convention`] has it.
 
-use super::{Opening, Reason, View, size, text, undistorted};
+use super::{Reason, View, size, text, undistorted};
 use crate::error::{Error, Result};
 use crate::scene::{Convention, Intrinsics, PoseMatrix, Projection};
 use glam::{DMat4, DVec3, DVec4};
@@ -161,7 +161,7 @@ fn view(line: &str, lenses: &Lenses) -> Reason<View> {
     let lens = lens.ok_or_else(|| format!("cameras.txt has no camera {id}, which {name} uses"))?;
     let intrinsics = lens.clone().map_err(|what| format!("{name}: cameras.txt: {what}"))?;
     let view = PoseMatrix::WorldToCamera(pose([w, x, y, z], t)?).view(Convention::OpenCv)?;
-    Ok(View { name, view, offset: DVec3::ZERO, near: None, opening: Opening::Pixels(intrinsics) })
+    Ok(View::new(name, view, DVec3::ZERO, intrinsics))
 }
 
 /// World to camera from a quaternion and a translation.

@@ -1,10 +1,9 @@
-//! Read cameras from the files of other programs, and from the pictures of this one.
+//! Read cameras from the files of other programs.
 //!
 //! | file | what it is |
 //! |---|---|
 //! | `*.json` | [`transforms`]: nerfstudio, instant-ngp and Blender exports |
 //! | `cameras.txt`, `images.txt`, or their folder | [`colmap`]: a reconstruction as text |
-//! | `*.exr` | a picture that `splatref` wrote: its text has the camera, bit for bit |
 //!
 //! A file has one or more views, in its order, counted from 0. Lenses that distort are refused by
 //! name.
@@ -13,12 +12,14 @@ pub mod colmap;
 #[cfg(feature = "cli")]
 pub mod transforms;
 
-use super::scene_file::{CameraChoice, MOST_FRAMES, SceneFile};
-use super::{Reason, exr, extension, input};
+use super::{Reason, extension, input};
 use crate::error::{Error, Result};
 use crate::scene::Intrinsics;
 use glam::{DMat4, DVec3};
 use std::path::Path;
+
+/// The most cameras of a file, and frames of a sequence.
+pub const MOST_FRAMES: u32 = 1_000_000;
 
 /// A camera of a file.
 #[derive(Clone, Debug, PartialEq)]
@@ -27,7 +28,7 @@ pub struct View {
     pub name: String,
     /// The view matrix, [`crate::scene::Camera::view_from_world`] before it is rounded.
     pub view: DMat4,
-    /// What the view matrix takes off the coordinates first, see [`CameraChoice::offset`].
+    /// What the view matrix takes off the coordinates first, in world units.
     pub offset: DVec3,
     /// The near plane, if the file has one.
     pub near: Option<f64>,
@@ -45,6 +46,11 @@ enum Opening {
 }
 
 impl View {
+    /// A camera with these intrinsics, without a near plane.
+    pub(super) fn new(name: String, view: DMat4, offset: DVec3, intrinsics: Intrinsics) -> Self {
+        Self { name, view, offset, near: None, opening: Opening::Pixels(intrinsics) }
+    }
+
     /// The intrinsics, for a picture of the chosen size if the file has none.
     pub(super) fn intrinsics(&self, size: Option<[u32; 2]>) -> Reason<Intrinsics> {
         match self.opening {
@@ -75,7 +81,6 @@ pub fn read(path: &Path) -> Result<Vec<View>> {
     let views = match ends.as_deref() {
         _ if path.is_dir() => colmap::read(path)?,
         Some("json") => json(path)?,
-        Some("exr") => vec![picture(path)?],
         Some("txt" | "bin")
             if path.file_stem().is_some_and(|stem| stem == "cameras" || stem == "images") =>
         {
@@ -104,27 +109,6 @@ fn json(path: &Path) -> Result<Vec<View>> {
 #[cfg(not(feature = "cli"))]
 fn json(path: &Path) -> Result<Vec<View>> {
     Err(Error::format(path, "this build reads no JSON; build splatref with the feature cli"))
-}
-
-/// The camera in the text of a picture.
-fn picture(path: &Path) -> Result<View> {
-    let no_text = || {
-        Error::format(
-            path,
-            "the picture has no text from splatref with a [camera]; render it again",
-        )
-    };
-    let text = exr::read_header(path)?.text.ok_or_else(no_text)?;
-    let table: toml::Table = text.parse().map_err(|_| no_text())?;
-    let camera = table.get("camera").cloned().ok_or_else(no_text)?;
-    let choice: CameraChoice = SceneFile::parse_camera(camera, path)?;
-    let (Some(view), Some(intrinsics)) = (choice.view, choice.intrinsics) else {
-        return Err(no_text());
-    };
-    let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
-    let opening = Opening::Pixels(intrinsics);
-    let (near, offset) = (choice.near, choice.offset);
-    Ok(View { name: name.unwrap_or_default(), view, offset, near, opening })
 }
 
 /// Finds a view: by its name, else by its file's name, with or without its extension, else by its

@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::frame::Exec;
-use crate::io::scene_file::{Source, Views};
+use crate::io::scene_file::{SceneFile, Source, Views};
 use crate::scene::{Camera, Scene, Surfels};
 use glam::DVec3;
 use std::fs;

@@ -76,7 +76,6 @@
 //!   [`GaussianFile::convention`], and changes no setting.
 //! - Extensions of vendors are skipped with a warning. Degree 4 and versions from 4 on are refused.
 
-mod activation;
 #[cfg(feature = "cli")]
 mod gltf;
 mod splat;
@@ -89,28 +88,13 @@ mod write_ply;
 use super::replace::write_atomically;
 use super::{extension, ply};
 use crate::error::{Error, Result};
-use crate::scene::GaussianArrays;
 #[cfg(feature = "cli")]
 use crate::scene::{Gaussians, gaussians::Encoding};
+#[cfg(feature = "cli")]
 use glam::DVec3;
 use std::path::Path;
 
-pub(in crate::io) use activation::{opacity, scale};
-
-/// What a file holds: activated numbers, which nobody has checked yet.
-#[derive(Clone, Debug, PartialEq)]
-pub struct GaussianFile {
-    /// The Gaussians, for [`crate::scene::Gaussians::new`].
-    pub arrays: GaussianArrays,
-    /// What the reader subtracted from the positions of the file, because `f32` would merge places
-    /// that are far from 0.
-    pub offset: DVec3,
-    /// How the file stores its numbers, in words.
-    pub convention: String,
-    /// What the reader doubts about the file, and what mends it: one line each, without the name of
-    /// the file.
-    pub warnings: Vec<String>,
-}
+pub use super::activation::GaussianFile;
 
 /// The kinds of files, by their extension.
 enum Kind {

@@ -1,8 +1,9 @@
 //! Read `.spz`, versions 1 to 3: a gzip stream with a header of 16 bytes, and one array after the
 //! other.
 
-use super::{GaussianFile, activation};
+use super::GaussianFile;
 use crate::error::{Error, Result};
+use crate::io::activation;
 use crate::io::{Reason, input};
 use crate::memory;
 use crate::scene::GaussianArrays;

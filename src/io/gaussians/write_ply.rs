@@ -1,6 +1,6 @@
 //! Write 3D Gaussians as the PLY of the original program.
 
-use super::activation::{logarithm, logit};
+use crate::io::activation::{logarithm, logit};
 use crate::scene::Gaussians;
 use crate::scene::gaussians::coefficients;
 use glam::DVec3;

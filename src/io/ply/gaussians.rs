@@ -4,7 +4,7 @@ use super::header::{self, Element, PlyHeader, PropertyKind, Scalar, quote};
 use super::values::{BodyValues, Event};
 use super::vertex;
 use crate::error::{Error, Result};
-use crate::io::gaussians::{GaussianFile, opacity, scale};
+use crate::io::activation::{GaussianFile, opacity, scale};
 use crate::io::{Reason, far, input};
 use crate::memory;
 use crate::scene::GaussianArrays;

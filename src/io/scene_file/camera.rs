@@ -1,15 +1,15 @@
 //! The camera of a scene file: the chosen parts, completed so that it shows the scene.
 
 use super::{DEFAULT_FIELD_OF_VIEW, DEFAULT_SIDE, DEFAULT_SIZE, MOST_FRAMES, Model};
-use super::{SceneFile, Source};
+use super::{SceneFile, Source, Views};
 use crate::error::{Error, Result};
-use crate::io::cameras::{self, View};
+use crate::io::cameras::View;
 use crate::scene::camera::clip::from_clip;
 use crate::scene::{Camera, CameraMotion, Convention, Intrinsics, Lens, Pose, PoseMatrix};
 use crate::scene::{Scene, Similarity, Turntable};
 use crate::source::Shape;
 use glam::{DMat4, DVec3, DVec4};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The chosen parts of a camera.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -91,43 +91,6 @@ impl Matrices {
         choice.intrinsics = Some(camera.intrinsics);
         choice.near = choice.near.or(Some(camera.near));
         choice.far = choice.far.or(Some(camera.far)).filter(|far| far.is_finite());
-        Ok(())
-    }
-}
-
-/// The cameras of a file, see [`crate::io::cameras`].
-#[derive(Clone, Debug, PartialEq)]
-pub struct Views {
-    /// The file or folder.
-    pub path: PathBuf,
-    /// The view to draw; if absent, each view is a frame.
-    pub view: Option<String>,
-    /// All views; none until the file is read.
-    all: Vec<View>,
-    /// The place of the chosen view among them.
-    chosen: Option<usize>,
-}
-
-impl Views {
-    /// Names a camera file, which [`SceneFile::read`] will read.
-    pub(super) fn unread(path: PathBuf, view: Option<String>) -> Self {
-        Self { path, view, all: Vec::new(), chosen: None }
-    }
-
-    /// Reads a camera file, and finds the view.
-    ///
-    /// # Errors
-    /// As [`cameras::read`], and [`Error::Usage`] as [`cameras::find`].
-    pub fn read(path: &Path, view: Option<String>) -> Result<Self> {
-        let mut views = Self::unread(path.to_owned(), view);
-        views.load()?;
-        Ok(views)
-    }
-
-    pub(super) fn load(&mut self) -> Result<()> {
-        self.all = cameras::read(&self.path)?;
-        let find = |name: &String| cameras::find(&self.path, &self.all, name);
-        self.chosen = self.view.as_ref().map(find).transpose()?;
         Ok(())
     }
 }

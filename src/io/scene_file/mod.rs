@@ -101,18 +101,21 @@ mod ready;
 #[cfg(test)]
 mod tests;
 mod text;
+mod views;
 
-pub use camera::{CameraChoice, Matrices, Views};
+pub use camera::{CameraChoice, Matrices};
 pub use choice::{Choice, GroupChoice, MethodChoice, Number, OutputSettings};
 pub use draw::Draw;
 pub use load::{GaussianReport, Loaded, ModelReport};
 pub use model::Colored;
-pub use objects::{Geometry, MOST_FRAMES, ObjectChoice, Places};
+pub use objects::{Geometry, ObjectChoice, Places};
 pub use open::{FileKind, TREE, read_model, read_properties, shapes};
 pub use ready::Ready;
+pub use views::Views;
 
 use crate::error::{Error, Result};
 use crate::index::grouping::Grouping;
+pub use crate::io::cameras::MOST_FRAMES;
 use crate::io::input;
 use crate::method::Method;
 use crate::scene::mipmap::MOST_LEVELS;
@@ -277,11 +280,6 @@ impl SceneFile {
     /// wrong type, no model, or a number that no picture can be made with.
     pub fn parse(text: &str, path: &Path) -> Result<Self> {
         text::parse(text, path)
-    }
-
-    /// Parses a table with the keys of `[camera]`, which the file at `path` contains.
-    pub(super) fn parse_camera(camera: toml::Value, path: &Path) -> Result<CameraChoice> {
-        text::parse_camera(camera, path)
     }
 
     /// The text of a scene file at `path` that draws the same picture. Only settings that differ

@@ -8,9 +8,6 @@ use crate::source::Scatter;
 use glam::Vec3;
 use std::path::PathBuf;
 
-/// The most frames of a sequence.
-pub const MOST_FRAMES: u32 = 1_000_000;
-
 /// A model that objects are copies of; it is not drawn by itself. Its transform, colour and opacity
 /// apply in every object.
 #[derive(Clone, Debug, PartialEq)]

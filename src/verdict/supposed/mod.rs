@@ -16,7 +16,7 @@ use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, MapInline, Real, Vector3};
 use crate::splat::{Footprint, View};
 use crate::verdict::checks::widened;
-use crate::verdict::client::Storage;
+use crate::verdict::storage::Storage;
 
 /// A rule in place of the method's own.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]

@@ -1,6 +1,7 @@
 //! The splats of a pixel are blended, as a shader for each pixel would do it.
 
-use super::project::{Splat, decoded, encoded};
+use super::color::{decoded, encoded};
+use super::project::Splat;
 use super::{Bug, Habit, Shared};
 use splatref::frame::{Frame, NO_ID, Plane, Samples};
 use splatref::method::gaussians::{Order, Support};

@@ -3,6 +3,7 @@
 
 mod blend;
 mod bug;
+mod color;
 mod discs;
 mod habit;
 mod page;

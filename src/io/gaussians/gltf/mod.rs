@@ -12,7 +12,7 @@ mod write;
 
 pub(super) use write::write;
 
-use super::{GaussianFile, activation};
+use super::GaussianFile;
 use crate::error::{Error, Result};
 use crate::io::{Reason, far, input};
 use crate::memory;

@@ -1,9 +1,9 @@
 //! Read one primitive of Gaussians.
 
 use super::accessors::{Accessors, Allowed, F32};
-use super::activation;
 use super::json::{EXTENSION, Primitive, Splatting};
 use crate::io::Reason;
+use crate::io::activation;
 use crate::scene::GaussianArrays;
 use crate::scene::gaussians::{Encoding, MAX_DEGREE};
 use glam::Vec3;

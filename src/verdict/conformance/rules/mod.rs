@@ -78,8 +78,7 @@ impl Of {
 /// The rules of a method, the simple ones first and the large scenes last.
 pub(super) fn of_method(method: &Method) -> Vec<Rule> {
     let of_surfels = [surfels::ROWS, cameras::ROWS, lights::ROWS, layers::ROWS, meshes::ROWS];
-    let of_gaussians = [gaussians::ROWS];
-    let tables = if method.draws_gaussians() { &of_gaussians[..] } else { &of_surfels[..] };
+    let tables = if method.draws_gaussians() { &gaussians::TABLES[..] } else { &of_surfels[..] };
     let rule = |row: &'static Row| Rule {
         name: row.name.to_owned(),
         tests: row.tests.to_owned(),

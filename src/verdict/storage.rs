@@ -14,7 +14,7 @@ pub enum Storage {
     /// `f32`, rounded once to nearest from a number with more digits: 2^-24 of the value. The next
     /// stage continued from the number before it was rounded. See [`Client::rounded`].
     ///
-    /// [`Client::rounded`]: super::Client::rounded
+    /// [`Client::rounded`]: super::client::Client::rounded
     Rounded,
     /// `f16`, rounded to either neighbour: 2^-10 of the value, at least 2^-24.
     Half,

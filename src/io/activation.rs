@@ -1,9 +1,26 @@
 //! Activate the numbers of trained Gaussians, and find the numbers that give activated ones.
 
 use crate::number::elementary;
+use crate::scene::GaussianArrays;
+use glam::DVec3;
+
+/// What a file holds: activated numbers, which nobody has checked yet.
+#[derive(Clone, Debug, PartialEq)]
+pub struct GaussianFile {
+    /// The Gaussians, for [`crate::scene::Gaussians::new`].
+    pub arrays: GaussianArrays,
+    /// What the reader subtracted from the positions of the file, because `f32` would merge places
+    /// that are far from 0.
+    pub offset: DVec3,
+    /// How the file stores its numbers, in words.
+    pub convention: String,
+    /// What the reader doubts about the file, and what mends it: one line each, without the name of
+    /// the file.
+    pub warnings: Vec<String>,
+}
 
 /// The scale for its logarithm.
-pub(in crate::io) fn scale(logarithm: f64) -> f32 {
+pub(super) fn scale(logarithm: f64) -> f32 {
     let narrow = logarithm as f32;
     if f64::from(narrow) == logarithm {
         elementary::exp_f32(narrow)
@@ -13,7 +30,7 @@ pub(in crate::io) fn scale(logarithm: f64) -> f32 {
 }
 
 /// The opacity for its logit.
-pub(in crate::io) fn opacity(logit: f64) -> f32 {
+pub(super) fn opacity(logit: f64) -> f32 {
     (1.0 / (1.0 + elementary::exp(-logit))) as f32
 }
 
