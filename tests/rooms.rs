@@ -1,5 +1,7 @@
-//! Keeps the folders of `src/` in order: each folder imports only from folders below it.
+//! Keeps the folders of `src/` in order: each room imports only from rooms below it, and no circle of imports runs through
+//! folders.
 
+use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -55,12 +57,17 @@ fn code(text: &str) -> String {
 
 /// The paths below the root of the crate that a file names; of a group of paths, every one.
 fn imports(code: &str) -> Vec<String> {
+    paths_behind("crate::", code)
+}
+
+/// The paths that stand behind a marker; of a group of paths, every one.
+fn paths_behind(marker: &str, code: &str) -> Vec<String> {
     let path = |rest: &str| {
         let end = rest.find(|c: char| !(c.is_alphanumeric() || c == '_' || c == ':'));
         rest[..end.unwrap_or(rest.len())].trim_matches(':').to_owned()
     };
     let mut found = Vec::new();
-    for (at, marker) in code.match_indices("crate::") {
+    for (at, marker) in code.match_indices(marker) {
         // `$crate::` is the same; `pub(in crate::` says who may see, and imports nothing.
         if code[..at].ends_with("(in ") {
             continue;
@@ -98,6 +105,59 @@ fn no_room_imports_a_higher_one() {
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// The folder that a path of modules lies in, which is the longest part of it that is a folder.
+fn folder(src: &Path, modules: &[String]) -> Vec<String> {
+    let is_folder = |end: &usize| src.join(modules[..*end].join("/")).is_dir();
+    let end = (1..=modules.len()).rev().find(is_folder);
+    modules[..end.unwrap_or(0)].to_vec()
+}
+
+/// The other folders that each folder imports from, but for those that lie in each other.
+fn arrows(src: &Path) -> BTreeMap<Vec<String>, BTreeSet<Vec<String>>> {
+    let mut all = BTreeMap::<_, BTreeSet<_>>::new();
+    for file in sources(src) {
+        let name = file.strip_prefix(src).expect("below src").with_extension("");
+        let mut own: Vec<String> =
+            name.iter().map(|part| part.to_string_lossy().into_owned()).collect();
+        own.truncate(own.len() - usize::from(own.last().is_some_and(|last| last == "mod")));
+        let text = fs::read_to_string(&file).expect("a file");
+        // What only links in the documentation need ties nothing.
+        let code = code(&text.replace("#[cfg(doc)]\nuse ", "// "));
+        let mut paths: Vec<Vec<String>> = Vec::new();
+        let parts = |path: &str| path.split("::").map(str::to_owned).collect::<Vec<_>>();
+        paths.extend(imports(&code).iter().map(|path| parts(path)));
+        for path in paths_behind("super::", &code) {
+            let ups = 1 + path.matches("super::").count();
+            let mut whole = own[..own.len().saturating_sub(ups)].to_vec();
+            whole.extend(parts(path.trim_start_matches("super::")));
+            paths.push(whole);
+        }
+        let from = folder(src, &own);
+        for to in paths.iter().map(|path| folder(src, path)) {
+            if !from.starts_with(&to) && !to.starts_with(&from) {
+                all.entry(from.clone()).or_default().insert(to);
+            }
+        }
+    }
+    all
+}
+
+#[test]
+fn no_circle_runs_through_folders() {
+    let arrows = arrows(&Path::new(env!("CARGO_MANIFEST_DIR")).join("src"));
+    assert!(arrows.len() > 50, "{}", arrows.len());
+    for start in arrows.keys() {
+        let (mut seen, mut next) = (BTreeSet::new(), vec![start]);
+        while let Some(folder) = next.pop() {
+            for to in arrows.get(folder).into_iter().flatten().filter(|to| seen.insert(*to)) {
+                let [start, folder] = [start, folder].map(|folder| folder.join("/"));
+                assert!(to.join("/") != start, "a circle through {start} and {folder}");
+                next.push(to);
+            }
+        }
+    }
 }
 
 #[test]
