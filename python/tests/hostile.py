@@ -113,6 +113,15 @@ def calls(make: Maker, scene: sr.Scene, picture: sr.Picture) -> list[Callable[[]
             found[name] = value
         return found
 
+    def records() -> Any:
+        whole = sr.project(scene, camera)
+        columns: dict[Any, Any] = {name: whole[name] for name in whole.dtype.names}
+        for name in make.random.sample([*columns, "x", ""], make.random.randrange(3)):
+            count = len(whole)
+            columns[name] = pick([number(), array((count,), (count, 2), (count, 3), (count, 4))])
+        odd = [whole[::-1], whole[:0], whole[::2], whole["center"], whole.view(np.uint8), number()]
+        return pick([columns, columns, whole, *odd])
+
     def new_camera() -> sr.Camera:
         return sr.Camera(
             **some(
@@ -137,6 +146,7 @@ def calls(make: Maker, scene: sr.Scene, picture: sr.Picture) -> list[Callable[[]
         lambda: sr.render(scene, camera, **{pick(rows): number() for _ in range(2)}),
         lambda: sr.verify(scene, camera, planes(), cause=make.random.random() < 0.1, **some(promise=lambda: pick(["gpu", "ieee", number()]))),
         lambda: sr.verify(scene, camera, planes(), **some(depth=lambda: {"meaning": pick(["1/t", "z-buffer", number()]), "near": number()})),
+        lambda: sr.verify(scene, camera, planes(), cause=False, records=records()),
         lambda: sr.compare(planes(), planes(), **some(max_ulp=number, max_abs=number, planes=lambda: [pick(["Z", "*", ""])])),
         lambda: sr.surfels.greedy(array((n, 3), (60, 3)), **some(count=number, start=number, seed=number)),
         lambda: sr.surfels.progressive(array((n, 3), (60, 3)), **some(count=number, start=number, seed=number)),
