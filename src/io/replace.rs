@@ -164,7 +164,7 @@ pub fn remove_partial_files() -> impl Sized {
 
 /// A file beside its final place, removed on drop. The open file keeps its lock.
 #[derive(Debug)]
-struct Partial(Option<(TempPath, File)>);
+struct Partial(Option<(TempPath, Option<File>)>);
 
 impl Partial {
     fn new(folder: &Path) -> io::Result<(Self, File)> {
@@ -188,7 +188,12 @@ impl Partial {
             // Another process may have removed it before it was locked; then make another.
             if path.exists() {
                 files.push(path.to_path_buf());
-                return Ok((Self(Some((path, file.try_clone()?))), file));
+                let lock = match file.try_clone() {
+                    // WASI opens no file twice, and locks none.
+                    Err(error) if error.kind() == io::ErrorKind::Unsupported => None,
+                    lock => Some(lock?),
+                };
+                return Ok((Self(Some((path, lock))), file));
             }
         }
     }
