@@ -43,53 +43,48 @@ pub(super) fn check(method: &Method) -> Result<()> {
     Err(Error::Usage(what))
 }
 
-/// The fewest columns of a part of a band.
+/// A part of this many columns or fewer is not divided.
 const LEAST_COLUMNS: u32 = 32;
 
-/// The largest parts that fit into half of the memory that is left, in columns and rows: the whole
-/// picture, a band of half its rows, and so on. If the lowest band that a file may have still shows too
-/// many surfels of a folder, a part of half its columns, and so on. The other half of the memory is for
-/// the blocks of the file.
-fn largest_part(
+/// Whether a part of the picture fits into half of the memory that is left, and whether a smaller part would
+/// read less of a folder. The other half is for the blocks of the file.
+fn fits(
     session: &mut Session<'_>,
     ready: &Ready,
+    part: Rect,
     output: OutputSettings,
-) -> Result<[u32; 2]> {
-    let Ready { camera, .. } = ready;
+) -> Result<(bool, bool)> {
+    session.set_region(Some(part))?;
+    // What a part reads of a folder is not in the session yet.
+    let (surfels, held) = ready.most_of_part(part);
     let making = output.making();
-    let [width, height] = camera.size();
-    let [mut columns, mut rows] = [width, height.next_multiple_of(exr::BLOCK_LINES)];
+    let read = surfels * session.needs_a_splat(making) + held;
+    let needs = session.needs(&ready.camera, making) + read;
+    Ok((needs <= memory::left() / 2, read > 0))
+}
+
+/// The most rows of a band with which every band fits: all, or half as many, and so on.
+fn most_rows(session: &mut Session<'_>, ready: &Ready, output: OutputSettings) -> Result<u32> {
+    let [width, height] = ready.camera.size();
+    let mut rows = height;
     loop {
-        let bands = bands_of(Rect::of_size([width, height]), rows);
-        let parts: Vec<Rect> = bands.flat_map(|band| parts_of(band, columns)).collect();
-        session.set_region(parts.first().copied())?;
-        // What a part reads of a folder is not in the session yet.
-        let read = parts.iter().map(|part| {
-            let (surfels, held) = ready.most_of_part(*part);
-            surfels * session.needs_a_splat(making) + held
-        });
-        let read = read.max().unwrap_or(0);
-        if session.needs(camera, making) + read <= memory::left() / 2 {
-            return Ok([columns, rows]);
+        rows = rows.next_multiple_of(exr::BLOCK_LINES);
+        if rows == exr::BLOCK_LINES {
+            return Ok(rows);
         }
-        match (rows > exr::BLOCK_LINES, read > 0 && columns > LEAST_COLUMNS) {
-            (true, _) => rows = rows.div_ceil(2).next_multiple_of(exr::BLOCK_LINES),
-            (false, true) => columns = columns.div_ceil(2),
-            (false, false) => return Ok([columns, rows]),
+        let mut all_fit = true;
+        for y0 in (0..height).step_by(rows as usize) {
+            let band = Rect { x0: 0, y0, x1: width, y1: height.min(y0 + rows) };
+            all_fit = fits(session, ready, band, output)?.0;
+            if !all_fit {
+                break;
+            }
         }
+        if all_fit {
+            return Ok(rows);
+        }
+        rows = rows.div_ceil(2);
     }
-}
-
-/// The bands of so many rows, from the top.
-fn bands_of(whole: Rect, rows: u32) -> impl Iterator<Item = Rect> {
-    let tops = (whole.y0..whole.y1).step_by(rows as usize);
-    tops.map(move |y0| Rect { y0, y1: whole.y1.min(y0 + rows), ..whole })
-}
-
-/// The parts of a band of so many columns, from the left.
-fn parts_of(band: Rect, columns: u32) -> impl Iterator<Item = Rect> {
-    let sides = (band.x0..band.x1).step_by(columns as usize);
-    sides.map(move |x0| Rect { x0, x1: band.x1.min(x0 + columns), ..band })
 }
 
 /// Draws a picture in bands of rows into the file `picture`.
@@ -104,21 +99,17 @@ pub(super) fn render(
     let Ready { loaded, camera, method, .. } = ready;
     to.make_folder()?;
     let text = provenance::text(&loaded.scene, session.groups(), camera, method, output);
-    let [columns, rows] = match count {
-        Count::About(count) => [camera.width, camera.height.div_ceil(count)],
-        Count::Auto => largest_part(session, ready, output)?,
+    let rows = match count {
+        Count::About(count) => camera.height.div_ceil(count),
+        Count::Auto => most_rows(session, ready, output)?,
     };
+    let divides = matches!(count, Count::Auto);
     let steps = progress::Steps::new("rendering");
-    let mut bands = 0_u32;
+    let (mut bands, mut parts) = (0_u32, 0_u32);
     let mut draw = |band: Rect| {
         steps.show("bands", band.y0.into(), camera.height.into());
         bands += 1;
-        let mut parts = parts_of(band, columns).map(|part| match ready.part(Some(part), exec)? {
-            Some(scene) => drawn(&mut Session::new(&scene, *method, exec)?, camera, part, output),
-            None => drawn(session, camera, part, output),
-        });
-        let first = parts.next().unwrap_or_else(|| Err(Error::Invalid("an empty band".into())))?;
-        parts.try_fold(first, |band, part| band.beside(&part?))
+        band_of_parts(session, ready, band, (output, divides), exec, &mut parts)
     };
     let how = (output.compression, exec);
     exr::pending_bands(picture, (camera.size(), rows), &text, how, &mut draw)?.put()?;
@@ -126,11 +117,8 @@ pub(super) fn render(
     report::scene(loaded);
     report::camera(camera);
     report::picture(camera, output);
-    let parts = camera.width.div_ceil(columns);
-    report::line(
-        "bands",
-        if parts > 1 { format!("{bands} of {parts} parts") } else { bands.to_string() },
-    );
+    let text = if parts > bands { format!("{bands} of {parts} parts") } else { bands.to_string() };
+    report::line("bands", text);
     report::method(method, &loaded.scene, camera);
     report::line("time", report::threads(exec));
     report::time("bands", vec![start.elapsed()]);
@@ -138,7 +126,36 @@ pub(super) fn render(
     Ok(Ending::Good)
 }
 
-/// Draws a part of a band.
+/// Draws a band or a part of it. If it `divides` and shows more surfels of a folder than fit, each half is
+/// drawn by itself.
+fn band_of_parts(
+    session: &mut Session<'_>,
+    ready: &Ready,
+    part: Rect,
+    (output, divides): (OutputSettings, bool),
+    exec: &Exec,
+    parts: &mut u32,
+) -> Result<Frame<f32>> {
+    if divides && part.x1 - part.x0 > LEAST_COLUMNS {
+        let (fits, reads) = fits(session, ready, part, output)?;
+        if !fits && reads {
+            let middle = part.x0.midpoint(part.x1);
+            let halves = [Rect { x1: middle, ..part }, Rect { x0: middle, ..part }];
+            let mut draw =
+                |half| band_of_parts(session, ready, half, (output, divides), exec, parts);
+            let left = draw(halves[0])?;
+            return left.beside(&draw(halves[1])?);
+        }
+    }
+    *parts += 1;
+    let Ready { camera, method, .. } = ready;
+    match ready.part(Some(part), exec)? {
+        Some(scene) => drawn(&mut Session::new(&scene, *method, exec)?, camera, part, output),
+        None => drawn(session, camera, part, output),
+    }
+}
+
+/// Draws a part of the picture.
 fn drawn(
     session: &mut Session<'_>,
     camera: &Camera,

@@ -187,7 +187,7 @@ fn a_scene_four_times_as_large_as_memory_is_tiled_and_drawn() {
     assert!(bands.status.success() && bands.stderr.is_empty(), "{bands:?}");
     let read = |name: &str| fs::read(at.join(name)).unwrap();
     assert!(read("whole.exr") == read("bands.exr"));
-    // The lowest band shows more surfels than fit, so that it is drawn in parts side by side.
+    // A band of 32 rows, the smallest, shows more surfels than fit, and is drawn in parts side by side.
     let draw_strip = |scene: &'static str, more: &[&str]| {
         let output = run(draw_of(["1024x32", "4"], scene, more));
         assert!(output.status.success(), "{output:?}");
