@@ -128,11 +128,14 @@ fn arrows(src: &Path) -> BTreeMap<Vec<String>, BTreeSet<Vec<String>>> {
         let mut paths: Vec<Vec<String>> = Vec::new();
         let parts = |path: &str| path.split("::").map(str::to_owned).collect::<Vec<_>>();
         paths.extend(imports(&code).iter().map(|path| parts(path)));
-        for path in paths_behind("super::", &code) {
-            let ups = 1 + path.matches("super::").count();
-            let mut whole = own[..own.len().saturating_sub(ups)].to_vec();
-            whole.extend(parts(path.trim_start_matches("super::")));
-            paths.push(whole);
+        // The longest chains first, so that each is read once.
+        let mut rest = code;
+        for ups in (1..=own.len()).rev() {
+            let marker = "super::".repeat(ups);
+            for path in paths_behind(&marker, &rest) {
+                paths.push([&own[..own.len() - ups], &parts(&path)].concat());
+            }
+            rest = rest.replace(&marker, "");
         }
         let from = folder(src, &own);
         for to in paths.iter().map(|path| folder(src, path)) {

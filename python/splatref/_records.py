@@ -74,7 +74,8 @@ def packed_records(value: object, scene: Scene, chosen: Any) -> bytes:
         raise ValueError(f"records: {what}; give the fields {', '.join(names)}")
     first = as_array(f"records[{names[0]!r}]", columns[names[0]])
     count = len(first) if first.ndim else 0
-    _splatref.ask(2 * count * wanted.itemsize, "a copy of records")
+    # Here, as bytes for Rust, and as records there.
+    _splatref.ask(3 * count * wanted.itemsize, "copies of records")
     rows = np.zeros(count, wanted)
     for name in names:
         field, label = wanted[name], f"records[{name!r}]"
