@@ -63,8 +63,8 @@ impl<R> Samples<R> {
     /// The names that the channels of a plane called `name` have in a file.
     fn channel_names(&self, name: &str) -> Vec<String> {
         match self {
-            Self::Color(_) => COLOR.map_inline(|letter| component(name, letter)).to_vec(),
-            Self::Vector(_) => VECTOR.map_inline(|letter| component(name, letter)).to_vec(),
+            Self::Color(_) => COLOR.map(|letter| component(name, letter)).to_vec(),
+            Self::Vector(_) => VECTOR.map(|letter| component(name, letter)).to_vec(),
             Self::Scalar(_) | Self::Index(_) | Self::Count(_) => vec![name.to_owned()],
         }
     }
@@ -326,7 +326,7 @@ pub(crate) fn component(name: &str, letter: &str) -> String {
 
 /// The three channels of a colour or a vector.
 fn components<'a>(name: &str, plane: &'a Plane<[f32; 3]>, letters: [&str; 3]) -> [Channel<'a>; 3] {
-    [0, 1, 2].map_inline(|offset| Channel {
+    [0, 1, 2].map(|offset| Channel {
         name: component(name, letters[offset]),
         data: ChannelData::Float { values: plane.values().as_flattened(), stride: 3, offset },
     })

@@ -4,7 +4,6 @@ use super::projection::Has;
 use crate::error::Error;
 use crate::frame::named::{COLOR, VECTOR, component};
 use crate::frame::{Frame, NamedPlane, Plane, Samples};
-use crate::number::MapInline;
 use crate::scene::Scene;
 
 /// A pass of a method.
@@ -171,7 +170,7 @@ impl Holds {
             Self::Vector => VECTOR,
             _ => return vec![name.to_owned()],
         };
-        letters.map_inline(|letter| component(name, letter)).to_vec()
+        letters.map(|letter| component(name, letter)).to_vec()
     }
 
     /// The type in words.

@@ -6,13 +6,19 @@
 /// is compiled in one unit or with link-time optimization. Such calls doubled the time of a picture
 /// with pyramids.
 pub(crate) trait MapInline<T, const N: usize> {
-    /// Calls `f` with each element in their order.
-    fn map_inline<U>(self, f: impl FnMut(T) -> U) -> [U; N];
+    /// Calls `f` with each element in their order. There must be at least one.
+    fn map_inline<U: Copy>(self, f: impl FnMut(T) -> U) -> [U; N];
 }
 
 impl<T: Copy, const N: usize> MapInline<T, N> for [T; N] {
+    // A loop, because `std::array::from_fn` makes such calls, too.
     #[inline(always)]
-    fn map_inline<U>(self, mut f: impl FnMut(T) -> U) -> [U; N] {
-        std::array::from_fn(|i| f(self[i]))
+    fn map_inline<U: Copy>(self, mut f: impl FnMut(T) -> U) -> [U; N] {
+        const { assert!(N > 0) };
+        let mut mapped = [f(self[0]); N];
+        for i in 1..N {
+            mapped[i] = f(self[i]);
+        }
+        mapped
     }
 }

@@ -1,7 +1,6 @@
 //! Compare one value of a client with the values that are allowed, in words.
 
 use crate::frame::NO_ID;
-use crate::number::MapInline;
 use std::fmt;
 
 /// The fault at a pixel.
@@ -120,7 +119,7 @@ impl fmt::Display for Fault {
                 if *radius == 0.0 {
                     write!(f, "right is {}", Plain(*truth))
                 } else {
-                    let [low, high] = [truth - radius, truth + radius].map_inline(Plain);
+                    let [low, high] = [truth - radius, truth + radius].map(Plain);
                     write!(f, "right are {low} to {high}")
                 }
             }
@@ -143,7 +142,7 @@ impl fmt::Display for Fault {
                 write!(f, "the id is {}, which does not reach the pixel", whole(*surfel))
             }
             Self::NoSuchDepth { found, closest } => {
-                let [found, closest] = [*found, *closest].map_inline(Plain);
+                let [found, closest] = [*found, *closest].map(Plain);
                 write!(f, "no surfel has the depth {found}; the closest has {closest}")
             }
             Self::Tie { surfel, found } => {
@@ -154,11 +153,11 @@ impl fmt::Display for Fault {
                 write!(f, "the id is {surfel}, which is outside there: q is {rim} of its limit")
             }
             Self::LeftOut { surfel, depth, found, .. } => {
-                let [depth, found] = [*depth, *found].map_inline(Plain);
+                let [depth, found] = [*depth, *found].map(Plain);
                 write!(f, "surfel {surfel} at depth {depth} is left out; the client has {found}")
             }
             Self::Hidden { depth, found } => {
-                let [depth, found] = [*depth, *found].map_inline(Plain);
+                let [depth, found] = [*depth, *found].map(Plain);
                 write!(f, "a polygon at depth {depth} is left out; the client has {found}")
             }
         }

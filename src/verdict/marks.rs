@@ -5,7 +5,6 @@ use crate::frame::{Grid, Plane, Rect};
 use crate::method::Job;
 use crate::method::decisions::Place;
 use crate::method::tiled::pixels;
-use crate::number::MapInline;
 use crate::number::Real;
 use crate::verdict::shift::ShiftSums;
 use crate::verdict::{Cause, Causes, Check, Doubt, Fault, Finding, StageVerdict, Verdict};
@@ -187,7 +186,7 @@ pub(crate) fn stage_verdicts<const N: usize>(
     stages: [(&'static str, Vec<&'static str>); N],
     tiles: Vec<[Marks; N]>,
 ) -> Vec<StageVerdict> {
-    let mut of_stages = [(); N].map_inline(|()| Vec::new());
+    let mut of_stages = [(); N].map(|()| Vec::new());
     for tile in tiles {
         of_stages.iter_mut().zip(tile).for_each(|(parts, marks)| parts.push(marks));
     }
@@ -359,7 +358,7 @@ pub(crate) fn verdict<const N: usize>(
         None => job.grid().rects().into_iter().enumerate().collect(),
     };
     let found = job.exec.ordered(tiles, |(tile, rect)| {
-        let mut marks = [(); N].map_inline(|()| Marks::new(rect));
+        let mut marks = [(); N].map(|()| Marks::new(rect));
         let counts = judge((tile, rect), &mut marks);
         (marks, counts)
     });
@@ -385,7 +384,7 @@ pub(crate) fn checks<const N: usize>(
     judge: impl FnOnce((usize, Rect), &mut [Marks; N]) -> Counts,
 ) -> Result<Vec<Check>> {
     let Place { tile, rect } = Place::new(job, pixel)?;
-    let mut marks = [(); N].map_inline(|()| Marks::logging(rect));
+    let mut marks = [(); N].map(|()| Marks::logging(rect));
     judge((tile, rect), &mut marks);
     Ok(logged(&mut marks, &stages))
 }

@@ -84,8 +84,7 @@ impl Errors {
         });
         let normal = normals[0].zip(normals[1]).and_then(|(a, b)| normal(a, b, &compared));
         let distances = exec.ordered(vec![0, 1, 2], |c: usize| {
-            let [a, b] =
-                colors.map_inline(|p| p.values().iter().map(|v| v[c]).collect::<Vec<f32>>());
+            let [a, b] = colors.map(|p| p.values().iter().map(|v| v[c]).collect::<Vec<f32>>());
             if wanted.ssim { channel(&a, &b, width) } else { (mean_square(&a, &b), None) }
         });
         let flip = if wanted.flip {

@@ -4,7 +4,6 @@ use super::disc_tree::DiscTree;
 use super::graph::Graph;
 use super::parts::Parts;
 use crate::frame::Exec;
-use crate::number::MapInline;
 use crate::number::lanes::vectorized;
 use std::ops::Range;
 
@@ -70,7 +69,7 @@ vectorized!(
         by: &B,
     ) -> Sets<COUNTED, TOLD> {
         let mut open = Vec::with_capacity(places.len());
-        let mut covered = [(); TOLD].map_inline(|()| Vec::with_capacity(places.len()));
+        let mut covered = [(); TOLD].map(|()| Vec::with_capacity(places.len()));
         for i in places {
             let (mut counted, mut told, row) = ([0_u64; COUNTED], [0; TOLD], graph.row(i));
             for from in (0..row.all.len()).step_by(64) {
@@ -94,7 +93,8 @@ vectorized!(
                     told.iter_mut().enumerate().for_each(|(set, all)| *all |= of(COUNTED + set));
                 }
             }
-            open.push(counted.map_inline(|mask| mask.count_zeros() as u8));
+            // Not `map_inline`: there may be no set.
+            open.push(counted.map(|mask| mask.count_zeros() as u8));
             for (covered, mask) in covered.iter_mut().zip(told) {
                 covered.push(mask);
             }

@@ -102,7 +102,6 @@ use crate::method::deferred::part::{Part, Whole};
 use crate::method::deferred::picture::whole;
 use crate::method::record::rows;
 use crate::method::tiled::Tiled;
-use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
 use crate::scene::Surfels;
@@ -338,7 +337,7 @@ impl<P: Profile> LaterPasses<'_, P> {
         watch: Watch,
     ) -> (Vec<[Marks; 4]>, Counts) {
         let found = exec.ordered(parts, |(tile, rect)| {
-            let mut marks = [(); 4].map_inline(|()| watch.marks(rect));
+            let mut marks = [(); 4].map(|()| watch.marks(rect));
             let counts = self.judge((tile, rect), &mut marks);
             (marks, counts)
         });

@@ -61,7 +61,6 @@ use crate::method::single_pass::Settings;
 use crate::method::single_pass::geometry::ImagePixel;
 use crate::method::stage::Keep;
 use crate::number::Ball;
-use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::scene::Surfels;
 use crate::verdict::client::Client;
@@ -198,7 +197,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         let [geometry, compositing, shading] = marks;
         for y in rect.y0..rect.y1 {
             let row = Rect { y0: y, y1: y + 1, ..rect };
-            let mut parts = [(); 3].map_inline(|()| compositing.beside(row));
+            let mut parts = [(); 3].map(|()| compositing.beside(row));
             let place = (tile, (y - rect.y0) as usize, row);
             for found in self.judge_row(place, geometry, &mut parts) {
                 counts.undecided += u64::from(!found.certain());

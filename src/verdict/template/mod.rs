@@ -36,7 +36,6 @@ use crate::method::Job;
 use crate::method::record::rows;
 use crate::method::stage::Keep;
 use crate::method::template::{Center, Settings, propagation};
-use crate::number::MapInline;
 use crate::number::ball::Profile;
 use crate::verdict::client::Client;
 use crate::verdict::gaps::missing;
@@ -104,7 +103,7 @@ fn judge<P: Profile>(
     let client_planes = PicturePlanes::new(client);
     let judge = PixelJudge::new(job, settings, levels.all(), &client_planes);
     let found = job.exec.ordered(watch.parts(&job.grid()), |(_, rect)| {
-        let mut marks = [(); 3].map_inline(|()| watch.marks(rect));
+        let mut marks = [(); 3].map(|()| watch.marks(rect));
         let covered = counted(rect).filter(|at| judge.judge(*at, &mut marks)).count();
         (marks, covered as u64)
     });

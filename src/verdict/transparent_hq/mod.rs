@@ -46,7 +46,6 @@ use crate::method::record::rows;
 use crate::method::single_pass::geometry::ImagePixel;
 use crate::method::transparent_hq::Settings;
 use crate::method::transparent_hq::nearest::{BEHIND, FrontLayer, single_pass};
-use crate::number::MapInline;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, Real};
 use crate::verdict::checks::anything;
@@ -84,7 +83,7 @@ pub(super) fn verify<P: Profile>(
         judge.shown.names(),
     ];
     let mut names = names.into_iter();
-    let stages = STAGES.map_inline(|stage| (stage, names.next().unwrap_or_default()));
+    let stages = STAGES.map(|stage| (stage, names.next().unwrap_or_default()));
     let mut verdict = marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks));
     verdict.stages[0].missing = judge.nearest.missing(job);
     verdict.stages[2].missing = judge.others.missing(job, client);
@@ -159,7 +158,7 @@ impl<'a, P: Profile> Judge<'a, P> {
         [geometry, nearest, blending, averaging, compositing]: &mut [Marks; 5],
         counts: &mut Counts,
     ) {
-        let mut parts = [(); 3].map_inline(|()| nearest.beside(row));
+        let mut parts = [(); 3].map(|()| nearest.beside(row));
         let fronts = self.nearest.judge_row((tile, above, row), geometry, &mut parts);
         parts.into_iter().for_each(|part| nearest.put(part));
         let drawings = self.others.of_row(tile, &row);

@@ -32,7 +32,7 @@ impl Eye {
     pub(super) fn new(pixels_per_degree: f64) -> Self {
         let deviation = (SENSITIVITY[2][1] / (2.0 * PI * PI)).sqrt();
         let radius = (3.0 * deviation * pixels_per_degree).ceil() as i32;
-        let mut filters = SENSITIVITY.map_inline(|[a, b]| {
+        let mut filters = SENSITIVITY.map(|[a, b]| {
             let scale = (a * (PI / b).sqrt()).sqrt();
             taps(radius, |x| {
                 let degrees = x / pixels_per_degree;

@@ -142,12 +142,12 @@ impl Observer {
         let width = pictures[0].width() as usize;
         let height = pictures[0].height() as usize;
         let near = rows.start.saturating_sub(self.reach)..height.min(rows.end + self.reach);
-        let filtered = pictures.map_inline(|picture| Rows {
+        let filtered = pictures.map(|picture| Rows {
             first: near.start,
             rows: near.clone().map(|y| self.row(picture, y)).collect(),
         });
         let sums = rows.zip(out.chunks_exact_mut(width)).map(|(y, out)| {
-            let [p, q] = filtered.each_ref().map_inline(|rows| self.seen(rows, y, width));
+            let [p, q] = filtered.each_ref().map(|rows| self.seen(rows, y, width));
             let mut sum = 0.0;
             for (x, value) in out.iter_mut().enumerate() {
                 let of = self.difference([p.lab[x], q.lab[x]], [p.features[x], q.features[x]]);
@@ -179,8 +179,8 @@ impl Observer {
         ];
         let eye = [(&y, 0), (&cx, 1), (&cz, 2), (&cz, 3)];
         FilteredRow {
-            eye: eye.map_inline(|(row, i)| along_row(row, &self.eye.0[i], width)),
-            feature: [0, 1, 2].map_inline(|i| along_row(&gray, &self.feature.0[i], width)),
+            eye: eye.map(|(row, i)| along_row(row, &self.eye.0[i], width)),
+            feature: [0, 1, 2].map(|i| along_row(&gray, &self.feature.0[i], width)),
         }
     }
 
