@@ -18,6 +18,9 @@ pub fn write_atomically(
     Pending::write(path, write)?.put()
 }
 
+/// Bytes that are written at once: some lines of an EXR, which come one by one.
+const BUFFER: usize = 256 << 10;
+
 /// A complete file that waits beside its place. It is removed unless [`Pending::put`] is called.
 #[derive(Debug)]
 pub struct Pending {
@@ -69,7 +72,7 @@ impl Pending {
             return refuse("exists, but is read-only; give another name");
         }
         let (partial, file) = Partial::new(folder)?;
-        let mut out = BufWriter::new(file);
+        let mut out = BufWriter::with_capacity(BUFFER, file);
         write(&mut out)?;
         out.flush()?;
         if let Some(permissions) = permissions {
