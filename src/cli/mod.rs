@@ -192,7 +192,7 @@ fn usage(error: &clap::Error) -> ExitCode {
         .take_while(|line| !line.starts_with("Usage:") && !line.starts_with("For more"))
         .filter(|line| !line.is_empty())
         .collect();
-    let what = what.join(" ");
+    let what = what.join(" ").replace(" tip: ", "; tip: ");
     complain(format!("{}; see --help", what.strip_prefix("error: ").unwrap_or(&what)));
     ExitCode::from(2)
 }

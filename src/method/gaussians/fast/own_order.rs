@@ -12,15 +12,22 @@ use crate::number::real::ordered_f32;
 use crate::splat::gaussian::GaussianProjector;
 use multiversion::target::target_cfg_f;
 
-/// A fragment of a pixel. Fragments are ordered by depth, then by place.
+/// A fragment of a pixel.
 #[derive(Clone, Copy)]
 struct Fragment {
     depth: f32,
-    /// See [`Near::place`].
-    place: u32,
     alpha: f32,
     /// Which of the tile's splats it is of.
     splat: u32,
+}
+
+/// The fragments of a pixel, which are ordered by depth, then by place.
+#[derive(Default)]
+struct PixelList {
+    fragments: Vec<Fragment>,
+    /// For each fragment its depth, as a number whose order is that of depths, above its place in the
+    /// list: sorting them moves half as many bytes, and calls nothing to compare.
+    keys: Vec<u64>,
 }
 
 /// A splat of a tile, with its place in the order of the indices.
@@ -30,10 +37,14 @@ struct Near<'a> {
     place: u32,
 }
 
-/// The most bytes that a splat takes while its tile is blended: itself, and a fragment in each pixel
-/// of a block. A list that grows has up to twice the room that it needs.
-pub(super) const BYTES_A_SPLAT: u64 =
-    (size_of::<Near<'_>>() + 2 * LANES * size_of::<Fragment>()) as u64;
+/// The most bytes that a splat takes while its tile is blended: itself, its number in each block of a
+/// row, and a fragment in each pixel of a block. A list that grows has up to twice the room that it needs.
+pub(super) const BYTES_A_SPLAT: u64 = {
+    let fragment = size_of::<Fragment>() + size_of::<u64>();
+    // The largest tile has 64 pixels a side.
+    let row = 64 / SIDE as usize * size_of::<u32>();
+    (size_of::<Near<'_>>() + 2 * (row + LANES * fragment)) as u64
+};
 
 /// The blocks of a tile.
 pub(super) fn blend(blending: &Blending<'_, f32>, places: &[usize], rect: Rect) -> Vec<Block> {
@@ -47,17 +58,21 @@ pub(super) fn blend(blending: &Blending<'_, f32>, places: &[usize], rect: Rect) 
     // Fragments that come about in order are sorted fast; the order of the lists decides nothing.
     all.sort_unstable_by_key(|near| (ordered_f32(near.splat.depth), near.place));
     let limits = Limits::new(blending.source.settings);
-    let mut lists: [Vec<Fragment>; LANES] = Default::default();
+    let mut lists: [PixelList; LANES] = Default::default();
     let grid = BlockGrid::new(rect);
+    let mut row = vec![Vec::new(); grid.columns as usize];
     let blocks = (0..grid.len()).map(|block| {
-        let mut pixels = Block::EMPTY;
-        lists.iter_mut().for_each(Vec::clear);
-        let corner = grid.corner(block);
+        let (mut pixels, corner) = (Block::EMPTY, grid.corner(block));
+        let column = block % row.len();
+        if column == 0 {
+            list_row(&mut row, &all, (rect, corner.1));
+        }
+        lists.iter_mut().for_each(PixelList::clear);
         let surface = blending.source.surface().map(|surface| opaque(surface, rect, corner));
         let rules = (&limits, &blending.source.projector);
-        list(&mut lists, &all, rules, (rect, corner, surface.as_ref()));
+        list(&mut lists, (&all, &row[column]), rules, (rect, corner, surface.as_ref()));
         for (i, list) in lists.iter_mut().enumerate() {
-            if !list.is_empty() {
+            if !list.keys.is_empty() {
                 pixels.set(i, blended(blending, &all, list));
             }
         }
@@ -66,15 +81,59 @@ pub(super) fn blend(blending: &Blending<'_, f32>, places: &[usize], rect: Rect) 
     blocks.collect()
 }
 
+/// Lists, for each block of the row that begins at line `y`, the splats whose bounds it touches.
+fn list_row(row: &mut [Vec<u32>], all: &[Near<'_>], (rect, y): (Rect, u32)) {
+    row.iter_mut().for_each(Vec::clear);
+    let line = Rect { y0: y, y1: y + SIDE, ..rect };
+    for (index, near) in (0..).zip(all) {
+        let touched = near.splat.bounds.intersection(&line);
+        if !touched.is_empty() {
+            let columns = (touched.x0 - rect.x0) / SIDE..(touched.x1 - rect.x0).div_ceil(SIDE);
+            let columns = columns.start as usize..columns.end as usize;
+            row[columns].iter_mut().for_each(|block| block.push(index));
+        }
+    }
+}
+
+impl PixelList {
+    fn clear(&mut self) {
+        self.fragments.clear();
+        self.keys.clear();
+    }
+
+    #[inline(always)]
+    fn push(&mut self, fragment: Fragment) {
+        // From 1 to 2^32 - 1 for every float.
+        let depth = (ordered_f32(fragment.depth) + (1 << 31)) as u64;
+        self.keys.push(depth << 32 | self.fragments.len() as u64);
+        self.fragments.push(fragment);
+    }
+
+    /// Sorts the fragments. Few have the same depth.
+    fn sort(&mut self, all: &[Near<'_>]) {
+        let Self { fragments, keys } = self;
+        keys.sort_unstable();
+        for tied in keys.chunk_by_mut(|a, b| a >> 32 == b >> 32).filter(|tied| tied.len() > 1) {
+            tied.sort_unstable_by_key(|&key| {
+                all[fragments[key as u32 as usize].splat as usize].place
+            });
+        }
+    }
+
+    fn iter(&self) -> impl Iterator<Item = Fragment> {
+        self.keys.iter().map(|&key| self.fragments[key as u32 as usize])
+    }
+}
+
 /// Sorts the fragments of a pixel and blends them.
 fn blended(
     blending: &Blending<'_, f32>,
     all: &[Near<'_>],
-    list: &mut [Fragment],
+    list: &mut PixelList,
 ) -> GaussianPixel<f32> {
-    list.sort_unstable_by_key(|one| (ordered_f32(one.depth), one.place));
+    list.sort(all);
     let mut pixel = GaussianPixel::EMPTY;
-    for &Fragment { depth, alpha, splat, .. } in &*list {
+    for Fragment { depth, alpha, splat } in list.iter() {
         if blending.rules.ends(pixel.blend.through * (1.0 - alpha)) {
             break;
         }
@@ -84,22 +143,19 @@ fn blended(
 }
 
 vectorized!(
-    /// Lists the fragments of a block.
+    /// Lists the fragments of a block, which are of some of the tile's splats.
     fn list(
-        lists: &mut [Vec<Fragment>; LANES],
-        all: &[Near<'_>],
+        lists: &mut [PixelList; LANES],
+        (all, some): (&[Near<'_>], &[u32]),
         (limits, projector): (&Limits, &GaussianProjector<f32>),
         (rect, corner, opaque): (Rect, (u32, u32), Option<&Lanes>),
     ) {
         const FUSED: bool = target_cfg_f!(target_feature = "fma");
         let own = inside(rect, corner);
-        let block = Rect { x0: corner.0, y0: corner.1, x1: corner.0 + SIDE, y1: corner.1 + SIDE };
         let pixel = |i: usize| (corner.0 + i as u32 % SIDE, corner.1 + i as u32 / SIDE);
         let (u, v) = (each(|i| projector.ray(pixel(i))[0]), each(|i| projector.ray(pixel(i))[1]));
-        for (index, near) in (0..).zip(all) {
-            if near.splat.bounds.intersection(&block).is_empty() {
-                continue;
-            }
+        for &index in some {
+            let near = &all[index as usize];
             let found = match near.beside {
                 Beside::Solid(solid) => {
                     let found = fragments::<FUSED>(&near.splat, limits, corner, &own);
@@ -114,8 +170,7 @@ vectorized!(
             let takes = before(&takes, opaque, |i| depth[i]);
             for i in 0..LANES {
                 if takes[i] != 0 {
-                    let (depth, alpha) = (depth[i], alpha[i]);
-                    lists[i].push(Fragment { depth, place: near.place, alpha, splat: index });
+                    lists[i].push(Fragment { depth: depth[i], alpha: alpha[i], splat: index });
                 }
             }
         }

@@ -13,24 +13,25 @@ use crate::splat::ray_disc::DiscRule;
 use glam::{DVec3, Vec3};
 
 /// Splats of all shapes and opacities, some of them huge, tiny, flat, behind the camera or at one
-/// depth.
+/// depth; every eleventh lies where the one before it does, in another colour.
 fn scene(count: u64, degree: u32, seed: u64) -> Scene {
     let random = |i: u64, k: u64| 2.0 * unit(seed, 97 * i + k) - 1.0;
     let vector = |i: u64, k: u64| Vec3::new(random(i, k), random(i, k + 1), random(i, k + 2));
     let each = coefficients(degree) as u64;
+    let places = || (0..count).map(|i| i - u64::from(i % 11 == 10));
     let sizes = [0.02, 0.1, 0.4, 3.0, 0.0];
     let arrays = GaussianArrays {
-        position: (0..count)
+        position: places()
             .map(|i| {
                 let at = vector(i, 0) * Vec3::new(2.5, 2.0, 4.0);
                 if i % 3 == 0 { Vec3::new(at.x, at.y, 0.5) } else { at }
             })
             .collect(),
-        scale: (0..count).map(|i| (vector(i, 3).abs() + 0.05) * sizes[(i % 5) as usize]).collect(),
-        rotation: (0..count)
+        scale: places().map(|i| (vector(i, 3).abs() + 0.05) * sizes[(i % 5) as usize]).collect(),
+        rotation: places()
             .map(|i| [random(i, 6), random(i, 7), random(i, 8), random(i, 9)])
             .collect(),
-        opacity: (0..count)
+        opacity: places()
             .map(|i| match i % 7 {
                 0 => 1.0,
                 1 => 0.0,
