@@ -6,9 +6,10 @@ use crate::io::checksum;
 use crate::io::scene_file::Ready;
 use crate::number::Real;
 use crate::scene::bounds::Bounds;
+use crate::scene::camera::stereo::Eye;
 use crate::scene::objects::detail::refine::Refinement;
 use crate::scene::objects::outline::Needed;
-use crate::scene::{Objects, Primitives, Surfels};
+use crate::scene::{Objects, Primitives, Stereo, Surfels};
 use glam::DVec3;
 
 /// Views as distance of the eye and size of discs: from coarse to single triangles, from afar and
@@ -83,6 +84,25 @@ fn a_view_of_what_it_needs_is_the_view_of_all() {
             }
         }
         assert!(least.0 == 0 && least.1 == 0, "a view has no surfels, and one no triangles");
+    }
+}
+
+/// An eye of a stereo pair draws the surfels that the camera in the middle chooses.
+#[test]
+fn an_eye_draws_the_choice_of_the_middle() {
+    let at = made();
+    let exec = Exec::sequential();
+    for view in [VIEWS[1], VIEWS[2]] {
+        let mut file = scene(&at, view, "blue");
+        let middle = file.ready(&exec, &quiet).unwrap();
+        let (mut session, _) = middle.session(&exec, &quiet).unwrap();
+        for eye in Eye::BOTH {
+            file.camera.stereo = Some(Stereo { distance: 0.5, eye: Some(eye) });
+            let ready = file.ready(&exec, &quiet).unwrap();
+            let forced = session.render(&ready.camera).unwrap().frame.clone();
+            assert!(picture(&ready) == forced, "{eye:?} of {view:?}");
+            assert!(picture(&middle) != forced);
+        }
     }
 }
 
