@@ -36,6 +36,8 @@ class Camera:
     near: the depth of the near plane.
     file, view: a transforms.json, a COLMAP folder or an .exr, and the name or number of a view.
     turntable: the number of frames of one turn around the scene.
+    stereo, stereo_eye: the distance between the eyes of a stereo pair, and the eye to draw, "left" or
+        "right". Both eyes draw the same surfels, which the camera in the middle chooses.
 
     Raises `ValueError` for numbers that make no camera, and `OSError` for files that cannot be read.
 
@@ -63,6 +65,8 @@ class Camera:
         file: Optional[Path] = None,
         view: Optional[Union[str, int]] = None,
         turntable: Optional[int] = None,
+        stereo: Optional[float] = None,
+        stereo_eye: Optional[str] = None,
     ) -> None:
         given: dict[str, object] = {
             "size": size,
@@ -82,6 +86,8 @@ class Camera:
             "file": file,
             "view": view,
             "turntable": turntable,
+            "stereo": stereo,
+            "stereo_eye": stereo_eye,
         }
         self._given = {name: value for name, value in given.items() if value is not None}
         keys: dict[str, object] = dict(given)

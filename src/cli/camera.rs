@@ -2,7 +2,8 @@
 
 use glam::{DMat4, DVec3, DVec4};
 use splatref::io::scene_file::{CameraChoice, Matrices, SceneFile, Views};
-use splatref::scene::{Camera, Convention, Intrinsics, Lens, PoseMatrix};
+use splatref::scene::camera::stereo::Eye;
+use splatref::scene::{Camera, Convention, Intrinsics, Lens, PoseMatrix, Stereo};
 use splatref::{Error, Result};
 use std::path::PathBuf;
 
@@ -65,6 +66,10 @@ pub(super) struct CameraOptions {
     /// the middle of the scene
     #[arg(long, value_name = "N", value_parser = clap::value_parser!(u32).range(1..))]
     turntable: Option<u32>,
+    /// Draw a stereo pair: NAME.left.exr and NAME.right.exr, from eyes DISTANCE world units apart that look
+    /// along parallel axes and share the choice of surfels. With an eye, draw this picture alone
+    #[arg(long, value_name = "DISTANCE[,left|right]", value_parser = stereo, allow_hyphen_values = true)]
+    stereo: Option<Stereo>,
 }
 
 impl CameraOptions {
@@ -81,6 +86,7 @@ impl CameraOptions {
         replace(&mut camera.lens, self.ortho.map(Lens::Orthographic));
         replace(&mut camera.near, self.near);
         replace(&mut camera.turntable, self.turntable);
+        replace(&mut camera.stereo, self.stereo);
         if let Some([fx, fy, cx, cy]) = self.intrinsics {
             let size = camera.size.ok_or_else(|| {
                 let what = "--intrinsics belong to a picture; give its --size";
@@ -113,9 +119,14 @@ impl CameraOptions {
         }
         if posed || aimed || self.cameras.is_some() {
             (camera.motion, camera.view, camera.offset) = (None, None, DVec3::ZERO);
+            camera.other_eye = None;
         }
         if posed || aimed || lens || self.intrinsics.is_some() {
             camera.views = None;
+        }
+        if self.cameras.is_some() {
+            // The camera of an eye's picture is that eye already.
+            camera.stereo = None;
         }
         if lens || self.cameras.is_some() {
             camera.intrinsics = None;
@@ -157,6 +168,17 @@ fn size(text: &str) -> std::result::Result<[u32; 2], String> {
     let size: [u32; 2] = sides.ok_or("give the width and the height in pixels, such as 640x480")?;
     Camera::check_size(size[0], size[1]).map_err(|error| error.to_string())?;
     Ok(size)
+}
+
+/// Parses `0.065` or `0.065,left`.
+fn stereo(text: &str) -> std::result::Result<Stereo, String> {
+    let (distance, eye) = text.split_once(',').map_or((text, None), |(a, b)| (a, Some(b.trim())));
+    let distance = distance
+        .trim()
+        .parse()
+        .map_err(|_| "give a distance, or one with an eye as in 0.065,left")?;
+    let stereo = Stereo { distance, eye: eye.map(Eye::by_name).transpose()? };
+    stereo.check().map(|()| stereo)
 }
 
 /// Parses `1,-2.5,3`.

@@ -48,11 +48,11 @@ impl Depth {
 }
 
 impl Destination<'_> {
-    /// The path of the picture, or of one frame.
-    pub(super) fn place(&self, file: &SceneFile, frame: Option<u32>) -> Result<PathBuf> {
-        let named = |path: &Path| match frame {
-            None => path.to_owned(),
-            Some(frame) => path.with_extension(format!("{frame:04}.exr")),
+    /// The path of the picture, or of one of several, whose name ends in `part`.
+    pub(super) fn place(&self, file: &SceneFile, part: &str) -> Result<PathBuf> {
+        let named = |path: &Path| match part {
+            "" => path.to_owned(),
+            part => path.with_extension(format!("{part}.exr")),
         };
         match self.output {
             Some(path) if matches!(FileKind::from_extension(path), Ok(FileKind::Exr)) => {

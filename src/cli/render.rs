@@ -10,6 +10,7 @@ use splatref::frame::{Exec, Rect};
 use splatref::io::client::{DepthConvention, DepthFile};
 use splatref::io::scene_file::{OutputSettings, Ready, SceneFile};
 use splatref::method::{Method, Picture, Session};
+use splatref::scene::camera::stereo::Eye;
 use splatref::{Error, Result};
 use std::borrow::Cow;
 use std::ops::Range;
@@ -27,6 +28,7 @@ Examples:
   splatref render scene.toml --frames 0..60 -o out/walk.exr
   splatref render scan.ply --cameras transforms.json --view r_12
   splatref render bunny.ply --turntable 60 -o out/turn.exr
+  splatref render scene.toml --stereo 0.065 -o out/pair.exr
   splatref render walk.toml --method blue --frames all --target-ms 40
   splatref render bunny.ply --size 4096x4096 --region 0,0,4096,512 -o parts/0.exr
   splatref render bunny.ply --write-depth png --depth-as t,1000 -o bunny.exr")]
@@ -129,6 +131,30 @@ impl Args {
         Ok(())
     }
 
+    /// Whether both eyes of a stereo pair are drawn. If so, the scene file gets the left one; the right
+    /// one follows from it.
+    fn take_pair(&self, file: &mut SceneFile) -> Result<bool> {
+        let Some(stereo) = file.camera.stereo.as_mut().filter(|stereo| stereo.eye.is_none()) else {
+            return Ok(false);
+        };
+        stereo.eye = Some(Eye::Left);
+        let distance = stereo.distance;
+        let refused = [
+            (self.bands.is_some(), "--bands"),
+            (self.repeat > 1, "--repeat"),
+            (self.keep_state.is_some(), "--keep-state"),
+            (self.options.state().is_some(), "--state"),
+            (file.surface.is_some(), "a surface"),
+        ];
+        match refused.iter().find(|(is, _)| *is) {
+            None => Ok(true),
+            Some((_, what)) => Err(Error::Usage(format!(
+                "a stereo pair is two pictures, but {what} belongs to one; draw each eye alone: --stereo \
+                 {distance},left and then --stereo {distance},right"
+            ))),
+        }
+    }
+
     /// The frames to render as a sequence; `None` for one picture.
     fn sequence(&self, file: &SceneFile) -> Result<Option<Range<u32>>> {
         let frames = match &self.frames {
@@ -154,19 +180,15 @@ pub(super) fn run(args: &Args) -> Ended {
     file.output = args.files.chosen.on(file.output, "the output")?;
     let exec = args.exec.exec()?;
     let destination = args.destination(&file)?;
-    if let Some(frames) = args.sequence(&file)? {
-        file.check_frame(frames.end - 1)?;
-        file.frame = frames.start;
-        let size = file.refinement.surfel_size;
-        let walk = |target| Walk::new(target, size, &destination.place(&file, None)?);
-        let walk = args.target_ms.map(walk).transpose()?;
-        return sequence::render(&destination, &file, (frames, walk), &exec);
+    let pair = args.take_pair(&mut file)?;
+    let frames = args.sequence(&file)?;
+    if frames.is_some() || pair {
+        return several(args, &destination, file, (frames, pair), &exec);
     }
     if args.target_ms.is_some() {
-        let what = "--target-ms needs a sequence; give --frames, --turntable or several --cameras";
-        return Err(Error::Usage(what.into()));
+        return Err(no_sequence());
     }
-    let picture = destination.place(&file, None)?;
+    let picture = destination.place(&file, "")?;
     let mut ready = draw::ready_in_parts(&file, &exec)?;
     destination.check_state(&ready, &file, std::slice::from_ref(&picture))?;
     destination.check_region(&ready.camera)?;
@@ -212,6 +234,34 @@ pub(super) fn run(args: &Args) -> Ended {
     report::time("total", vec![start.elapsed()]);
     print_files(&destination, &picture, projects);
     Ok(Ending::Good)
+}
+
+/// Renders the frames of a sequence, and of a stereo pair both eyes.
+fn several(
+    args: &Args,
+    destination: &Destination<'_>,
+    mut file: SceneFile,
+    (frames, pair): (Option<Range<u32>>, bool),
+    exec: &Exec,
+) -> Ended {
+    match &frames {
+        Some(frames) => {
+            file.check_frame(frames.end - 1)?;
+            file.frame = frames.start;
+        }
+        None if args.target_ms.is_some() => return Err(no_sequence()),
+        None => {}
+    }
+    let size = file.refinement.surfel_size;
+    let walk = |target| Walk::new(target, size, &destination.place(&file, "")?);
+    let walk = args.target_ms.map(walk).transpose()?;
+    let shots = sequence::shots(destination, &file, frames, pair)?;
+    sequence::render(destination, &file, (&shots, walk), exec)
+}
+
+fn no_sequence() -> Error {
+    let what = "--target-ms needs a sequence; give --frames, --turntable or several --cameras";
+    Error::Usage(what.into())
 }
 
 /// What a part holds by a method whose other stages need the whole picture.

@@ -267,6 +267,11 @@ pub(super) fn camera(camera: &Camera) {
     if [cx, cy] != middle {
         line("", format!("principal point ({}, {})", short(cx), short(cy)));
     }
+    if let Some(other) = camera.other_eye {
+        let apart = f64::from(other) - f64::from(camera.view_from_world.w_axis.x);
+        let side = if apart < 0.0 { "left" } else { "right" };
+        line("", format!("{side} eye of a stereo pair, {} apart", short(apart.abs())));
+    }
 }
 
 /// Says if the scene reaches beyond the far plane of another renderer.

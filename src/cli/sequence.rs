@@ -1,4 +1,4 @@
-//! `splatref render --frames`: renders each frame of a sequence.
+//! `splatref render --frames` and `--stereo`: renders each frame of a sequence, for one eye or for both.
 
 use super::destination::{Depth, Destination, write};
 use super::walk::Walk;
@@ -9,6 +9,7 @@ use splatref::index::seen::Seen;
 use splatref::io::scene_file::{OutputSettings, SceneFile};
 use splatref::method::Session;
 use splatref::scene::Camera;
+use splatref::scene::camera::stereo::Eye;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
 use std::time::{Duration, Instant};
@@ -36,22 +37,50 @@ pub(super) fn frames(text: &str) -> std::result::Result<Frames, String> {
     }
 }
 
+/// A frame, and the files of its pictures: one, or one for each eye.
+pub(super) struct Shot {
+    frame: u32,
+    places: Vec<PathBuf>,
+}
+
+/// The frames of a sequence with their files, or a single frame; of a `pair`, with two files each.
+pub(super) fn shots(
+    to: &Destination<'_>,
+    file: &SceneFile,
+    frames: Option<Range<u32>>,
+    pair: bool,
+) -> Result<Vec<Shot>> {
+    let numbered = frames.is_some();
+    let shot = |frame| {
+        let number = if numbered { format!("{frame:04}") } else { String::new() };
+        let of_eye = |eye: Eye| match number.as_str() {
+            "" => eye.name().to_owned(),
+            number => format!("{}.{number}", eye.name()),
+        };
+        let parts = if pair { Eye::BOTH.map(of_eye).to_vec() } else { vec![number] };
+        let places = parts.iter().map(|part| to.place(file, part)).collect::<Result<_>>()?;
+        Ok(Shot { frame, places })
+    };
+    frames.unwrap_or(file.frame..file.frame + 1).map(shot).collect()
+}
+
 /// Renders the frames of a scene file, whose own frame is the first of them. A walk chooses the size of
 /// its ordered points from frame to frame.
 pub(super) fn render(
     to: &Destination<'_>,
     file: &SceneFile,
-    (frames, mut walk): (Range<u32>, Option<Walk>),
+    (shots, mut walk): (&[Shot], Option<Walk>),
     exec: &Exec,
 ) -> Ended {
     let start = Instant::now();
-    let place = |frame| to.place(file, Some(frame));
-    let places = frames.clone().map(place).collect::<Result<Vec<_>>>()?;
+    let places: Vec<PathBuf> = shots.iter().flat_map(|shot| shot.places.clone()).collect();
+    let last = shots.last().map_or(file.frame, |shot| shot.frame);
     let mut ready = draw::ready(file, exec)?;
     // What no later frame can have is found before the first is drawn.
-    ready.camera_at(frames.end - 1)?;
+    ready.camera_at(last)?;
     to.check_state(&ready, file, &places)?;
-    let mut seen = draw::seen(&ready, to.options)?;
+    // Each eye has its own state. Only a sequence of one eye has an old one.
+    let mut seen = [draw::seen(&ready, to.options)?, None];
     let mut times = Times::default();
     times.add("loading", start.elapsed());
     report::scene(&ready.loaded);
@@ -66,41 +95,38 @@ pub(super) fn render(
     to.make_folder()?;
 
     let steps = progress::Steps::new("preparing");
-    let last = frames.end - 1;
-    let all: Vec<_> = frames.zip(&places).collect();
-    let show = |done: usize| steps.show("rendering", done as u64, all.len() as u64);
+    let show = |done: usize| steps.show("rendering", done as u64, shots.len() as u64);
     if ready.is_still() && walk.is_none() {
         let mut session = times.of("preparing", || ready.session(exec, &|_, _, _| ()))?.0;
-        for (done, (frame, path)) in all.iter().enumerate() {
+        for (done, shot) in shots.iter().enumerate() {
             show(done);
-            session.resume(seen);
-            let camera = ready.camera_at(*frame)?;
-            let picture = (to, file.output, path.as_path());
-            seen = one(&mut session, &camera, picture, exec, &mut times)?.0;
+            let camera = ready.camera_at(shot.frame)?;
+            let pictures = (to, file.output, shot);
+            both(&mut session, (&camera, &mut seen), pictures, exec, &mut times)?;
         }
     } else {
-        for (done, (frame, path)) in all.iter().enumerate() {
+        for (done, shot) in shots.iter().enumerate() {
             show(done);
             let start = Instant::now();
             ready = times.of("placing", || match &walk {
-                Some(walk) => walk.at(ready, *frame, exec),
-                None => ready.at(*frame, exec),
+                Some(walk) => walk.at(ready, shot.frame, exec),
+                None => ready.at(shot.frame, exec),
             })?;
             let mut session = times.of("preparing", || ready.session(exec, &|_, _, _| ()))?.0;
             let placing = start.elapsed();
-            session.resume(seen);
-            let picture = (to, file.output, path.as_path());
-            let drawing;
-            (seen, drawing) = one(&mut session, &ready.camera, picture, exec, &mut times)?;
+            let (eyes, pictures) = ((&ready.camera, &mut seen), (to, file.output, shot));
+            let drawing = both(&mut session, eyes, pictures, exec, &mut times)?;
             if let Some(walk) = &mut walk {
                 walk.note(&ready, [placing, drawing])?;
             }
         }
     }
     drop(steps);
-    to.keep(&ready, last, seen.as_ref())?;
+    to.keep(&ready, last, seen[0].as_ref())?;
 
-    report::line("time", format!("{}, sums over {} frames", report::threads(exec), places.len()));
+    let pairs = if places.len() > shots.len() { ", two pictures each" } else { "" };
+    let frames = shots.len();
+    report::line("time", format!("{}, sums over {frames} frames{pairs}", report::threads(exec)));
     times.0.into_iter().for_each(|(what, time)| report::time(what, vec![time]));
     report::time("total", vec![start.elapsed()]);
     let walked = walk.map(Walk::finish).transpose()?;
@@ -109,7 +135,27 @@ pub(super) fn render(
     Ok(Ending::Good)
 }
 
-/// Draws and writes one frame, and returns the state after it, and how long drawing took.
+/// Draws and writes the pictures of a frame, of the camera's eye and then of the other one, each after
+/// its own state. Returns how long drawing took.
+fn both(
+    session: &mut Session<'_>,
+    (camera, seen): (&Camera, &mut [Option<Seen>; 2]),
+    (to, output, shot): (&Destination<'_>, OutputSettings, &Shot),
+    exec: &Exec,
+    times: &mut Times,
+) -> Result<Duration> {
+    let cameras = [Some(*camera), camera.seen_by_other_eye()].into_iter().flatten();
+    let mut drawing = Duration::ZERO;
+    for ((camera, path), seen) in cameras.zip(&shot.places).zip(seen) {
+        session.resume(seen.take());
+        let drawn;
+        (*seen, drawn) = one(session, &camera, (to, output, path), exec, times)?;
+        drawing += drawn;
+    }
+    Ok(drawing)
+}
+
+/// Draws and writes one picture, and returns the state after it, and how long drawing took.
 fn one(
     session: &mut Session<'_>,
     camera: &Camera,

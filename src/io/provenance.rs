@@ -146,9 +146,10 @@ pub fn camera(camera: &Camera, offset: DVec3) -> String {
     let rows: Vec<String> =
         (0..4).map(|i| format!("  {:?},\n", camera.view_from_world.row(i).to_array())).collect();
     let (rows, offset) = (rows.concat(), self::offset(offset));
+    let other_eye = camera.other_eye.map_or(String::new(), |x| format!("other_eye = {x:?}\n"));
     format!(
         "size = [{width}, {height}]\nprojection = \"{projection}\"\n\
-         f = [{fx:?}, {fy:?}]\nc = [{cx:?}, {cy:?}]\nnear = {near:?}\n{offset}\
+         f = [{fx:?}, {fy:?}]\nc = [{cx:?}, {cy:?}]\nnear = {near:?}\n{offset}{other_eye}\
          view_from_world = [\n{rows}]\n"
     )
 }

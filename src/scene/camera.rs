@@ -32,11 +32,13 @@
 //! - [`intrinsics`]: focal lengths and principal points in pixels.
 //! - [`clip`]: projection matrices of OpenGL, Vulkan and Direct3D.
 //! - [`motion`], [`turntable`]: cameras that move over the frames of a sequence.
+//! - [`stereo`]: the cameras of two eyes.
 
 pub mod clip;
 pub mod convention;
 pub mod intrinsics;
 pub mod motion;
+pub mod stereo;
 pub mod turntable;
 
 use crate::error::{Error, Result};
@@ -45,6 +47,7 @@ pub use convention::{Convention, PoseMatrix};
 use glam::{DMat3, DMat4, DVec3, Mat4};
 pub use intrinsics::Intrinsics;
 pub use motion::CameraMotion;
+pub use stereo::Stereo;
 pub use turntable::Turntable;
 
 /// How depth affects the size of what is seen.
@@ -130,6 +133,9 @@ pub struct Camera {
     /// Depth of the near plane: anything not farther than this is not seen. > 0 for perspective
     /// cameras.
     pub near: f32,
+    /// The other eye of a [stereo pair](stereo), if the camera is an eye of one: the last element of the
+    /// first row of its view matrix. Its other numbers are the same.
+    pub other_eye: Option<f32>,
 }
 
 /// The largest width or height of a picture.
@@ -188,6 +194,7 @@ impl Camera {
             cx: (f64::from(width) / 2.0) as f32,
             cy: (f64::from(height) / 2.0) as f32,
             near: (distance / 1024.0) as f32,
+            other_eye: None,
         };
         camera.check()?;
         Ok(camera)
@@ -281,7 +288,8 @@ impl Camera {
     pub fn check(&self) -> Result<()> {
         Self::check_size(self.width, self.height)?;
         let numbers = [self.fx, self.fy, self.cx, self.cy, self.near];
-        let finite = self.view_from_world.is_finite() && numbers.iter().all(|v| v.is_finite());
+        let numbers = numbers.into_iter().chain(self.other_eye);
+        let finite = self.view_from_world.is_finite() && numbers.into_iter().all(f32::is_finite);
         let near_ok = match self.projection {
             Projection::Perspective => self.near > 0.0,
             Projection::Orthographic => true,

@@ -47,7 +47,7 @@ pub mod transform;
 
 pub use boxes::Boxes;
 pub use camera::{Camera, CameraMotion, Convention, Intrinsics, Lens, Pose, PoseMatrix};
-pub use camera::{Projection, Turntable};
+pub use camera::{Projection, Stereo, Turntable};
 pub use cloud::{Cloud, Property};
 pub use coordinates::Coordinates;
 pub use degenerate::Dropped;

@@ -28,6 +28,7 @@ mod refusals;
 mod regions;
 mod reports;
 mod sequence;
+mod stereo;
 mod study;
 mod surfels;
 mod tiles;

@@ -32,6 +32,8 @@ pub struct View {
     pub offset: DVec3,
     /// The near plane, if the file has one.
     pub near: Option<f64>,
+    /// [`crate::scene::Camera::other_eye`] before it is rounded.
+    pub other_eye: Option<f64>,
     opening: Opening,
 }
 
@@ -48,7 +50,8 @@ enum Opening {
 impl View {
     /// A camera with these intrinsics, without a near plane.
     pub(super) fn new(name: String, view: DMat4, offset: DVec3, intrinsics: Intrinsics) -> Self {
-        Self { name, view, offset, near: None, opening: Opening::Pixels(intrinsics) }
+        let opening = Opening::Pixels(intrinsics);
+        Self { name, view, offset, near: None, other_eye: None, opening }
     }
 
     /// The intrinsics, for a picture of the chosen size if the file has none.

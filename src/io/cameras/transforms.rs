@@ -94,7 +94,8 @@ fn view(keys: &Keys<'_>, path: &Path) -> Reason<View> {
         (None, None) => png_size(path, &name),
         _ => return Err("one of w and h alone; give both".into()),
     };
-    Ok(View { name, view, offset: DVec3::ZERO, near: None, opening: opening(keys, size)? })
+    let (offset, opening) = (DVec3::ZERO, opening(keys, size)?);
+    Ok(View { name, view, offset, near: None, other_eye: None, opening })
 }
 
 fn opening(keys: &Keys<'_>, size: Option<[u32; 2]>) -> Reason<Opening> {

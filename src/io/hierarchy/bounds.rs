@@ -8,7 +8,6 @@ use crate::io::replace::write_atomically;
 use crate::io::{Reason, checksum, input};
 use crate::progress::Progress;
 use crate::scene::bounds::Bounds;
-use crate::scene::objects::outline::Needed;
 use std::io::Write;
 
 const MAGIC: &[u8; 16] = b"splatref ball 2\n";
@@ -46,10 +45,9 @@ impl Hierarchy {
 
     fn bounds_of_nodes(&self, exec: &Exec, progress: Progress<'_>) -> Result<Vec<Bounds>> {
         let nodes = self.nodes();
-        let each = (0..).zip(nodes).map(|(number, node)| {
+        let each = (0..nodes.len() as u32).map(|number| {
             progress("bounds", u64::from(number), nodes.len() as u64);
-            let all = Needed { surfels: node.surfels, primitives: true };
-            self.read(number, all, exec)
+            self.read_all(number, exec)
                 .map(|(surfels, primitives)| Bounds::around(&surfels, &primitives))
         });
         each.collect()

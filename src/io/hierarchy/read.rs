@@ -8,6 +8,7 @@ use crate::io::input;
 use crate::scene::{Cloud, Triangles, Vertices};
 use crate::source::hierarchy::{Numbers, Part};
 use glam::Vec3;
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 /// A hierarchy in a folder. Its index is in memory; methods read the rest on demand.
@@ -85,12 +86,17 @@ impl Hierarchy {
     /// [`Error::Io`] if they cannot be read. [`Error::Format`] if they differ from the index or from
     /// their checksum, or if the process may not hold them. [`Error::Invalid`] if there is no such node.
     pub fn surfels(&self, node: u32, most: u32) -> Result<Cloud> {
+        self.some_surfels(node, 0..most)
+    }
+
+    /// [`Hierarchy::surfels`] from the first to the last of a range.
+    pub(super) fn some_surfels(&self, node: u32, range: Range<u32>) -> Result<Cloud> {
         let Node { surfels: count, estimate, .. } = *self.node(node)?;
         if count == 0 {
             return Ok(Cloud::default());
         }
         let header = Header { node, count, estimate };
-        surfels::read(&self.folder, &self.index.hash, &header, &self.numbers(), most)
+        surfels::read(&self.folder, &self.index.hash, &header, &self.numbers(), range)
     }
 
     /// Reads the own triangles of a node, in the coordinates of its geometry, with all attributes

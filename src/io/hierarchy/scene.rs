@@ -31,8 +31,9 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::memory;
 use crate::progress::Progress;
+use crate::scene::merge::merge;
 use crate::scene::objects::detail::prefix::Estimate;
-use crate::scene::objects::outline::Needed;
+use crate::scene::objects::outline::{Missing, Needed};
 use crate::scene::objects::{Geometry, Object, Objects};
 use crate::scene::{Motion, Primitives, Similarity, Surfels};
 use crate::source::hierarchy::approximate::pixel;
@@ -135,33 +136,44 @@ impl Hierarchy {
         })
     }
 
-    /// Reads the surfels and the own triangles of a node.
+    /// A node as a geometry.
     fn geometry(&self, number: u32, exec: &Exec) -> Result<Geometry> {
         let node = &self.nodes()[number as usize];
-        let all = Needed { surfels: node.surfels, primitives: true };
-        let (surfels, primitives) = self.read(number, all, exec)?;
+        let (surfels, primitives) = self.read_all(number, exec)?;
         let geometry = Geometry { name: name(number), surfels, primitives, detail: None };
         if node.surfels == 0 { Ok(geometry) } else { geometry.with_prefix(estimate(node)) }
     }
 
-    /// Reads the needed part of a node.
+    /// Reads the surfels and the own triangles of a node.
+    pub(super) fn read_all(&self, number: u32, exec: &Exec) -> Result<(Surfels, Primitives)> {
+        let surfels = 0..self.nodes()[number as usize].surfels;
+        self.read(number, Missing { surfels, primitives: true }, Surfels::none(), exec)
+    }
+
+    /// Reads the missing part of a node. Returns the surfels in memory followed by those, and the
+    /// primitives.
     pub(super) fn read(
         &self,
         number: u32,
-        needed: Needed,
+        missing: Missing,
+        held: Surfels,
         exec: &Exec,
     ) -> Result<(Surfels, Primitives)> {
         let node = &self.nodes()[number as usize];
         let mut primitives = Primitives::default();
-        if needed.primitives {
+        if missing.primitives {
             primitives.triangles = self.drawn_triangles(number)?;
         }
-        if needed.surfels == 0 {
-            return Ok((Surfels::none(), primitives));
+        if missing.surfels.is_empty() {
+            return Ok((held, primitives));
         }
-        let mut cloud = self.surfels(number, needed.surfels)?;
+        let mut cloud = self.some_surfels(number, missing.surfels)?;
+        cloud.radius = Some(vec![radius(node); cloud.position.len()]);
+        if !held.is_empty() {
+            // Every surfel has a colour, so none is filled in.
+            cloud = merge(vec![held.into_cloud(), cloud], self.fill());
+        }
         let count = cloud.position.len();
-        cloud.radius = Some(vec![radius(node); count]);
         let (surfels, _) = Surfels::new_or_none(cloud, exec)?;
         // A dropped surfel would shift the prefixes that views draw.
         if surfels.len() != count {

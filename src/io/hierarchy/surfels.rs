@@ -12,7 +12,8 @@ use crate::source::hierarchy::Numbers;
 use crate::source::sampler::estimate;
 use glam::{DVec3, Vec3};
 use std::fs::File;
-use std::io::{Read, Write};
+use std::io::{Read, Seek, SeekFrom, Write};
+use std::ops::Range;
 use std::path::{Path, PathBuf};
 
 const MAGIC: &[u8; 16] = b"splatref blue 2\n";
@@ -133,13 +134,13 @@ pub(super) fn check(estimate: Estimate, count: u32) -> Reason<()> {
     Ok(())
 }
 
-/// Reads the first `most` surfels of a node, or all; the header must agree with the index.
+/// Reads a range of the surfels of a node, as far as there are some; the header must agree with the index.
 pub(super) fn read(
     folder: &Path,
     hash: &Hash,
     expected: &Header,
     numbers: &Numbers,
-    most: u32,
+    range: Range<u32>,
 ) -> Result<Cloud> {
     let path = path(folder, expected.node);
     let io = |source| Error::io(&path, source);
@@ -154,21 +155,26 @@ pub(super) fn read(
     if found != *expected {
         return Err(Error::format(&path, "the surfels belong to another index"));
     }
-    body(file, [found.count, most], numbers).map_err(|error| match error {
+    body(file, (found.count, range), numbers).map_err(|error| match error {
         Error::Io { source, .. } => io(source),
         Error::Invalid(what) => Error::format(&path, what),
         other => other,
     })
 }
 
-/// Reads the first `most` of `total` surfels, in whole blocks.
-fn body(mut file: File, [total, most]: [u32; 2], numbers: &Numbers) -> Result<Cloud> {
+/// Reads a range of `total` surfels, in whole blocks.
+fn body(mut file: File, (total, range): (u32, Range<u32>), numbers: &Numbers) -> Result<Cloud> {
     let further = numbers.properties.len();
-    let count = total.min(most);
-    let read = total.min(count.next_multiple_of(BLOCK));
+    let end = total.min(range.end);
+    let start = range.start.min(end);
+    let first = start / BLOCK * BLOCK;
+    let count = end - start;
+    let read = total.min(end.div_ceil(BLOCK).saturating_mul(BLOCK)) - first;
     let in_memory = IN_MEMORY[0] + IN_MEMORY[1] * further as u64;
     memory::ask(u64::from(read) * in_memory, || format!("{count} surfels"))?;
     let size = size(further);
+    let before = SeekFrom::Start(HEADER + body_size(first, size));
+    file.seek(before).map_err(|source| Error::io(Path::new(""), source))?;
     let mut bytes = vec![0; body_size(read, size) as usize];
     file.read_exact(&mut bytes).map_err(|source| Error::io(Path::new(""), source))?;
     let blocks = blocks(&bytes, size).collect::<Reason<Vec<_>>>().map_err(Error::Invalid)?;
@@ -177,7 +183,7 @@ fn body(mut file: File, [total, most]: [u32; 2], numbers: &Numbers) -> Result<Cl
     let [mut position, mut normal, mut color] = [(); 3].map(|()| Vec::with_capacity(count));
     let (mut opacity, mut properties) = (numbers.opacity.then(Vec::new), numbers.of_none());
     let surfels = blocks.iter().flat_map(|block| block.chunks_exact(size as usize));
-    for surfel in surfels.take(count) {
+    for surfel in surfels.skip((start - first) as usize).take(count) {
         let mut rest = Reader(surfel);
         position.push(rest.vector().map_err(Error::Invalid)?);
         let [u, v] = [rest.take(), rest.take()].map(|code| code.map(i16::from_le_bytes));
@@ -191,6 +197,7 @@ fn body(mut file: File, [total, most]: [u32; 2], numbers: &Numbers) -> Result<Cl
         }
     }
     if let Some(at) = position.iter().position(|p: &Vec3| !p.is_finite()) {
+        let at = start as usize + at;
         return Err(Error::Invalid(format!("surfel {at} has no finite position")));
     }
     let (normal, color) = (Some(normal), Some(color));

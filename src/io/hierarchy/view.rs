@@ -20,7 +20,10 @@ use crate::error::Result;
 use crate::frame::Exec;
 use crate::progress::Progress;
 use crate::scene::Objects;
-use crate::scene::objects::outline::Outline;
+use crate::scene::objects::outline::{Needed, Outline};
+
+/// How many nodes a thread reads between two reports of progress.
+const ROUND: usize = 16;
 
 impl Hierarchy {
     /// All that is in the folder as objects, without reading any node.
@@ -53,7 +56,8 @@ impl Hierarchy {
 
     /// The objects of [`Hierarchy::outlined`] as a camera [sees](Objects::seen_from) them, loaded
     /// with what the camera draws. Reads what [is missing](Objects::missing) beside what an earlier
-    /// view of these objects read. `progress` gets "loading", the number of nodes read, and their total.
+    /// view of these objects read, node by node on all threads. `progress` gets "loading", the number of
+    /// nodes read, and their total.
     ///
     /// # Errors
     /// As [`Hierarchy::surfels`] and [`Hierarchy::triangles`]; [`crate::Error::Invalid`] if the
@@ -61,10 +65,26 @@ impl Hierarchy {
     pub fn needed_by(&self, view: Objects, exec: &Exec, progress: Progress<'_>) -> Result<Objects> {
         let (has, missing) = (self.has(), view.missing());
         let node = |i: usize| &self.nodes()[has[i] as usize];
-        self.ask(missing.iter().enumerate().map(|(i, &missing)| (node(i), missing)))?;
-        view.with_needed(|i, missing| {
-            progress("loading", i as u64, has.len() as u64);
-            self.read(has[i], missing, exec)
+        self.ask(missing.iter().enumerate().map(|(i, missing)| {
+            // A prefix that grows is copied, so all of it is asked for again.
+            let surfels = if missing.surfels.is_empty() { 0 } else { missing.surfels.end };
+            (node(i), Needed { surfels, primitives: missing.primitives })
+        }))?;
+        view.with_needed(exec, |jobs| {
+            let (total, mut jobs) = (jobs.len(), jobs.into_iter());
+            let mut read = Vec::with_capacity(total);
+            // In rounds, because one thread reports the progress.
+            while read.len() < total {
+                progress("loading", read.len() as u64, total as u64);
+                let round: Vec<_> = jobs.by_ref().take(ROUND * exec.threads()).collect();
+                let round = exec.ordered(round, |(i, missing, held)| {
+                    self.read(has[i], missing, held, &Exec::sequential())
+                });
+                for one in round {
+                    read.push(one?);
+                }
+            }
+            Ok(read)
         })
     }
 }

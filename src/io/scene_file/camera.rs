@@ -6,7 +6,7 @@ use crate::error::{Error, Result};
 use crate::io::cameras::View;
 use crate::scene::camera::clip::from_clip;
 use crate::scene::{Camera, CameraMotion, Convention, Intrinsics, Lens, Pose, PoseMatrix};
-use crate::scene::{Scene, Similarity, Turntable};
+use crate::scene::{Scene, Similarity, Stereo, Turntable};
 use crate::source::Shape;
 use glam::{DMat4, DVec3, DVec4};
 use std::path::Path;
@@ -43,6 +43,10 @@ pub struct CameraChoice {
     /// The number of frames in which the camera goes once around the scene, see
     /// [`crate::scene::camera::turntable`].
     pub turntable: Option<u32>,
+    /// A [stereo pair](crate::scene::camera::stereo) around the camera, or one eye of it.
+    pub stereo: Option<Stereo>,
+    /// [`Camera::other_eye`] beside a view matrix, before it is rounded.
+    pub other_eye: Option<f64>,
 }
 
 /// Matrices of another program, and their convention.
@@ -148,6 +152,10 @@ impl CameraChoice {
                     .into(),
             );
         }
+        self.stereo.map_or(Ok(()), Stereo::check)?;
+        if self.other_eye.is_some() && self.view.is_none() {
+            return Err("camera: other_eye belongs to view_from_world; remove it".into());
+        }
         if let Some(frames) = self.turntable {
             if !(1..=MOST_FRAMES).contains(&frames) {
                 return Err(format!(
@@ -220,12 +228,13 @@ impl SceneFile {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Invalid`] as [`Camera::new`], and if a view has no size.
+    /// [`Error::Invalid`] as [`Camera::new`], and if a view has no size. Else as [`Stereo::camera`].
     pub fn camera(&self, scene: &Scene) -> Result<Camera> {
-        match self.camera_path(scene)? {
-            Some(path) => path.at(self.frame),
-            None => self.still_camera(scene),
-        }
+        let camera = match self.camera_path(scene)? {
+            Some(path) => path.at(self.frame)?,
+            None => self.still_camera(scene)?,
+        };
+        self.camera.stereo.map_or(Ok(camera), |stereo| stereo.camera(camera))
     }
 
     /// The camera over the frames, if it moves.
@@ -268,7 +277,8 @@ impl SceneFile {
         let camera = match choice.view {
             Some(view) => {
                 let place = Place::of_scene(scene);
-                place.camera((view, choice.offset), [width, height], self.lens())?
+                let pose = (view, choice.offset, choice.other_eye);
+                place.camera(pose, [width, height], self.lens())?
             }
             None => self.posed(scene, [width, height])?,
         };
@@ -285,8 +295,8 @@ impl SceneFile {
             near: near.or(view.near),
             ..CameraChoice::default()
         };
-        let camera =
-            place.camera((view.view, view.offset), choice.picture_size(), intrinsics.lens());
+        let pose = (view.view, view.offset, view.other_eye);
+        let camera = place.camera(pose, choice.picture_size(), intrinsics.lens());
         let camera = camera.and_then(|camera| choice.open(camera));
         camera.map_err(|error| Error::format(path, format!("view {}: {error}", view.name)))
     }
@@ -357,11 +367,11 @@ impl Place {
         Self { sphere: scene.bounding_sphere(), offset: scene.offset }
     }
 
-    /// The camera with this view matrix and its offset, and with the near plane that
+    /// The camera with this view matrix, its offset and its other eye, and with the near plane that
     /// [`SceneFile::camera`] states.
     fn camera(
         &self,
-        (mut view, offset): (DMat4, DVec3),
+        (mut view, offset, mut other_eye): (DMat4, DVec3, Option<f64>),
         [width, height]: [u32; 2],
         lens: Lens,
     ) -> Result<Camera> {
@@ -372,12 +382,15 @@ impl Place {
                 let row = view.row(i);
                 row.w + ((row.x * d.x + row.y * d.y) + row.z * d.z)
             };
+            let row = view.row(0);
+            other_eye = other_eye.map(|w| w + ((row.x * d.x + row.y * d.y) + row.z * d.z));
             view.w_axis = DVec4::new(moved(0), moved(1), moved(2), 1.0);
         }
         // Only the opening and the size of this camera stay.
         let pose = Pose { eye: DVec3::Z, target: DVec3::ZERO, up: DVec3::Y };
         let opened = Camera::new(width, height, pose, lens)?;
-        let mut camera = Camera { view_from_world: view.as_mat4(), ..opened };
+        let other_eye = other_eye.map(|x| x as f32);
+        let mut camera = Camera { view_from_world: view.as_mat4(), other_eye, ..opened };
         let (middle, radius) = self.sphere;
         let distance = (middle - camera.eye()).length();
         let scale = [distance, radius].into_iter().find(|&length| length > 0.0);

@@ -72,8 +72,8 @@
 //! view = "r_12"                   # or a number; without it, each view is a frame
 //! ```
 //!
-//! The table that [`crate::io::provenance::camera`] writes, with `projection`, `f`, `c` and
-//! `view_from_world`, gives the same camera bit for bit.
+//! The table that [`crate::io::provenance::camera`] writes, with `projection`, `f`, `c`,
+//! `view_from_world` and, for an eye of a stereo pair, `other_eye`, gives the same camera bit for bit.
 //!
 //! # Numbers and keys
 //!

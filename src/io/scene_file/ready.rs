@@ -12,7 +12,7 @@ use crate::method::session::{Made, Making};
 use crate::method::{Method, Picture, Session, deferred};
 use crate::progress::Progress;
 use crate::scene::objects::detail::refine::Refinement;
-use crate::scene::{Camera, Objects, Primitives, Scene, Surfels};
+use crate::scene::{Camera, Objects, Primitives, Scene, Stereo, Surfels};
 use crate::source::flatten;
 use std::borrow::Cow;
 use std::path::Path;
@@ -32,6 +32,8 @@ pub struct Ready {
     frame: u32,
     /// The camera of every frame, if the camera moves.
     path: Option<CameraPath>,
+    /// The pair of which each frame's camera is an eye.
+    stereo: Option<Stereo>,
 }
 
 impl SceneFile {
@@ -42,7 +44,7 @@ impl SceneFile {
     /// `progress` gets the name of a step, how much of it is done, and the total.
     ///
     /// # Errors
-    /// As [`SceneFile::check_frame`], [`SceneFile::load`], [`SceneFile::camera`] and [`Ready::at`];
+    /// As [`SceneFile::check_frame`], [`Stereo::one_eye`], [`SceneFile::load`], [`SceneFile::camera`] and [`Ready::at`];
     /// [`crate::Error::Invalid`] if a setting is out of range or unknown to the method, or if the
     /// method cannot draw the scene.
     pub fn ready(&self, exec: &Exec, progress: Progress<'_>) -> Result<Ready> {
@@ -89,6 +91,7 @@ impl SceneFile {
         let method = self.method.method()?;
         let grouping = self.grouping(&method)?;
         self.check_frame(self.frame)?;
+        self.camera.stereo.map(Stereo::one_eye).transpose()?;
         Ok((method, grouping))
     }
 
@@ -106,11 +109,13 @@ impl SceneFile {
         let (method, grouping) = self.check_drawing()?;
         let loaded = self.refined(loaded)?;
         let (frame, path) = (self.frame, self.camera_path(&loaded.scene)?);
+        let stereo = self.camera.stereo;
         let camera = match &path {
             Some(path) => path.at(frame)?,
             None => self.still_camera(&loaded.scene)?,
         };
-        let mut ready = Ready { loaded, camera, method, grouping, frame, path };
+        let camera = stereo.map_or(Ok(camera), |stereo| stereo.camera(camera))?;
+        let mut ready = Ready { loaded, camera, method, grouping, frame, path, stereo };
         ready.place(exec, progress)?;
         Ok(ready)
     }
@@ -153,15 +158,17 @@ impl Ready {
     /// The camera in a frame.
     ///
     /// # Errors
-    /// As [`Camera::new`]; [`Error::Usage`] if the scene has a surface, which belongs to the view of one
-    /// frame, and this is another.
+    /// As [`Camera::new`] and [`Stereo::camera`]; [`Error::Usage`] if the scene has a surface, which
+    /// belongs to the view of one frame, and this is another.
     pub fn camera_at(&self, frame: u32) -> Result<Camera> {
         if self.loaded.scene.surface.is_some() && frame != self.frame {
             let what = "a surface belongs to one view; draw frame by frame, each by --frame and with its \
                         own surface";
             return Err(Error::Usage(what.into()));
         }
-        self.path.as_ref().map_or(Ok(self.camera), |path| path.at(frame))
+        let Some(path) = &self.path else { return Ok(self.camera) };
+        let camera = path.at(frame)?;
+        self.stereo.map_or(Ok(camera), |stereo| stereo.camera(camera))
     }
 
     /// Whether the scene is the same in every frame, so that one session draws all of them.

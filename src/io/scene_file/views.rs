@@ -71,6 +71,6 @@ fn picture(path: &Path) -> Result<View> {
     };
     let name = path.file_name().map(|name| name.to_string_lossy().into_owned());
     let mut own = View::new(name.unwrap_or_default(), view, choice.offset, intrinsics);
-    own.near = choice.near;
+    (own.near, own.other_eye) = (choice.near, choice.other_eye);
     Ok(own)
 }

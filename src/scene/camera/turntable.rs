@@ -3,7 +3,7 @@
 //! Frame k of n shows the scene from the first camera, turned by 360 k / n degrees about an axis.
 //! The camera goes counter-clockwise, seen from the tip of the axis, and keeps its distance from the
 //! axis and its height. Frame 0 is the first camera, bit for bit. Every frame
-//! has its size, focal lengths, principal point and near plane. With R =
+//! has its size, focal lengths, principal point and near plane, and is no eye of a stereo pair. With R =
 //! [`rotation`] of (axis, 360 k / n), c the centre, and Lij and t of
 //! the first view matrix converted from `f32`, in f64:
 //!
@@ -42,6 +42,8 @@ impl Turntable {
             let what = "camera: a turntable needs an axis (up) that is not 0, and a finite centre";
             return Err(Error::Invalid(what.into()));
         }
+        // The other eye would stand still while this one turns.
+        let first = Camera { other_eye: None, ..first };
         Ok(Self { first, center, axis, frames })
     }
 

@@ -10,9 +10,11 @@ use super::detail::prefix::{Estimate, Prefix};
 use super::place::Extent;
 use super::{Detail, Geometry, Object, Objects};
 use crate::error::Result;
+use crate::frame::Exec;
 use crate::scene::bounds::Bounds;
 use crate::scene::{Boxes, Primitives, Surfels};
 use glam::Vec3;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// What views need to know of a geometry that has not been read. Its surfels are in an order, all
@@ -42,6 +44,18 @@ pub struct Needed {
     /// Whether its primitives are drawn.
     pub primitives: bool,
 }
+
+/// The part of a geometry that has to be read.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Missing {
+    /// Its surfels after those in memory; empty if enough are there.
+    pub surfels: Range<u32>,
+    /// Whether its primitives are missing.
+    pub primitives: bool,
+}
+
+/// A geometry to read: its index, what is missing, and its surfels in memory.
+pub type Job = (usize, Missing, Surfels);
 
 impl Extent {
     fn outlined(outline: &Outline) -> Self {
@@ -113,65 +127,71 @@ impl Objects {
     }
 
     /// What has to be read of each geometry before memory holds all that the view draws: nothing, if an
-    /// earlier view read as much, and at most twice as many surfels. Of a geometry whose surfels in memory
-    /// are too few, up to half as many again as are drawn, so that a camera that comes closer does not
-    /// read it in every frame.
+    /// earlier view read as much. Of a geometry whose surfels in memory are too few, those after them,
+    /// up to half as many again as are drawn, so that a camera that comes closer does not read it in
+    /// every frame.
     #[must_use]
-    pub fn missing(&self) -> Vec<Needed> {
+    pub fn missing(&self) -> Vec<Missing> {
         self.missing_of(&self.needed())
     }
 
-    fn missing_of(&self, needed: &[Needed]) -> Vec<Needed> {
+    fn missing_of(&self, needed: &[Needed]) -> Vec<Missing> {
         let missing = |(index, &needed): (usize, &Needed)| {
             let (geometry, count) = (&self.geometries[index], self.extents[index].count);
             let held = geometry.surfels.len() as u32;
-            let surfels = match held {
-                _ if keeps(held, needed) => 0,
+            let end = match held {
+                _ if held >= needed.surfels => held,
                 0 => needed.surfels,
-                held if held > needed.surfels => needed.surfels,
                 _ => count.min(needed.surfels.saturating_add(needed.surfels / 2)),
             };
             let primitives = needed.primitives && geometry.primitives.is_empty();
-            Needed { surfels, primitives }
+            Missing { surfels: held..end, primitives }
         };
         needed.iter().enumerate().map(missing).collect()
     }
 
-    /// Loads what the view draws of each geometry: what [is missing](Objects::missing) comes from
-    /// `read`, which gets the index of a geometry and what to read of it, and the rest is kept from an
-    /// earlier view. Frees what is not drawn.
+    /// Loads what the view draws of each geometry. `read` gets a job for each geometry of which
+    /// something [is missing](Objects::missing), and returns all its surfels and the missing primitives,
+    /// in the order of the jobs. The rest is kept from an earlier view. Frees what is not drawn; of an
+    /// order, what is more than twice as much as is drawn.
     ///
     /// # Errors
     /// The errors of `read`.
     pub fn with_needed(
         mut self,
-        mut read: impl FnMut(usize, Needed) -> Result<(Surfels, Primitives)>,
+        exec: &Exec,
+        read: impl FnOnce(Vec<Job>) -> Result<Vec<(Surfels, Primitives)>>,
     ) -> Result<Self> {
         let needed = self.needed();
         let missing = self.missing_of(&needed);
         let (mut geometries, mut extents) = (self.taken(), self.extents.to_vec());
         // Frees first, so that memory never holds two views.
         for (index, needed) in needed.into_iter().enumerate() {
-            let geometry = &mut geometries[index];
-            if !keeps(geometry.surfels.len() as u32, needed) {
-                geometry.surfels = Surfels::none();
-                extents[index].boxes = Boxes::new(&geometry.surfels);
+            let Geometry { surfels, primitives, .. } = &mut geometries[index];
+            if surfels.len() as u64 > 2 * u64::from(needed.surfels) {
+                let all = std::mem::replace(surfels, Surfels::none()).into_cloud();
+                let first: Vec<u32> = (0..needed.surfels).collect();
+                (*surfels, _) = Surfels::new_or_none(all.some(&first), exec)?;
+                extents[index].boxes = Boxes::new(surfels);
             }
             if !needed.primitives {
-                geometry.primitives = Primitives::default();
+                *primitives = Primitives::default();
             }
         }
-        for (missing, index) in missing.into_iter().zip(0..) {
-            if missing == Needed::default() {
-                continue;
-            }
-            let (surfels, primitives) = read(index, missing)?;
+        let jobs = missing.iter().cloned().enumerate();
+        let jobs = jobs.filter(|(_, one)| !one.surfels.is_empty() || one.primitives);
+        let take =
+            |geometry: &mut Geometry| std::mem::replace(&mut geometry.surfels, Surfels::none());
+        let jobs: Vec<Job> =
+            jobs.map(|(index, missing)| (index, missing, take(&mut geometries[index]))).collect();
+        let indices: Vec<usize> = jobs.iter().map(|job| job.0).collect();
+        for (index, (surfels, primitives)) in indices.into_iter().zip(read(jobs)?) {
             let geometry = &mut geometries[index];
-            if missing.surfels > 0 {
+            if !missing[index].surfels.is_empty() {
                 extents[index].boxes = Boxes::new(&surfels);
-                geometry.surfels = surfels;
             }
-            if missing.primitives {
+            geometry.surfels = surfels;
+            if missing[index].primitives {
                 geometry.primitives = primitives;
             }
         }
@@ -190,10 +210,4 @@ impl Objects {
         };
         all.iter_mut().map(taken).collect()
     }
-}
-
-/// Whether a view keeps the surfels of a geometry that are in memory: all that it draws are there, and
-/// not too many more.
-fn keeps(held: u32, needed: Needed) -> bool {
-    (needed.surfels..=needed.surfels.saturating_mul(2)).contains(&held)
 }

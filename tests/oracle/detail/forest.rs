@@ -4,12 +4,13 @@ use crate::oracle::kit::dice::Dice;
 use crate::oracle::kit::scene::surfels;
 use crate::oracle::sampler::cases::mesh;
 use glam::{DVec3, Vec3};
+use splatref::scene::camera::stereo::Eye;
 use splatref::scene::objects::detail::prefix::Estimate;
 use splatref::scene::objects::detail::refine::Refinement;
 use splatref::scene::transform::rotation;
 use splatref::scene::{
-    Camera, Cloud, Geometry, Lens, Motion, Object, Objects, Pose, Primitives, Similarity, Surfels,
-    Triangles,
+    Camera, Cloud, Geometry, Lens, Motion, Object, Objects, Pose, Primitives, Similarity, Stereo,
+    Surfels, Triangles,
 };
 
 /// Objects that are still to be asked for something, and a camera.
@@ -107,6 +108,12 @@ fn camera(dice: &mut Dice) -> Camera {
         camera.fx *= dice.within(0.5, 2.0);
         camera.cx += dice.within(-10.0, 10.0);
         camera.near = dice.within(0.0625, 3.0);
+    }
+    // Last, so that the other cases stay as they are.
+    if dice.below(3) == 0 {
+        let distance = f64::from(dice.within(0.0625, 4.0));
+        let eye = Some(Eye::BOTH[dice.below(2)]);
+        camera = Stereo { distance, eye }.camera(camera).expect("an eye");
     }
     camera
 }

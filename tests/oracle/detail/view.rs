@@ -106,7 +106,7 @@ pub(crate) fn corners(objects: &Objects, object: u32) -> [V3; 2] {
 }
 
 fn asked(objects: &Objects, object: u32, camera: &Camera) -> Asked {
-    let eye = Eye::new(camera);
+    let (eye, at, shifts) = Eye::middle(camera);
     let place = &objects.places()[object as usize];
     let f = eye.fx.max(eye.fy);
     let (middle, radius) = objects.sphere(object);
@@ -117,17 +117,21 @@ fn asked(objects: &Objects, object: u32, camera: &Camera) -> Asked {
         0.0
     } else {
         let far = if eye.perspective { t } else { 1.0 };
-        let [x, y] = [eye.fx * p[0] / far, eye.fy * p[1] / far];
-        ((x * x + y * y).sqrt() - f * radius / far).max(0.0)
+        let off = shifts.map(|shift| {
+            let [x, y] = [eye.fx * (p[0] + shift) / far, eye.fy * p[1] / far];
+            (x * x + y * y).sqrt()
+        });
+        (off[0].min(off[1]) - f * radius / far).max(0.0)
     };
     let factor = zone(&wanted.zones, distance);
     let [low, high] = corners(objects, object);
-    let e = local(place, camera.eye().to_array());
+    let e = local(place, at);
     let closest = [0, 1, 2].map(|k| low[k].max(e[k].min(high[k])));
     let near = (-eye.point(placed(place, closest))[2]).max(eye.near);
     let pixel = if eye.perspective { near } else { 1.0 } / f / place.scale;
     let margin = 16.0 + f64::from(wanted.surfel_size) * factor;
-    let inside = inside(camera, &eye, p, radius, margin);
+    let of_eye = |shift: &f64| inside(camera, &eye, [p[0] + shift, p[1], p[2]], radius, margin);
+    let inside = shifts.iter().any(of_eye);
     Asked { pixel: pixel * factor, factor, inside }
 }
 

@@ -1,6 +1,6 @@
 //! Vectors and the camera of the oracle, in f64.
 
-use glam::Vec3;
+use glam::{DVec3, Vec3};
 use splatref::scene::{Camera, Projection};
 
 pub(crate) type V3 = [f64; 3];
@@ -54,6 +54,22 @@ impl Eye {
             near: camera.near.into(),
             size: [camera.width.into(), camera.height.into()],
         }
+    }
+
+    /// Between the eyes of a stereo pair, the camera, where it stands, and what is added to its x for
+    /// each eye; without a pair, the camera itself and zeros.
+    pub(crate) fn middle(camera: &Camera) -> (Self, V3, [f64; 2]) {
+        let mut eye = Self::new(camera);
+        let own = eye.rows[0][3];
+        let Some(other) = camera.other_eye.map(f64::from) else {
+            return (eye, camera.eye().to_array(), [0.0; 2]);
+        };
+        let x = (own + other) / 2.0;
+        eye.rows[0][3] = x;
+        let mut view = camera.view_from_world.as_dmat4();
+        view.w_axis.x = x;
+        let at: DVec3 = view.inverse().w_axis.truncate();
+        (eye, at.to_array(), [own - x, other - x])
     }
 
     pub(crate) fn direction(&self, v: V3) -> V3 {

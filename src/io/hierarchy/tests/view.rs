@@ -6,9 +6,10 @@ use crate::io::checksum;
 use crate::io::scene_file::Ready;
 use crate::number::Real;
 use crate::scene::bounds::Bounds;
+use crate::scene::camera::stereo::Eye;
 use crate::scene::objects::detail::refine::Refinement;
-use crate::scene::objects::outline::Needed;
-use crate::scene::{Objects, Primitives, Surfels};
+use crate::scene::objects::outline::{Missing, Needed};
+use crate::scene::{Objects, Primitives, Stereo, Surfels};
 use glam::DVec3;
 
 /// Views as distance of the eye and size of discs: from coarse to single triangles, from afar and
@@ -83,6 +84,25 @@ fn a_view_of_what_it_needs_is_the_view_of_all() {
             }
         }
         assert!(least.0 == 0 && least.1 == 0, "a view has no surfels, and one no triangles");
+    }
+}
+
+/// An eye of a stereo pair draws the surfels that the camera in the middle chooses.
+#[test]
+fn an_eye_draws_the_choice_of_the_middle() {
+    let at = made();
+    let exec = Exec::sequential();
+    for view in [VIEWS[1], VIEWS[2]] {
+        let mut file = scene(&at, view, "blue");
+        let middle = file.ready(&exec, &quiet).unwrap();
+        let (mut session, _) = middle.session(&exec, &quiet).unwrap();
+        for eye in Eye::BOTH {
+            file.camera.stereo = Some(Stereo { distance: 0.5, eye: Some(eye) });
+            let ready = file.ready(&exec, &quiet).unwrap();
+            let forced = session.render(&ready.camera).unwrap().frame.clone();
+            assert!(picture(&ready) == forced, "{eye:?} of {view:?}");
+            assert!(picture(&middle) != forced);
+        }
     }
 }
 
@@ -178,12 +198,14 @@ fn a_walk_reads_a_node_once() {
     assert!(line.contains("out/surfels-") || line.contains("out/mesh-"), "{line}");
 }
 
-/// A prefix that has to grow is read half as far again, and not beyond its end.
+/// A prefix that has to grow goes on where it ended, half as far again and not beyond its end. One that
+/// shrinks is cut.
 #[test]
-fn a_prefix_that_grows_is_read_ahead() {
+fn a_prefix_that_grows_goes_on_where_it_ended() {
     let at = made();
     let exec = Exec::sequential();
     let hierarchy = Hierarchy::open(&at.path().join("out")).unwrap();
+    let whole_file = fs::read(at.path().join("out/surfels-0")).unwrap();
     let camera = scene(&at, VIEWS[0], "blue").ready(&exec, &quiet).unwrap().camera;
     let sized = |objects: Objects, surfel_size: f32| {
         let refinement = Refinement { surfel_size, ..Refinement::default() };
@@ -196,18 +218,31 @@ fn a_prefix_that_grows_is_read_ahead() {
         (at.0.0.surfels.len() as u32, at.0.1.surfels, at.1.surfels)
     };
     let (held, needed, missing) = root(&far);
-    assert_eq!((held, missing), (0, needed), "the first view reads what it draws");
+    assert_eq!((held, missing), (0, 0..needed), "the first view reads what it draws");
     let far = hierarchy.needed_by(far, &exec, &quiet).unwrap();
-    assert_eq!(root(&far), (needed, needed, 0));
+    assert_eq!(root(&far), (needed, needed, needed..needed));
     let near = sized(far, 8.0);
     let (held, grown, missing) = root(&near);
     assert!(held == needed && grown > needed);
-    assert_eq!(missing, (grown + grown / 2).min(hierarchy.nodes()[0].surfels));
+    let end = (grown + grown / 2).min(hierarchy.nodes()[0].surfels);
+    assert_eq!(missing, held..end);
     let near = hierarchy.needed_by(near, &exec, &quiet).unwrap();
-    assert_eq!(root(&near), (missing, grown, 0));
-    // Coarser again: kept up to twice what is drawn.
-    let (held, needed, missing) = root(&sized(near, 9.0));
-    assert_eq!(missing, if held <= 2 * needed { 0 } else { needed });
+    assert_eq!(root(&near), (end, grown, end..end));
+    // The same surfels as when they are read at once.
+    let at_once = |count: u32| {
+        let missing = Missing { surfels: 0..count, primitives: false };
+        hierarchy.read(0, missing, Surfels::none(), &exec).unwrap().0
+    };
+    let first = |objects: &Objects| objects.geometries()[0].surfels.clone();
+    assert_eq!(first(&near), at_once(end));
+    // Coarser again: kept up to twice what is drawn, then cut, without a file.
+    fs::remove_file(at.path().join("out/surfels-0")).unwrap();
+    let coarse = hierarchy.needed_by(sized(near, 40.0), &exec, &quiet).unwrap();
+    let (held, needed, missing) = root(&coarse);
+    assert_eq!((held, missing), (needed, needed..needed));
+    assert!(2 * needed < end, "{needed} {end}");
+    fs::write(at.path().join("out/surfels-0"), whole_file).unwrap();
+    assert_eq!(first(&coarse), at_once(needed));
 }
 
 #[test]

@@ -3,7 +3,8 @@
 use super::written::check;
 use super::*;
 use crate::io::provenance;
-use crate::scene::Projection;
+use crate::scene::camera::stereo::Eye;
+use crate::scene::{Projection, Stereo};
 use glam::DMat4;
 
 /// A scene with these lines in its table `[camera]`.
@@ -61,7 +62,8 @@ fn a_camera_comes_back_bit_for_bit() {
     tiny.view_from_world.x_axis.y = -0.0;
     let orthographic = Camera::new(61, 47, pose, Lens::Orthographic(2.7)).unwrap();
     let odd = Camera { fx: 50.1, cx: -3.3, cy: 100.7, near: 0.123, ..camera };
-    for camera in [camera, tiny, odd, orthographic, Camera { near: -1.5, ..orthographic }] {
+    let eye = Camera { other_eye: Some(0.3), ..camera };
+    for camera in [camera, tiny, odd, eye, orthographic, Camera { near: -1.5, ..orthographic }] {
         let file = with(&provenance::camera(&camera, DVec3::ZERO));
         check(&file);
         let again = file.camera(&scene).unwrap();
@@ -93,9 +95,13 @@ fn a_scene_far_from_the_origin_is_seen_from_its_coordinates() {
     let told = with(&provenance::camera(&posed, offset));
     check(&told);
     assert_eq!(told.camera(&scene).unwrap(), posed);
+    let pair = Stereo { distance: 0.5, eye: Some(Eye::Right) }.camera(posed).unwrap();
+    let told_of_eye = with(&provenance::camera(&pair, offset));
     scene.offset = offset - DVec3::X;
     let eye = told.camera(&scene).unwrap().eye();
     assert!((eye - DVec3::new(1.0, 0.0, 4.0)).length() < 1e-6, "{eye}");
+    let left = told_of_eye.camera(&scene).unwrap().seen_by_other_eye().unwrap().eye();
+    assert!((left - DVec3::new(0.75, 0.0, 4.0)).length() < 1e-6, "{left}");
 }
 
 #[test]

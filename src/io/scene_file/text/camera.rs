@@ -4,7 +4,10 @@ use super::exactly::Exactly;
 use super::folder::Folder;
 use crate::io::scene_file::{CameraChoice, Matrices, Views};
 use crate::scene::camera::convention::check_view;
-use crate::scene::{CameraMotion, Convention, Intrinsics, Lens, Pose, PoseMatrix, Projection};
+use crate::scene::camera::stereo::Eye;
+use crate::scene::{
+    CameraMotion, Convention, Intrinsics, Lens, Pose, PoseMatrix, Projection, Stereo,
+};
 use glam::{DMat4, DVec3, DVec4};
 use std::path::PathBuf;
 
@@ -40,6 +43,9 @@ pub(super) struct RawCamera {
     file: Option<PathBuf>,
     view: Option<RawView>,
     turntable: Option<u32>,
+    stereo: Option<f64>,
+    stereo_eye: Option<String>,
+    other_eye: Option<f64>,
 }
 
 /// The name or the number of a view.
@@ -78,6 +84,7 @@ impl RawCamera {
         let intrinsics = self.intrinsics()?;
         let matrices = self.matrices()?;
         let view = self.view_matrix(&matrices)?;
+        let stereo = self.stereo()?;
         if self.keys.is_some() && (self.eye.is_some() || self.target.is_some() || self.up.is_some())
         {
             let what = "camera: keys replace eye, target and up; remove one or the other";
@@ -108,6 +115,8 @@ impl RawCamera {
             far: self.far,
             views: self.file.map(|path| Views::unread(path, name)),
             turntable: self.turntable,
+            stereo,
+            other_eye: self.other_eye,
         };
         matrices.apply(&mut choice)?;
         choice.check()?;
@@ -161,6 +170,16 @@ impl RawCamera {
             }
         };
         Ok(Some(intrinsics))
+    }
+
+    fn stereo(&self) -> Result<Option<Stereo>, String> {
+        if self.stereo.is_none() && self.stereo_eye.is_some() {
+            return Err(
+                "camera: stereo_eye chooses an eye of a pair; add stereo, or remove it".into()
+            );
+        }
+        let eye = self.stereo_eye.as_deref().map(Eye::by_name).transpose()?;
+        Ok(self.stereo.map(|distance| Stereo { distance, eye }))
     }
 
     fn matrices(&self) -> Result<Matrices, String> {
@@ -237,6 +256,12 @@ impl RawCamera {
             file: views.map(|views| place.path(&views.path)),
             view: views.and_then(|views| views.view.clone()).map(RawView::Name),
             turntable: choice.turntable,
+            stereo: choice.stereo.map(|stereo| stereo.distance),
+            stereo_eye: choice
+                .stereo
+                .and_then(|stereo| stereo.eye)
+                .map(|eye| eye.name().to_owned()),
+            other_eye: choice.other_eye,
             ..Self::default()
         }
     }

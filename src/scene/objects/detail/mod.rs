@@ -23,6 +23,19 @@
 //! one with fy, y and `height - cy`. View space is `((m0 x + m1 y) + m2 z) + m3` of the camera's
 //! matrix. m is 16 plus the error that nodes may have, or plus the size of discs. `Decided:` 16
 //! pixels, more than the filter of a splat adds to the splat.
+//!
+//! **Stereo.** Both eyes of a [stereo pair](crate::scene::camera::stereo) draw the same surfels: the
+//! choice is made once, by a camera in the middle between them. Its view matrix has
+//! `(V03 + other) / 2` in place of V03, in f64, with the [other eye](Camera::other_eye)'s V03; its eye
+//! is [`Camera::eye`] of that matrix. With s = V03 less the middle's, for each eye:
+//!
+//! - A sphere is in the view frustum if it is in the frustum of one of the eyes, whose x is x + s.
+//! - The distance of an object, by which [zones](refine) choose a factor, is the lesser of the
+//!   distances in both pictures, again with x + s in place of x.
+//!
+//! `Decided:` the paper renders in stereo and does not say that the eyes share the choice. Two
+//! choices would show other surfels to each eye, which the viewer sees as a shimmer in depth.
+//! `Departs:` its zones are "for each eye" (4.4); an object here has the finer size of the two.
 
 pub mod prefix;
 pub mod refine;
@@ -321,17 +334,26 @@ fn nth(counts: &[u64], rank: u64) -> (u32, u64) {
     (0, 0)
 }
 
-/// A camera in the numbers that levels of detail need.
+/// A camera in the numbers that levels of detail need; of a stereo pair, the camera in the middle.
 struct Eye {
     camera: Camera,
     view_from_world: DMat4,
     eye: DVec3,
+    /// Added to x of view space, this gives x of each eye's view space; 0 without a pair.
+    shifts: [f64; 2],
 }
 
 impl Eye {
     fn new(camera: &Camera) -> Self {
-        let view_from_world = camera.view_from_world.as_dmat4();
-        Self { camera: *camera, view_from_world, eye: camera.eye() }
+        let mut view_from_world = camera.view_from_world.as_dmat4();
+        let own = view_from_world.w_axis.x;
+        let other = camera.other_eye.map_or(own, f64::from);
+        // Both eyes get the same bits, because f64 holds the sum of two f32 of like size exactly, and
+        // a sum does not depend on the order of two numbers.
+        let middle = (own + other) / 2.0;
+        view_from_world.w_axis.x = middle;
+        let eye = view_from_world.inverse().w_axis.truncate();
+        Self { camera: *camera, view_from_world, eye, shifts: [own - middle, other - middle] }
     }
 
     /// The eye in the coordinates of an object's geometry.
@@ -344,7 +366,7 @@ impl Eye {
         f64::from(self.camera.fx.at_least(self.camera.fy))
     }
 
-    /// Whether a sphere reaches into the picture widened by `margin` pixels.
+    /// Whether a sphere reaches into the picture of an eye, widened by `margin` pixels.
     fn may_see(&self, (middle, radius): (DVec3, f64), margin: f64) -> bool {
         let Camera { width, height, projection, fx, fy, cx, cy, near, .. } = self.camera;
         let [fx, fy, cx, cy, near] = [fx, fy, cx, cy, near].map_inline(f64::from);
@@ -360,9 +382,9 @@ impl Eye {
                 Projection::Orthographic => focal * at + border >= -radius * focal,
             }
         };
+        let across = |x: f64| inside(fx, x, cx) && inside(fx, -x, f64::from(width) - cx);
         t + radius > near
-            && inside(fx, x, cx)
-            && inside(fx, -x, f64::from(width) - cx)
+            && self.shifts.iter().any(|shift| across(x + shift))
             && inside(fy, -y, cy)
             && inside(fy, y, f64::from(height) - cy)
     }

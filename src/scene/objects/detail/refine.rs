@@ -405,7 +405,8 @@ const STEPS: usize = 2048;
 const LEAST: f64 = 1.0 / 1_267_650_600_228_229_401_496_703_205_376.0;
 
 impl Eye {
-    /// How far a sphere is from the principal point on the screen, in pixels.
+    /// How far a sphere is from the principal point on the screen, in pixels; of a stereo pair, in the
+    /// picture where it is nearer.
     fn off_principal_point(&self, (middle, radius): (glam::DVec3, f64)) -> f64 {
         let v = self.view_from_world.transform_point3(middle);
         let (depth, fx, fy) = (-v.z, f64::from(self.camera.fx), f64::from(self.camera.fy));
@@ -414,7 +415,10 @@ impl Eye {
             Projection::Perspective if depth > radius => 1.0 / depth,
             Projection::Perspective => return 0.0,
         };
-        let (x, y) = (fx * (v.x * m), fy * (v.y * m));
-        ((x * x + y * y).sqrt() - self.focal() * (radius * m)).at_least(0.0)
+        let [one, other] = self.shifts.map_inline(|shift| {
+            let (x, y) = (fx * ((v.x + shift) * m), fy * (v.y * m));
+            (x * x + y * y).sqrt()
+        });
+        (one.at_most(other) - self.focal() * (radius * m)).at_least(0.0)
     }
 }

@@ -1,6 +1,8 @@
 //! Prefixes, their budget, their zones, and finer objects.
 
 use super::*;
+use crate::scene::Stereo;
+use crate::scene::camera::stereo;
 use crate::scene::objects::detail::prefix::Estimate;
 use crate::scene::objects::detail::refine::Refinement;
 use crate::scene::{Cloud, Triangles, Vertices};
@@ -269,4 +271,30 @@ fn far_ends_of_numbers_stay_surfels() {
             assert!(found.sides().unwrap().is_none_or(|sides| sides.side(0).is_some()));
         }
     }
+}
+
+/// Both eyes draw what the camera in the middle asks for, and what only one of them sees.
+#[test]
+fn the_eyes_of_a_pair_share_the_choice() {
+    let middle = front(16.0);
+    let eye = |eye| Stereo { distance: 4.0, eye: Some(eye) }.camera(middle).unwrap();
+    let eyes = stereo::Eye::BOTH.map(eye);
+    let place = |x: f64, z: f64| at(0.0, 1.0, DVec3::new(x, 0.0, z));
+    // The last two are in the picture of one eye alone.
+    let places = [place(0.5, 0.0), place(-3.0, 4.0), place(-16.0, 0.0), place(16.0, 0.0)];
+    let objects = walls(&places.map(|place| (3, place)), vec![None; 4]);
+    let asked = Refinement { zones: vec![[0.0, 1.0], [64.0, 2.0]], ..asks(3.0) };
+    let [left, right] = eyes.map(|camera| seen(&objects, asked.clone(), &camera));
+    assert_eq!(counts(&left), counts(&right));
+    assert_eq!(left.median_radius().to_bits(), right.median_radius().to_bits());
+    assert!((0..4).all(|object| left.disc(object) == right.disc(object)));
+    assert!(counts(&left).iter().all(|count| *count > 0), "{:?}", counts(&left));
+
+    let alone = eyes.map(|camera| Camera { other_eye: None, ..camera });
+    let [left, right] = alone.map(|camera| counts(&seen(&objects, asked.clone(), &camera)));
+    assert!(left[2] > 0 && left[3] == 0 && right[2] == 0 && right[3] > 0, "{left:?} {right:?}");
+    // Without zones, what all see has the size that the middle asks for.
+    let [left, alone] = [eyes[0], middle].map(|camera| seen(&objects, asks(3.0), &camera));
+    assert_eq!(counts(&left)[..2], counts(&alone)[..2]);
+    assert!((0..2).all(|object| left.disc(object) == alone.disc(object)));
 }
