@@ -48,7 +48,7 @@ def test_examples_of_docstrings(module: object) -> None:
 
 
 # The last two find no scene: the folder has none.
-EXAMPLES = ["torch_rasterizer.py", "choose_a_method.py", "large_torus.py", "gaussians_on_cuda.py gsplat .", "gsplat_functions.py ."]
+EXAMPLES = ["torch_rasterizer.py", "choose_a_method.py", "large_torus.py", "many_parts.py", "gaussians_on_cuda.py gsplat .", "gsplat_functions.py ."]
 
 
 @pytest.mark.parametrize("example", EXAMPLES)

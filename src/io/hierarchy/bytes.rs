@@ -58,7 +58,7 @@ pub(super) fn check_magic(bytes: &[u8], magic: &[u8; 16], what: &str) -> Reason<
     match bytes.first_chunk::<16>() {
         Some(found) if found == magic => Ok(()),
         Some(found) if *found == older => Err("an older version wrote this file, without a \
-             checksum; rerun `splatref surfels` to make it again"
+             checksum; remove the folder and rerun `splatref surfels`"
             .into()),
         _ => Err(format!("not {what} of a splatref hierarchy")),
     }

@@ -97,7 +97,7 @@ impl Gather<'_> {
             return self.triangles(node, shown);
         }
         let scale = shown.place.scale;
-        let (count, half) = drawn(estimate, surfels, self.pixel / scale);
+        let (count, radius) = drawn(estimate, surfels, self.pixel / scale);
         let known = self.surfels.get(&node).map_or(0, |cloud| cloud.position.len());
         if known < count as usize {
             let read = self.hierarchy.surfels(node, count)?;
@@ -114,8 +114,8 @@ impl Gather<'_> {
             }
             [p, n, shown.color.unwrap_or(color[i])]
         };
-        let squares: Vec<[Vec3; 3]> = (0..count as usize).map(placed).collect();
-        self.all.squares(&squares, cloud, (half * scale) as f32)?;
+        let discs: Vec<[Vec3; 3]> = (0..count as usize).map(placed).collect();
+        self.all.hexagons(&discs, cloud, (radius * scale) as f32)?;
         // A node of a geometry is shown once, so its surfels need not stay in memory.
         if !self.upper {
             self.surfels.remove(&node);

@@ -154,8 +154,8 @@
 //! all other files.
 //!
 //! `Decided:` a folder of an older version, without checksums, is refused: its files begin with the
-//! same words and a 1, and nobody can tell whether they are damaged. Rerun `splatref surfels` with
-//! the same scene, settings and folder, and it makes the files again.
+//! same words and a 1, and nobody can tell whether they are damaged. Remove the folder and rerun
+//! `splatref surfels`.
 //!
 //! `Decided:` checksums are CRC-32, because they are there to find damage. On a machine where
 //! CRC-32 takes 55 GB a second, SHA-256 takes 0.35, and decoding normals alone takes 0.7: checksums
@@ -166,8 +166,8 @@
 //! - `plan`, in this order:
 //!   - `"splatref hierarchy 1\n"`;
 //!   - the settings: u32 most, side; u8 sampler: 0 greedy, 1 the paper's, 2 as shipped, 3 random;
-//!     u8 1 if bottom-up; u64 seed; u32 directions: 0 cube, 1 box, else 2 + their number and f64 x
-//!     y z of each;
+//!     u8 0 top-down, 2 bottom-up; u64 seed; u32 directions: 0 cube, 1 box, else 2 + their number
+//!     and f64 x y z of each;
 //!   - the f32 colour of triangles without one; u64 geometries;
 //!   - u64 objects, and of each: u64 geometry; u64 keys, of each key u32 frame and f64 rotation by
 //!     columns, scale, translation; u8 1 and f32 r g b of its colour, or u8 0;

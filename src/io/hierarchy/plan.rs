@@ -29,7 +29,12 @@ pub(super) fn hash(settings: &Settings, fill: Vec3, objects: &[Object], geometri
         Sampler::Progressive(Schedule::AsShipped) => 2,
         Sampler::Random => 3,
     };
-    to.bytes(&[sampler, u8::from(*traversal == Traversal::BottomUp)]);
+    // Not 1, the word of a version that drew surfels as squares: a folder that it began is refused.
+    let traversal = match traversal {
+        Traversal::TopDown => 0,
+        Traversal::BottomUp => 2,
+    };
+    to.bytes(&[sampler, traversal]);
     to.long(*seed);
     match directions {
         Directions::Cube => to.words(&[0]),
@@ -78,7 +83,7 @@ pub(super) fn begin(folder: &Path, plan: &Hash) -> Result<bool> {
     if path.exists() {
         let found = input::bytes(&path).map_err(|source| Error::io(&path, source))?;
         if found != text.as_bytes() {
-            return Err(refused(folder, "other settings or other objects"));
+            return Err(refused(folder, "other settings, other objects or another version"));
         }
         return Ok(true);
     }

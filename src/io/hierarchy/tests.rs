@@ -1,6 +1,7 @@
 mod damaged;
 mod laws;
 mod loaded;
+mod near;
 mod resumed;
 mod view;
 

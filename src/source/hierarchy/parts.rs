@@ -112,6 +112,9 @@ pub struct Gathered {
     corners: Vec<[u32; 3]>,
 }
 
+/// How far the sides of a regular hexagon are from its middle, if its corners are 1 away.
+const HALF_SQRT_3: f32 = 0.866_025_4;
+
 /// Bytes of a vertex and of a triangle while they are gathered, their arrays growing.
 const OF_A_VERTEX: u64 = 2 * 40;
 const OF_A_NUMBER: u64 = 2 * 4;
@@ -159,36 +162,42 @@ impl Gathered {
         self.add(vertices, &part.triangles)
     }
 
-    /// Adds surfels as squares; `numbers` has the opacity and properties of each surfel. For the
-    /// half axes u and v ([`crate::scene::cloud::half_axes`]) of a disc of the radius `half`, the
-    /// corners are ((p - u) - v), ((p + u) - v), ((p + u) + v), ((p - u) + v) in `f32`. The
-    /// triangles are 0 1 2 and 0 2 3 of these corners.
+    /// Adds surfels as the regular hexagons whose corners lie on the circle of their disc; `numbers`
+    /// has the opacity and properties of each surfel. For the half axes u and v
+    /// ([`crate::scene::cloud::half_axes`]) of a disc of this `radius`, in `f32`:
+    ///
+    /// ```text
+    ///   h = u / 2      w = v s      s = sqrt(3) / 2, rounded to f32
+    ///   corners    p + u, (p + h) + w, (p - h) + w, p - u, (p - h) - w, (p + h) - w
+    ///   triangles  0 1 2, 0 2 3, 0 3 4, 0 4 5 of these corners
+    /// ```
     ///
     /// # Errors
     /// [`crate::Error::Invalid`] if the process may not hold them.
-    pub fn squares(&mut self, surfels: &[[Vec3; 3]], numbers: &Cloud, half: f32) -> Result<()> {
-        let n = 4 * surfels.len();
-        let four = |all: &[f32]| {
-            all[..surfels.len()].iter().flat_map(|&number| [number; 4]).collect::<Vec<_>>()
+    pub fn hexagons(&mut self, surfels: &[[Vec3; 3]], numbers: &Cloud, radius: f32) -> Result<()> {
+        let n = 6 * surfels.len();
+        let six = |all: &[f32]| {
+            all[..surfels.len()].iter().flat_map(|&number| [number; 6]).collect::<Vec<_>>()
         };
         let property =
-            |one: &Property| Property { name: one.name.clone(), values: four(&one.values) };
+            |one: &Property| Property { name: one.name.clone(), values: six(&one.values) };
         let mut vertices = Vertices {
             position: Vec::with_capacity(n),
             direction: Vec::with_capacity(n),
             radius: vec![0.0; n],
             color: Some(Vec::with_capacity(n)),
-            opacity: numbers.opacity.as_deref().map(four),
+            opacity: numbers.opacity.as_deref().map(six),
             properties: numbers.properties.iter().map(property).collect(),
         };
-        let mut corners = Vec::with_capacity(2 * surfels.len());
+        let mut corners = Vec::with_capacity(4 * surfels.len());
         for &[p, normal, color] in surfels {
-            let [u, v] = crate::scene::cloud::half_axes(normal, half);
+            let [u, v] = crate::scene::cloud::half_axes(normal, radius);
+            let (h, w) = (u / 2.0, v * HALF_SQRT_3);
             let first = vertices.position.len() as u32;
-            corners.extend([[first, first + 1, first + 2], [first, first + 2, first + 3]]);
-            vertices.position.extend([p - u - v, p + u - v, p + u + v, p - u + v]);
-            vertices.direction.extend([normal; 4]);
-            vertices.color.iter_mut().for_each(|all| all.extend([color; 4]));
+            corners.extend([1, 2, 3, 4].map(|i| [first, first + i, first + i + 1]));
+            vertices.position.extend([p + u, p + h + w, p - h + w, p - u, p - h - w, p + h - w]);
+            vertices.direction.extend([normal; 6]);
+            vertices.color.iter_mut().for_each(|all| all.extend([color; 6]));
         }
         self.add(vertices, &corners)
     }
@@ -279,7 +288,7 @@ mod tests {
     }
 
     #[test]
-    fn squares_face_as_their_surfels() {
+    fn hexagons_are_inscribed_and_face_as_their_surfels() {
         let mut all = Gathered::new(&Numbers { opacity: true, properties: vec!["heat".into()] });
         let normal = Vec3::new(0.6, 0.0, 0.8);
         let heat = |values| Property { name: "heat".into(), values };
@@ -288,17 +297,20 @@ mod tests {
             properties: vec![heat(vec![7.0, 8.0])],
             ..Cloud::default()
         };
-        all.squares(&[[Vec3::ONE, normal, Vec3::X]], &numbers, 0.5).unwrap();
+        all.hexagons(&[[Vec3::ONE, normal, Vec3::X]], &numbers, 0.5).unwrap();
         let all = all.finish().unwrap();
         let position = &all.vertices().position;
+        let mut area = 0.0;
         for corners in all.corners() {
             let [a, b, c] = corners.map(|i| position[i as usize]);
             let across = (b - a).cross(c - a);
-            assert!((across - normal).length() < 1e-6, "{across}: twice an area of 1/2");
-            assert!(((a - Vec3::ONE).length() - 0.5_f32.sqrt()).abs() < 1e-6);
+            assert!((across.normalize() - normal).length() < 1e-5, "{across}");
+            area += across.length() / 2.0;
+            assert!(((a - Vec3::ONE).length() - 0.5).abs() < 1e-6, "{a} is not on the circle");
         }
-        assert_eq!(all.vertices().direction, [normal; 4]);
-        assert_eq!(all.vertices().opacity, Some(vec![0.25; 4]), "those of the first");
-        assert_eq!(all.vertices().properties, [heat(vec![7.0; 4])]);
+        assert!((area - 0.75 * HALF_SQRT_3).abs() < 1e-6, "{area}");
+        assert_eq!(all.vertices().direction, [normal; 6]);
+        assert_eq!(all.vertices().opacity, Some(vec![0.25; 6]), "those of the first");
+        assert_eq!(all.vertices().properties, [heat(vec![7.0; 6])]);
     }
 }

@@ -119,7 +119,7 @@ impl World {
             Sampler::Progressive(Schedule::AsShipped) => 2,
             Sampler::Random => 3,
         });
-        bytes.0.push(u8::from(settings.traversal == Traversal::BottomUp));
+        bytes.0.push(if settings.traversal == Traversal::BottomUp { 2 } else { 0 });
         bytes.u64(&[settings.seed]);
         match &settings.directions {
             Directions::Cube => bytes.u32(&[0]),

@@ -196,26 +196,29 @@ impl World {
         }
     }
 
-    /// The surfels of a node as squares.
-    fn squares(surfels: &Surfels, shown: Shown, pixel: f64, to: &mut Drawn) {
+    /// The surfels of a node as hexagons in discs.
+    fn hexagons(surfels: &Surfels, shown: Shown, pixel: f64, to: &mut Drawn) {
         let n = f64::from(surfels.header().0);
         let (count, distance) = (f64::from(surfels.estimate.0), f64::from(surfels.estimate.1));
         let k = shown.place.scale;
         let r = pixel / k;
         let q = distance / r;
         let p = n.min((count * (q * q)).ceil()).max(1.0) as usize;
-        let half = (r.max(distance * (count / n).sqrt()) * k) as f32;
+        let radius = (r.max(distance * (count / n).sqrt()) * k) as f32;
         for i in 0..p {
             let at = single(placed(&shown.place, wide(surfels.position[i])));
             let normal = turned(&shown.place, surfels.normal[i]);
-            let [u, v] = axes(normal).map(|a| single(a.map(|c| c * f64::from(half))));
+            let [u, v] = axes(normal).map(|a| single(a.map(|c| c * f64::from(radius))));
             let color = shown.color.unwrap_or(surfels.color[i]);
             let begin = to.corners.len() as u32;
-            let corners = [(at - u) - v, (at + u) - v, (at + u) + v, (at - u) + v];
-            to.corners.extend(corners.map(|corner| [corner, normal, color]));
-            to.numbers.extend([(); 4].map(|()| surfels.numbers[i].clone()));
-            to.triangles.push([begin, begin + 1, begin + 2]);
-            to.triangles.push([begin, begin + 2, begin + 3]);
+            let (half, wide) = (u * 0.5, v * (0.75_f64.sqrt() as f32));
+            for side in [1.0, -1.0] {
+                let sixths =
+                    [at + u * side, at + half * side + wide * side, at - half * side + wide * side];
+                to.corners.extend(sixths.map(|corner| [corner, normal, color]));
+            }
+            to.numbers.extend([(); 6].map(|()| surfels.numbers[i].clone()));
+            to.triangles.extend([2, 3, 4, 5].map(|k| [begin, begin + k - 1, begin + k]));
         }
     }
 
@@ -236,7 +239,7 @@ impl World {
         for (child, shown) in below {
             let surfels = self.surfels_of(child);
             match surfels.filter(|_| self.settings.traversal == Traversal::BottomUp) {
-                Some(surfels) => Self::squares(surfels, shown, pixel, to),
+                Some(surfels) => Self::hexagons(surfels, shown, pixel, to),
                 None => self.node(child, shown, pixel, to),
             }
         }

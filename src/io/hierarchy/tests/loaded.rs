@@ -61,7 +61,11 @@ fn far_away_it_is_its_root() {
     assert!((1..700).contains(&objects.drawn_total()), "{}", objects.drawn_total());
     let pairs = || found.values().iter().zip(expected.values());
     let inside = expected.values().iter().filter(|z| z.is_finite()).count();
-    let holes = pairs().filter(|(a, b)| b.is_finite() && !a.is_finite()).count();
+    // At the outline a picture of discs recedes by a pixel here and there.
+    let within = |i: &usize| [i - 480, i - 1, *i, i + 1, i + 480].map(|i| expected.values()[i]);
+    let hole =
+        |i: &usize| !found.values()[*i].is_finite() && within(i).iter().all(|z| z.is_finite());
+    let holes = (480..480 * 319).filter(hole).count();
     assert!(inside > 100 && holes * 50 <= inside, "{holes} holes of {inside} pixels");
     // Discs are off by less than their radius of 0.7, except where they reach over an outline with
     // something behind it.
