@@ -128,12 +128,23 @@ def test_matrices_are_the_camera_of_eye_and_target() -> None:
         ({"size": (0, 4)}, "a picture of 0 x 4 pixels"),
         ({"eye": "here"}, "eye"),
         ({"file": "none.json"}, "none.json"),
+        ({"stereo": 0.1}, "choose an eye"),
+        ({"stereo": 0, "stereo_eye": "left"}, "give a distance above 0"),
+        ({"stereo_eye": "left"}, "add stereo"),
     ],
 )
 def test_wrong_cameras_are_one_line(given: dict, says: str) -> None:
     with pytest.raises((ValueError, OSError)) as error:
         sr.render(sr.Scene.open("sphere", count=100), sr.Camera(**given))
     assert says in str(error.value) and "line " not in str(error.value), error.value
+
+
+def test_the_eyes_of_a_stereo_pair_stand_beside_the_camera() -> None:
+    scene = sr.Scene(**sphere())
+    eyes = [sr.Camera(eye=(0, 0, 4), target=(0, 0, 0), stereo=0.5, stereo_eye=eye) for eye in ("left", "right")]
+    left, right = sr.render(scene, eyes)
+    assert left.camera.eye[0] == -0.25 and right.camera.eye[0] == 0.25
+    assert sr.compare(left, sr.render(scene, left.camera)).equal
 
 
 def test_cameras_of_a_file(tmp_path: Path) -> None:
