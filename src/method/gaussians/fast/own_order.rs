@@ -30,10 +30,11 @@ struct PixelList {
     keys: Vec<u64>,
 }
 
-/// A splat of a tile, with its place in the order of the indices.
-struct Near<'a> {
+/// A splat of a tile, with its place in the order of the indices. All of it is copied, so that blocks do
+/// not look for it all over memory.
+struct Near {
     splat: GaussianSplat<f32>,
-    beside: &'a Beside<f32>,
+    beside: Beside<f32>,
     place: u32,
 }
 
@@ -43,7 +44,7 @@ pub(super) const BYTES_A_SPLAT: u64 = {
     let fragment = size_of::<Fragment>() + size_of::<u64>();
     // The largest tile has 64 pixels a side.
     let row = 64 / SIDE as usize * size_of::<u32>();
-    (size_of::<Near<'_>>() + 2 * (row + LANES * fragment)) as u64
+    (size_of::<Near>() + 2 * (row + LANES * fragment)) as u64
 };
 
 /// The blocks of a tile.
@@ -51,10 +52,10 @@ pub(super) fn blend(blending: &Blending<'_, f32>, places: &[usize], rect: Rect) 
     spend(Work::Blend);
     let splats = blending.splats;
     let near = |&place: &usize| {
-        let (splat, beside) = (*splats.at(place), splats.beside(place)?);
+        let (splat, beside) = (*splats.at(place), *splats.beside(place)?);
         Some(Near { splat, beside, place: place as u32 })
     };
-    let mut all: Vec<Near<'_>> = places.iter().filter_map(near).collect();
+    let mut all: Vec<Near> = places.iter().filter_map(near).collect();
     // Fragments that come about in order are sorted fast; the order of the lists decides nothing.
     all.sort_unstable_by_key(|near| (ordered_f32(near.splat.depth), near.place));
     let limits = Limits::new(blending.source.settings);
@@ -82,7 +83,7 @@ pub(super) fn blend(blending: &Blending<'_, f32>, places: &[usize], rect: Rect) 
 }
 
 /// Lists, for each block of the row that begins at line `y`, the splats whose bounds it touches.
-fn list_row(row: &mut [Vec<u32>], all: &[Near<'_>], (rect, y): (Rect, u32)) {
+fn list_row(row: &mut [Vec<u32>], all: &[Near], (rect, y): (Rect, u32)) {
     row.iter_mut().for_each(Vec::clear);
     let line = Rect { y0: y, y1: y + SIDE, ..rect };
     for (index, near) in (0..).zip(all) {
@@ -110,7 +111,7 @@ impl PixelList {
     }
 
     /// Sorts the fragments. Few have the same depth.
-    fn sort(&mut self, all: &[Near<'_>]) {
+    fn sort(&mut self, all: &[Near]) {
         let Self { fragments, keys } = self;
         keys.sort_unstable();
         for tied in keys.chunk_by_mut(|a, b| a >> 32 == b >> 32).filter(|tied| tied.len() > 1) {
@@ -126,11 +127,7 @@ impl PixelList {
 }
 
 /// Sorts the fragments of a pixel and blends them.
-fn blended(
-    blending: &Blending<'_, f32>,
-    all: &[Near<'_>],
-    list: &mut PixelList,
-) -> GaussianPixel<f32> {
+fn blended(blending: &Blending<'_, f32>, all: &[Near], list: &mut PixelList) -> GaussianPixel<f32> {
     list.sort(all);
     let mut pixel = GaussianPixel::EMPTY;
     for Fragment { depth, alpha, splat } in list.iter() {
@@ -146,7 +143,7 @@ vectorized!(
     /// Lists the fragments of a block, which are of some of the tile's splats.
     fn list(
         lists: &mut [PixelList; LANES],
-        (all, some): (&[Near<'_>], &[u32]),
+        (all, some): (&[Near], &[u32]),
         (limits, projector): (&Limits, &GaussianProjector<f32>),
         (rect, corner, opaque): (Rect, (u32, u32), Option<&Lanes>),
     ) {
@@ -156,7 +153,7 @@ vectorized!(
         let (u, v) = (each(|i| projector.ray(pixel(i))[0]), each(|i| projector.ray(pixel(i))[1]));
         for &index in some {
             let near = &all[index as usize];
-            let found = match near.beside {
+            let found = match &near.beside {
                 Beside::Solid(solid) => {
                     let found = fragments::<FUSED>(&near.splat, limits, corner, &own);
                     found.map(|(alpha, takes)| (alpha, takes, depths(projector, solid, &u, &v)))
