@@ -352,7 +352,13 @@ class Scene:
         Raises `OSError` if a file cannot be read, `ValueError` if it is not what it should be.
         """
         with calling(progress) as how:
-            return cls._of(_splatref.Scene.open(how, os.fspath(name), count, seed))
+            return cls._of(_splatref.Scene.open(how, os.fspath(name), count, seed, False))
+
+    @classmethod
+    def _in_parts(cls, name: Path) -> Scene:
+        """A scene that can only be drawn: each picture reads what it shows of a folder of blocks."""
+        with calling(None) as how:
+            return cls._of(_splatref.Scene.open(how, os.fspath(name), None, None, True))
 
     @classmethod
     def parse(cls, text: str, *, folder: Path = ".", name: str = "scene", progress: Optional[bool] = None) -> Scene:

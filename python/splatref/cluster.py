@@ -89,7 +89,7 @@ def _once(job: _Job, make: Callable[[_Job], Any]) -> Any:
 
 
 def _scene(job: _Job) -> Scene:
-    scene: Scene = _once(job, lambda job: job.source() if callable(job.source) else Scene.open(job.source))
+    scene: Scene = _once(job, lambda job: job.source() if callable(job.source) else Scene._in_parts(job.source))
     return scene
 
 

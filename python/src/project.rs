@@ -40,7 +40,7 @@ pub(crate) fn project<'py>(
     }
     let scene = scene.get();
     let bytes = call(py, &how, |exec, show| {
-        let setup = Setup::placed(scene, &file, exec)?;
+        let setup = Setup::placed(scene, &file, None, exec)?;
         setup.method.check_scene(setup.scene())?;
         show("projecting", 0, 0);
         let records = setup.method.records(setup.scene(), &setup.camera, exec);

@@ -101,14 +101,15 @@ pub(crate) fn render<'py>(
         cameras.iter().map(|one| choices.on(&scene.get().file, one.as_ref().map(Bound::get)));
     let files: Vec<SceneFile> = cameras.collect::<PyResult<_>>()?;
     let (scene, mut seen) = (scene.get(), state.map(|state| state.get().0.clone()));
+    let region = region.map(|[x0, y0, x1, y1]| Rect { x0, y0, x1, y1 });
     let drawn = call(py, &how, |exec, show| {
         let mut all = Vec::new();
         let mut files = files.iter().enumerate().peekable();
         while let Some((done, file)) = files.next() {
-            let setup = Arc::new(Setup::new(scene, file, exec, show)?);
+            let setup = Arc::new(Setup::new(scene, file, region, exec, show)?);
             show("rendering", done as u64, 0);
             let mut session = setup.session(exec)?;
-            session.set_region(region.map(|[x0, y0, x1, y1]| Rect { x0, y0, x1, y1 }))?;
+            session.set_region(region)?;
             session.resume(seen.take());
             all.push(draw(&setup, &mut session, setup.camera)?);
             // Further cameras use the same session if they see the same scene.
@@ -165,7 +166,7 @@ pub(crate) fn resolve<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let file = choices.on(&scene.get().file, camera.as_ref().map(Bound::get))?;
     let scene = scene.get();
-    let setup = call(py, &how, |exec, _| Setup::placed(scene, &file, exec))?;
+    let setup = call(py, &how, |exec, _| Setup::placed(scene, &file, None, exec))?;
     camera_numbers(py, &setup, &setup.camera)
 }
 
@@ -277,7 +278,7 @@ pub(crate) fn explain(
     let file = choices.on(&scene.get().file, camera.as_ref().map(Bound::get))?;
     let scene = scene.get();
     call(py, &how, |exec, show| {
-        let setup = Setup::new(scene, &file, exec, show)?;
+        let setup = Setup::new(scene, &file, None, exec, show)?;
         setup.check_kept("explain computes in f32 or f64")?;
         explained(&setup, &setup.session(exec)?, pixel)
     })
@@ -307,7 +308,7 @@ pub(crate) fn truth<'py>(
     let file = choices.on(&scene.get().file, camera.as_ref().map(Bound::get))?;
     let scene = scene.get();
     let truth = call(py, &how, |exec, show| {
-        let setup = Setup::new(scene, &file, exec, show)?;
+        let setup = Setup::new(scene, &file, None, exec, show)?;
         let camera = &setup.camera;
         match &*scene.content {
             Content::Arrays(scene) => of_points(scene, (camera, &[]), exec, show),

@@ -116,8 +116,12 @@ impl Splats<'_> {
     }
 }
 
-fn of_file(py: Python<'_>, how: &How, file: SceneFile) -> PyResult<Scene> {
-    let loaded = call(py, how, |exec, show| file.load_outlined(exec, show))?;
+/// Loads a scene file. In parts, of a folder of blocks nothing is read except its index.
+fn of_file(py: Python<'_>, how: &How, file: SceneFile, parts: bool) -> PyResult<Scene> {
+    let loaded = call(py, how, |exec, show| match parts {
+        true => file.load_outlined(exec, show),
+        false => file.load_for_views(exec, show),
+    })?;
     let dropped = loaded.dropped.reasons();
     let warnings = loaded.warnings.clone();
     let content = Arc::new(Content::File(Box::new(loaded)));
@@ -135,7 +139,7 @@ fn environment(file: &SceneFile, exec: &Exec) -> splatref::Result<Option<Environ
 
 #[pymethods]
 impl Scene {
-    /// Opens a scene by its name.
+    /// Opens a scene by its name. In parts, it can only be drawn.
     #[staticmethod]
     fn open(
         py: Python<'_>,
@@ -143,9 +147,10 @@ impl Scene {
         name: PathBuf,
         count: Option<usize>,
         seed: Option<u64>,
+        parts: bool,
     ) -> PyResult<Self> {
         let file = SceneFile::open_with(name, count, seed).map_err(raised)?;
-        of_file(py, &how, file)
+        of_file(py, &how, file, parts)
     }
 
     /// Parses the text of a scene file; `path` is where it would stand.
@@ -153,7 +158,7 @@ impl Scene {
     fn parse(py: Python<'_>, how: How, text: &str, path: PathBuf) -> PyResult<Self> {
         let mut file = SceneFile::parse(text, &path).map_err(raised)?;
         read_views(&mut file).map_err(raised)?;
-        of_file(py, &how, file)
+        of_file(py, &how, file, false)
     }
 
     /// Takes arrays. `text` has the lights, the material and the environment as a scene file.

@@ -1,7 +1,7 @@
 //! A scene, a camera and a method together: what a picture or a verdict is made of.
 
 use crate::scene::{Content, Scene};
-use splatref::frame::Exec;
+use splatref::frame::{Exec, Rect};
 use splatref::io::scene_file::{OutputSettings, Ready, SceneFile};
 use splatref::method::{Method, Session};
 use splatref::progress::Progress;
@@ -27,10 +27,25 @@ enum Place {
 }
 
 impl Setup {
-    /// Places a scene before the camera of a scene file.
-    pub(crate) fn placed(scene: &Scene, file: &SceneFile, exec: &Exec) -> Result<Self> {
+    /// Places a scene before the camera of a scene file. Of a scene in parts, reads what a region of the
+    /// picture shows, or all if the method needs it.
+    pub(crate) fn placed(
+        scene: &Scene,
+        file: &SceneFile,
+        region: Option<Rect>,
+        exec: &Exec,
+    ) -> Result<Self> {
         let (method, output) = (file.method.method()?, file.output);
         let (place, camera) = match &*scene.content {
+            Content::File(loaded) if loaded.is_in_parts() => {
+                let mut ready = file.ready_of(loaded.as_ref().clone(), exec)?;
+                match ready.part(region, exec)? {
+                    Some(part) => ready.loaded.scene = part,
+                    None => ready = file.ready(exec, &|_, _, _| ())?,
+                }
+                let camera = ready.camera;
+                (Place::Own(Box::new(ready)), camera)
+            }
             Content::File(loaded) if loaded.scene.objects.is_some() => {
                 let ready = file.ready_of(loaded.as_ref().clone(), exec)?;
                 let camera = ready.camera;
@@ -48,10 +63,11 @@ impl Setup {
     pub(crate) fn new(
         scene: &Scene,
         file: &SceneFile,
+        region: Option<Rect>,
         exec: &Exec,
         show: Progress<'_>,
     ) -> Result<Self> {
-        let mut setup = Self::placed(scene, file, exec)?;
+        let mut setup = Self::placed(scene, file, region, exec)?;
         let method = setup.method;
         let grouping = file.grouping(&method)?;
         let Some(default) = method.grouping() else { return Ok(setup) };

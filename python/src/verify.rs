@@ -100,7 +100,7 @@ pub(crate) fn verify(
     }
     let scene = scene.get();
     call(py, &how, |exec, show| {
-        let setup = Setup::new(scene, &file, exec, show)?;
+        let setup = Setup::new(scene, &file, None, exec, show)?;
         let session = setup.session(exec)?;
         let mut client = described.client(setup.method.stages(), setup.camera.size(), exec)?;
         client.rounding = promise.unwrap_or(client.rounding);

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import signal
+import subprocess
 from pathlib import Path
 from typing import Any, Iterator
 
@@ -38,6 +39,21 @@ def test_every_division_has_the_bytes_of_the_whole(client: Any, method: str, reg
         picture.save(tmp_path / f"{name}.exr")
     assert (tmp_path / "whole.exr").read_bytes() == (tmp_path / "joined.exr").read_bytes()
     assert joined.tally["drawn"] > 0 and joined.settings == whole.settings
+
+
+@pytest.mark.parametrize("method", ["ewa", "single-pass", "pyramid"])
+def test_a_tiled_folder_is_drawn_as_its_file(client: Any, method: str, program: Path, tmp_path: Path) -> None:
+    cloud, folder = tmp_path / "ball.ply", tmp_path / "ball"
+    run = lambda *words: subprocess.run([program, *words], check=True, capture_output=True)  # noqa: E731
+    run("surfels", ROOT / "golden" / "unoriented.ply", "-o", cloud)
+    run("tile", cloud, "-o", folder)
+    scene = sr.Scene.open(folder)
+    how = {"method": method, "stages": True}
+    whole = sr.render(sr.Scene.open(cloud), CAMERA, **how)
+    assert scene.count == sr.Scene.open(cloud).count > 0 and whole.tally["drawn"] > 0
+    for picture in (sr.render(scene, CAMERA, **how), cluster.render(folder, CAMERA, client=client, regions=3, **how)):
+        assert all(np.array_equal(picture[name], whole[name], equal_nan=True) for name in whole)
+    assert sr.verify(scene, CAMERA, whole, method=method).right
 
 
 def test_a_worker_that_dies_changes_nothing(client: Any, tmp_path: Path) -> None:

@@ -100,6 +100,15 @@ impl SceneFile {
         self.load_for(Purpose::Parts, exec, progress)
     }
 
+    /// [`SceneFile::load`] to draw views: of a hierarchy it reads the index and the bounds, and no file of
+    /// a node. A folder of [blocks](crate::io::blocks) is read as a whole.
+    ///
+    /// # Errors
+    /// As [`SceneFile::load`], and as [`Hierarchy::outlined`].
+    pub fn load_for_views(&self, exec: &Exec, progress: Progress<'_>) -> Result<Loaded> {
+        self.load_for(Purpose::View, exec, progress)
+    }
+
     /// [`SceneFile::load`] to choose [candidates](mod@crate::source::candidates). Every model is
     /// drawn as polygons, in its place and colour. Vertices keep their opacities and these [further
     /// properties](crate::io::ply::properties). An opacity of the model replaces the opacities of

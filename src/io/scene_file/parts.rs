@@ -120,6 +120,13 @@ impl SceneFile {
 }
 
 impl Loaded {
+    /// Whether the scene is a folder of [blocks] of which nothing is read yet except its index: then
+    /// [`Ready::part`] reads what a picture shows.
+    #[must_use]
+    pub fn is_in_parts(&self) -> bool {
+        self.blocks.is_some()
+    }
+
     /// Takes the index of a folder of blocks, and none of its surfels.
     pub(super) fn read_index(&mut self, blocks: Blocks, name: String, exec: &Exec) -> Result<()> {
         let (surfels, excerpt) = blocks.nothing(exec)?;
