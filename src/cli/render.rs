@@ -182,11 +182,12 @@ pub(super) fn run(args: &Args) -> Ended {
     let destination = args.destination(&file)?;
     let pair = args.take_pair(&mut file)?;
     let frames = args.sequence(&file)?;
+    if args.target_ms.is_some() && frames.is_none() {
+        let what = "--target-ms needs a sequence; give --frames, --turntable or several --cameras";
+        return Err(Error::Usage(what.into()));
+    }
     if frames.is_some() || pair {
         return several(args, &destination, file, (frames, pair), &exec);
-    }
-    if args.target_ms.is_some() {
-        return Err(no_sequence());
     }
     let picture = destination.place(&file, "")?;
     let mut ready = draw::ready_in_parts(&file, &exec)?;
@@ -244,24 +245,15 @@ fn several(
     (frames, pair): (Option<Range<u32>>, bool),
     exec: &Exec,
 ) -> Ended {
-    match &frames {
-        Some(frames) => {
-            file.check_frame(frames.end - 1)?;
-            file.frame = frames.start;
-        }
-        None if args.target_ms.is_some() => return Err(no_sequence()),
-        None => {}
+    if let Some(frames) = &frames {
+        file.check_frame(frames.end - 1)?;
+        file.frame = frames.start;
     }
     let size = file.refinement.surfel_size;
     let walk = |target| Walk::new(target, size, &destination.place(&file, "")?);
     let walk = args.target_ms.map(walk).transpose()?;
     let shots = sequence::shots(destination, &file, frames, pair)?;
     sequence::render(destination, &file, (&shots, walk), exec)
-}
-
-fn no_sequence() -> Error {
-    let what = "--target-ms needs a sequence; give --frames, --turntable or several --cameras";
-    Error::Usage(what.into())
 }
 
 /// What a part holds by a method whose other stages need the whole picture.
