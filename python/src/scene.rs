@@ -14,7 +14,7 @@ use splatref::scene::gaussians::{Encoding, UNDRAWABLE, coefficients};
 use splatref::scene::{self, Cloud, Environment, GaussianArrays, Gaussians, Groups};
 use splatref::source::derive::{self, Derive};
 use std::path::PathBuf;
-use std::sync::{Arc, Mutex};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// What was loaded or given.
 pub(crate) enum Content {
@@ -36,6 +36,8 @@ impl Content {
 pub(crate) struct Scene {
     pub(crate) file: SceneFile,
     pub(crate) content: Arc<Content>,
+    /// All of a scene in parts, once a method needs it.
+    whole: Mutex<Option<Arc<Content>>>,
     /// The groups of the last method that drew groups, and how they were made.
     pub(crate) groups: Mutex<Option<(String, Groups)>>,
     #[pyo3(get)]
@@ -125,7 +127,26 @@ fn of_file(py: Python<'_>, how: &How, file: SceneFile, parts: bool) -> PyResult<
     let dropped = loaded.dropped.reasons();
     let warnings = loaded.warnings.clone();
     let content = Arc::new(Content::File(Box::new(loaded)));
-    Ok(Scene { file, content, groups: Mutex::new(None), warnings, dropped })
+    Ok(Scene {
+        file,
+        content,
+        whole: Mutex::default(),
+        groups: Mutex::new(None),
+        warnings,
+        dropped,
+    })
+}
+
+impl Scene {
+    /// All of a scene in parts, read once.
+    pub(crate) fn whole(&self, exec: &Exec) -> splatref::Result<Arc<Content>> {
+        let mut whole = self.whole.lock().unwrap_or_else(PoisonError::into_inner);
+        if let Some(whole) = &*whole {
+            return Ok(whole.clone());
+        }
+        let loaded = self.file.load_for_views(exec, &|_, _, _| ())?;
+        Ok(whole.insert(Arc::new(Content::File(Box::new(loaded)))).clone())
+    }
 }
 
 /// The environment that a scene file chooses.
@@ -191,7 +212,14 @@ impl Scene {
             Ok((scene, derived.dropped.reasons()))
         })?;
         let content = Arc::new(Content::Arrays(Box::new(scene)));
-        Ok(Self { file, content, groups: Mutex::new(None), warnings: Vec::new(), dropped })
+        Ok(Self {
+            file,
+            content,
+            whole: Mutex::default(),
+            groups: Mutex::new(None),
+            warnings: Vec::new(),
+            dropped,
+        })
     }
 
     /// Takes arrays of Gaussians. `text` has the environment and the surface as a scene file.
@@ -220,7 +248,14 @@ impl Scene {
             Ok((scene, if dropped == 0 { String::new() } else { reasons() }))
         })?;
         let content = Arc::new(Content::Arrays(Box::new(scene)));
-        Ok(Self { file, content, groups: Mutex::new(None), warnings: Vec::new(), dropped })
+        Ok(Self {
+            file,
+            content,
+            whole: Mutex::default(),
+            groups: Mutex::new(None),
+            warnings: Vec::new(),
+            dropped,
+        })
     }
 
     #[getter]

@@ -39,12 +39,14 @@ impl Setup {
         let (place, camera) = match &*scene.content {
             Content::File(loaded) if loaded.is_in_parts() => {
                 let mut ready = file.ready_of(loaded.as_ref().clone(), exec)?;
-                match ready.part(region, exec)? {
-                    Some(part) => ready.loaded.scene = part,
-                    None => ready = file.ready(exec, &|_, _, _| ())?,
-                }
                 let camera = ready.camera;
-                (Place::Own(Box::new(ready)), camera)
+                match ready.part(region, exec)? {
+                    Some(part) => {
+                        ready.loaded.scene = part;
+                        (Place::Own(Box::new(ready)), camera)
+                    }
+                    None => (Place::Shared(scene.whole(exec)?), camera),
+                }
             }
             Content::File(loaded) if loaded.scene.objects.is_some() => {
                 let ready = file.ready_of(loaded.as_ref().clone(), exec)?;
