@@ -265,7 +265,7 @@ impl<R: Exact> Blending<'_, R> {
 
     /// The pixel with one more fragment.
     #[inline(always)]
-    pub(super) fn add(
+    fn add(
         &self,
         pixel: GaussianPixel<R>,
         splat: &GaussianSplat<R>,

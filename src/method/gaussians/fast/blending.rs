@@ -3,7 +3,7 @@
 use crate::frame::{NO_ID, Rect};
 use crate::method::fast::tile::{BlockGrid, SIDE};
 use crate::method::gaussians::Settings;
-use crate::method::gaussians::blending::{GaussianPixel, Rules};
+use crate::method::gaussians::blending::Rules;
 use crate::method::gaussians::splats::GaussianSplat;
 use crate::number::Real;
 use crate::number::elementary::exp_f32_in_range;
@@ -47,15 +47,12 @@ impl Block {
         alive: [u32::MAX; LANES],
     };
 
-    /// Replaces a pixel by one that is finished.
-    pub(super) fn set(&mut self, i: usize, pixel: GaussianPixel<f32>) {
-        for (lanes, part) in self.color.iter_mut().zip(pixel.blend.color) {
-            lanes[i] = part;
+    /// The block when all splats are blended.
+    pub(super) fn finish(&mut self) {
+        for i in 0..LANES {
+            let mean = self.moment[i] / self.alpha[i];
+            self.expected[i] = if self.alpha[i] > 0.0 { mean } else { f32::INFINITY };
         }
-        self.through[i] = pixel.blend.through;
-        (self.expected[i], self.median[i]) = (pixel.expected, pixel.median);
-        (self.depth[i], self.id[i], self.heaviest[i]) = (pixel.depth, pixel.id, pixel.heaviest);
-        self.count[i] = pixel.count.into();
     }
 }
 
@@ -122,12 +119,7 @@ impl Blocks {
 
     /// The blocks when all splats are blended.
     pub(super) fn finished(&mut self) -> &[Block] {
-        for block in &mut self.all {
-            for i in 0..LANES {
-                let mean = block.moment[i] / block.alpha[i];
-                block.expected[i] = if block.alpha[i] > 0.0 { mean } else { f32::INFINITY };
-            }
-        }
+        self.all.iter_mut().for_each(Block::finish);
         &self.all
     }
 }
@@ -166,7 +158,8 @@ vectorized!(
                 let seen = before(&block.alive, opaque, |_| splat.depth);
                 let fragments = fragments::<FUSED>(splat, limits, corner, &seen);
                 if let Some((alpha, takes)) = fragments {
-                    block.add(splat, limits, (&alpha, &takes), |_| splat.depth);
+                    let own = (|_| splat.index, |_| splat.color, |_| splat.depth);
+                    block.add(limits, (&alpha, &takes), own);
                 }
             },
         );
@@ -252,15 +245,18 @@ pub(super) fn alphas<const FUSED: bool>(
 }
 
 impl Block {
-    /// Blends the fragments of a splat in the lanes that take it, with their depths. Numbers that few
-    /// splats change are touched only by those.
+    /// Blends a fragment in each lane that takes one: of this splat, with this colour and depth. Numbers
+    /// that few fragments change are touched only by those.
     #[inline(always)]
     pub(super) fn add(
         &mut self,
-        splat: &GaussianSplat<f32>,
         limits: &Limits,
         (alpha, takes): (&Lanes, &Mask),
-        depth: impl Fn(usize) -> f32 + Copy,
+        (index, color, depth): (
+            impl Fn(usize) -> u32,
+            impl Fn(usize) -> [f32; 3] + Copy,
+            impl Fn(usize) -> f32 + Copy,
+        ),
     ) {
         let before = self.through;
         let weight = each(|i| before[i] * alpha[i]);
@@ -274,22 +270,21 @@ impl Block {
         self.alive = each(|i| self.alive[i] & !(takes[i] & ends[i]));
         self.through = select(&drawn, &through, &before);
         let adds = mask(|i| (drawn[i] != 0) & (weight[i] > 0.0));
-        let [r, g, b] = splat.color;
-        self.color[0] = sum(&adds, &self.color[0], &weight, |_| r);
-        self.color[1] = sum(&adds, &self.color[1], &weight, |_| g);
-        self.color[2] = sum(&adds, &self.color[2], &weight, |_| b);
+        self.color[0] = sum(&adds, &self.color[0], &weight, |i| color(i)[0]);
+        self.color[1] = sum(&adds, &self.color[1], &weight, |i| color(i)[1]);
+        self.color[2] = sum(&adds, &self.color[2], &weight, |i| color(i)[2]);
         self.alpha = sum(&adds, &self.alpha, &weight, |_| 1.0);
         self.moment = sum(&drawn, &self.moment, &weight, depth);
         // There are fewer than 2^32 splats.
         self.count = each(|i| self.count[i] + (drawn[i] & 1));
-        self.mark(splat.index, (&before, &weight, &drawn), depth);
+        self.mark(index, (&before, &weight, &drawn), depth);
     }
 
-    /// Notes the splat in the lanes where it is the first, the heaviest or the median.
+    /// Notes the fragment in the lanes where it is the first, the heaviest or the median.
     #[inline(always)]
     fn mark(
         &mut self,
-        index: u32,
+        index: impl Fn(usize) -> u32,
         (before, weight, drawn): (&Lanes, &Lanes, &Mask),
         depth: impl Fn(usize) -> f32 + Copy,
     ) {
@@ -300,12 +295,12 @@ impl Block {
         let (id, heaviest, most) = (self.id, self.heaviest, self.weight);
         let first = mask(|i| (drawn[i] != 0) & (id[i] == NO_ID));
         if any(&first) {
-            self.id = select_u32(&first, &[index; LANES], &id);
+            self.id = select_u32(&first, &each(&index), &id);
             self.depth = select(&first, &each(depth), &self.depth);
         }
         let heavier = mask(|i| (drawn[i] != 0) & ((heaviest[i] == NO_ID) | (weight[i] > most[i])));
         if any(&heavier) {
-            self.heaviest = select_u32(&heavier, &[index; LANES], &heaviest);
+            self.heaviest = select_u32(&heavier, &each(index), &heaviest);
             self.weight = select(&heavier, weight, &most);
         }
     }

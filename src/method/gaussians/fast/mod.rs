@@ -2,9 +2,10 @@
 //!
 //! A tile gathers its splats in their order. Each splat is blended into the blocks that it may touch;
 //! a block whose pixels are all done is left out, and the tile ends when all of its blocks are. In an
-//! order of each pixel's own, a block lists all fragments first, and each pixel then sorts its own.
-//! Discs that meet rays evaluate the definition's own function in each lane. With a surface, each block
-//! has its depths, and a lane leaves out what is behind its own.
+//! order of each pixel's own, a block lists all fragments first, each pixel sorts its own, and the block
+//! then blends the first of each pixel, the second of each, and so on. Discs that meet rays evaluate the
+//! definition's own function in each lane. With a surface, each block has its depths, and a lane leaves
+//! out what is behind its own.
 
 mod blending;
 mod discs;
@@ -58,7 +59,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
         if places.is_empty() {
             tile.clear();
         } else if own {
-            tile.store(&own_order::blend(&blending, &places, rect));
+            tile.store(&own_order::blend(&blending, places, rect));
         } else {
             let mut blocks = Blocks::new(rect, blending.source.surface());
             blend(&blending, &places, &mut blocks);
