@@ -51,7 +51,8 @@ pub(super) fn scene(loaded: &Loaded) {
     }
     line("  dropped", dropped(&loaded.dropped, loaded.dropped_primitives));
     offset(scene.offset);
-    bounds(scene.bounds());
+    let (low, high) = scene.bounds();
+    bounds(low, high);
     radius(&scene.surfels);
 }
 
@@ -64,7 +65,8 @@ fn gaussians_of(scene: &Scene, gaussians: &Gaussians, report: &GaussianReport) {
     line("  colours", gaussians.encoding().name());
     line("  dropped", dropped_gaussians(report.dropped));
     offset(scene.offset);
-    bounds(scene.bounds());
+    let (low, high) = scene.bounds();
+    bounds(low, high);
 }
 
 /// How many Gaussians were dropped, and why.
@@ -195,7 +197,7 @@ pub(super) fn offset(offset: DVec3) {
 }
 
 /// Prints the bounding box.
-pub(super) fn bounds((low, high): (Vec3, Vec3)) {
+pub(super) fn bounds(low: Vec3, high: Vec3) {
     let [low, high] = [low, high].map(|corner| point(corner.to_array().map(f64::from)));
     line("  bounds", format!("{low} to {high}"));
 }

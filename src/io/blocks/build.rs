@@ -61,7 +61,7 @@ pub(in crate::io) fn build(
     let budget = (memory::left() / 2).clamp(LEAST, MOST);
     memory::ask(budget, || "sorting surfels".to_owned())?;
     let mut sorter = Sorter::new(folder, kind.size(), budget as usize).map_err(io)?;
-    let index = survey(input, whole, (&mut sorter, folder), exec, progress)?;
+    let index = survey(input, whole, &mut sorter, folder, exec, progress)?;
     let index = index.ok_or_else(|| {
         Error::Invalid("the scene changed while it was read; run the command again".into())
     })?;
@@ -112,7 +112,8 @@ fn measure(input: &mut Input, exec: &Exec, progress: Progress<'_>) -> Result<Who
 fn survey(
     input: &mut Input,
     whole: Whole,
-    (sorter, folder): (&mut Sorter, &Path),
+    sorter: &mut Sorter,
+    folder: &Path,
     exec: &Exec,
     progress: Progress<'_>,
 ) -> Result<Option<Index>> {

@@ -277,8 +277,8 @@ impl SceneFile {
         let camera = match choice.view {
             Some(view) => {
                 let place = Place::of_scene(scene);
-                let pose = (view, choice.offset, choice.other_eye);
-                place.camera(pose, [width, height], self.lens())?
+                let CameraChoice { offset, other_eye, .. } = *choice;
+                place.camera(view, offset, other_eye, [width, height], self.lens())?
             }
             None => self.posed(scene, [width, height])?,
         };
@@ -295,8 +295,8 @@ impl SceneFile {
             near: near.or(view.near),
             ..CameraChoice::default()
         };
-        let pose = (view.view, view.offset, view.other_eye);
-        let camera = place.camera(pose, choice.picture_size(), intrinsics.lens());
+        let (size, lens) = (choice.picture_size(), intrinsics.lens());
+        let camera = place.camera(view.view, view.offset, view.other_eye, size, lens);
         let camera = camera.and_then(|camera| choice.open(camera));
         camera.map_err(|error| Error::format(path, format!("view {}: {error}", view.name)))
     }
@@ -371,7 +371,9 @@ impl Place {
     /// [`SceneFile::camera`] states.
     fn camera(
         &self,
-        (mut view, offset, mut other_eye): (DMat4, DVec3, Option<f64>),
+        mut view: DMat4,
+        offset: DVec3,
+        mut other_eye: Option<f64>,
         [width, height]: [u32; 2],
         lens: Lens,
     ) -> Result<Camera> {
