@@ -68,7 +68,7 @@ impl Marks {
 
     /// Turns the marks of a whole picture into the findings about a stage.
     pub(crate) fn whole(self, stage: &'static str, planes: Vec<&'static str>) -> StageVerdict {
-        whole(Some(self.rect), (stage, planes), vec![self])
+        whole(Some(self.rect), stage, planes, vec![self])
     }
 
     /// Adds the findings of a part of the picture: at each pixel the larger error, and all doubts.
@@ -192,7 +192,7 @@ pub(crate) fn stage_verdicts<const N: usize>(
     }
     let all = stages.into_iter().zip(of_stages).collect();
     let picture = job.part.is_none().then(|| job.picture());
-    job.exec.ordered(all, |(stage, parts)| whole(picture, stage, parts))
+    job.exec.ordered(all, |((stage, planes), parts)| whole(picture, stage, planes, parts))
 }
 
 /// Turns the marks of the parts of a picture, which share no pixel, into the findings about a
@@ -200,7 +200,8 @@ pub(crate) fn stage_verdicts<const N: usize>(
 /// other.
 fn whole(
     picture: Option<Rect>,
-    (stage, planes): (&'static str, Vec<&'static str>),
+    stage: &'static str,
+    planes: Vec<&'static str>,
     parts: Vec<Marks>,
 ) -> StageVerdict {
     let pixels = parts.iter().map(|part| part.found.len()).sum::<usize>() as u32;

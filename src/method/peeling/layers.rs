@@ -124,7 +124,7 @@ impl<'a, R: Exact> Peeling<'a, R> {
         if nearest.iter().all(|nearest| nearest.id == NO_ID) {
             return None;
         }
-        let sums = sums(splats, (self.surfels, self.buffers), &nearest, beyond);
+        let sums = sums(splats, self.surfels, self.buffers, &nearest, beyond);
         let found = pixels(splats.rect).zip(nearest.iter().zip(&sums));
         Some(found.map(|(at, (nearest, sums))| self.resolve(nearest, sums, at)).collect())
     }

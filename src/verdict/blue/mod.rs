@@ -123,7 +123,7 @@ impl<'a, P: Profile> Judge<'a, P> {
             .fragments
             .of_tile((tile, &rect), self.client_planes.depth_test, |at| self.client_planes.id(at));
         for ((pixel, at), own) in counted(rect).zip(&all) {
-            let doubts = self.judge_pixel((pixel, at), own, marks);
+            let doubts = self.judge_pixel(pixel, at, own, marks);
             counts.covered += u64::from(!own.is_empty());
             counts.undecided += u64::from(doubts & Doubt::OF_SUMS != 0);
             if self.client_planes.id.is_some() {
@@ -136,7 +136,8 @@ impl<'a, P: Profile> Judge<'a, P> {
     /// Judges one pixel, and returns its doubts.
     fn judge_pixel(
         &self,
-        (pixel, at): (usize, (u32, u32)),
+        pixel: usize,
+        at: (u32, u32),
         all: &[PossibleFragment<P>],
         marks: &mut [Marks; 2],
     ) -> u8 {

@@ -289,7 +289,7 @@ impl<'a, P: Profile> Scenery<'a, P> {
         let planes = SamplePlanes::of_nearest(client, job.scene, [depth, id]);
         let everything = |_| true;
         let points =
-            AllPossible::<P>::drawn_where(&job, (cull, Snap::default()), Some(limits), everything);
+            AllPossible::<P>::drawn_where(&job, cull, Snap::default(), Some(limits), everything);
         let names = planes.names();
         let marks = match names.is_empty() {
             true => watch.picture(&job),
@@ -363,14 +363,14 @@ impl<P: Profile> LaterPasses<'_, P> {
         for (pixel, at) in counted(rect) {
             let sums = sums.continuations(pixel);
             let others = beside.others(pixel);
-            let shown = self.shown((tile, at), nearest[pixel], others, &mut rest[1]);
+            let shown = self.shown(tile, at, nearest[pixel], others, &mut rest[1]);
             let certain = matches!(sums, Continuations::One(_));
             covered += u64::from(shown.depth.middle.is_finite() || !certain);
             if !others.is_empty() {
-                self.judge_beside((pixel, at), &beside, &shown, &sums, rest);
+                self.judge_beside(pixel, at, &beside, &shown, &sums, rest);
                 continue;
             }
-            let taken = self.pixels.judge((pixel, at), &shown, &sums, rest);
+            let taken = self.pixels.judge(pixel, at, &shown, &sums, rest);
             if let (Continuations::Several(_, open), Some(taken)) = (&sums, taken) {
                 shifts.take_all(open, taken);
             }
@@ -397,7 +397,8 @@ impl<P: Profile> LaterPasses<'_, P> {
     /// nearer of that polygon and B(i).
     fn shown(
         &self,
-        (tile, at): (usize, (u32, u32)),
+        tile: usize,
+        at: (u32, u32),
         nearest: Nearest<P>,
         others: &[Other<P>],
         marks: &mut Marks,

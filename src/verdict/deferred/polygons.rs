@@ -111,13 +111,14 @@ impl<P: Profile> LaterPasses<'_, P> {
     /// may show.
     pub(super) fn judge_beside(
         &self,
-        (pixel, at): (usize, (u32, u32)),
+        pixel: usize,
+        at: (u32, u32),
         beside: &PolygonTile<P>,
         nearest: &Nearest<P>,
         sums: &Continuations<P>,
         marks: &mut [Marks; 3],
     ) {
-        let shown = self.may_show((pixel, at), beside, nearest, sums);
+        let shown = self.may_show(pixel, at, beside, nearest, sums);
         let several = shown.iter().any(|one| matches!(one, Shown::Splats(_)))
             && shown.iter().any(|one| matches!(one, Shown::Polygon(..)));
         marks[1].at(pixel).doubt(Doubt::Nearer, several);
@@ -140,7 +141,8 @@ impl<P: Profile> LaterPasses<'_, P> {
 
     fn may_show<'s>(
         &self,
-        (pixel, at): (usize, (u32, u32)),
+        pixel: usize,
+        at: (u32, u32),
         beside: &PolygonTile<P>,
         nearest: &Nearest<P>,
         sums: &'s Continuations<P>,

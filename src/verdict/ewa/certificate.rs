@@ -78,7 +78,7 @@ pub(crate) fn judge_among<P: Profile>(
         splats,
         tile,
         |pixel| certificate.least(pixel),
-        |fragment, pixel| certificate.meet((pixel, fragment), fragment.depth(), marks),
+        |fragment, pixel| certificate.meet(pixel, fragment, fragment.depth(), marks),
     );
     certificate.end(marks);
     certificate.nearest()
@@ -134,7 +134,8 @@ impl<'a, P: Profile> Certificate<'a, P> {
     #[inline(always)]
     pub(super) fn meet(
         &self,
-        (pixel, fragment): (usize, &Fragment<'_, P>),
+        pixel: usize,
+        fragment: &Fragment<'_, P>,
         t: Ball<P>,
         marks: &mut Marks,
     ) {
@@ -144,7 +145,7 @@ impl<'a, P: Profile> Certificate<'a, P> {
         if !(claim.open || farther || fragment.is_of(claim.nearest.id)) {
             let (against, mut marks) = (Rival { fragment, t }, marks.at(pixel));
             against.judge(self.tested[pixel], &mut marks);
-            against.judge_tie(claim, (self.client_planes.ties, self.surfels), &mut marks);
+            against.judge_tie(claim, self.client_planes.ties, self.surfels, &mut marks);
         }
     }
 
@@ -361,7 +362,8 @@ impl<P: Profile> Rival<'_, P> {
     fn judge_tie(
         &self,
         claim: &Claim<P>,
-        (ties, surfels): (Ties, &Surfels),
+        ties: Ties,
+        surfels: &Surfels,
         pixel: &mut PixelMarks<'_>,
     ) {
         let Some(id) = claim.nearest.id else { return };

@@ -83,12 +83,12 @@ pub(super) fn verify<P: Profile>(
     budget: f64,
 ) -> Verdict {
     let client_planes = ClientPlanes::new(client);
-    let judge = Judge::<P>::new(job, settings, (client, &client_planes));
+    let judge = Judge::<P>::new(job, settings, client, &client_planes);
     let verdict =
         marks::verdict(job, client_planes.stages(), budget, |tile, marks| judge.judge(tile, marks));
     match &client.records {
         Some(records) => {
-            verdict.after(records::judge::<P>(job, settings, (records, client.supposed)))
+            verdict.after(records::judge::<P>(job, settings, records, client.supposed))
         }
         None => verdict,
     }
@@ -102,7 +102,7 @@ pub(super) fn checks<P: Profile>(
     pixel: (u32, u32),
 ) -> Result<Vec<Check>> {
     let client_planes = ClientPlanes::new(client);
-    let judge = Judge::<P>::new(job, settings, (client, &client_planes));
+    let judge = Judge::<P>::new(job, settings, client, &client_planes);
     let stages = client_planes.stages().map(|(stage, _)| stage);
     marks::checks(job, stages, pixel, |tile, marks| judge.judge(tile, marks))
 }
@@ -121,7 +121,8 @@ impl<'a, P: Profile> Judge<'a, P> {
     fn new(
         job: &Job<'a>,
         settings: &Settings,
-        (client, client_planes): (&Client, &'a ClientPlanes<'a>),
+        client: &Client,
+        client_planes: &'a ClientPlanes<'a>,
     ) -> Self {
         let splats = match client_planes.records {
             Some(records) => records::project(job, settings, records),
@@ -132,7 +133,7 @@ impl<'a, P: Profile> Judge<'a, P> {
                 splats
             }
         };
-        let bands = Bands::new(job, (client_planes.band, client_planes.depth_test), splats.epsilon);
+        let bands = Bands::new(job, client_planes.band, client_planes.depth_test, splats.epsilon);
         let pixels = PixelJudge::new(job, client_planes);
         let right = RightPixels::new(job, client_planes);
         Self { surfels: &job.scene.surfels, client_planes, splats, bands, pixels, right }
@@ -162,7 +163,7 @@ impl<'a, P: Profile> Judge<'a, P> {
                 continue;
             }
             let sums = sums.continuations(pixel);
-            let taken = pixels.judge((pixel, at), &nearest[pixel], &sums, rest);
+            let taken = pixels.judge(pixel, at, &nearest[pixel], &sums, rest);
             if let (Continuations::Several(_, open), Some(taken)) = (&sums, taken) {
                 shifts.take_all(open, taken);
             }

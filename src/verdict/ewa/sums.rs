@@ -80,7 +80,7 @@ pub(super) fn add<'s, 'a, P: Profile>(
         tile,
         |pixel, fragment, depth| {
             if let Some((certificate, marks)) = &mut certificate {
-                certificate.meet((pixel, fragment), depth, marks);
+                certificate.meet(pixel, fragment, depth, marks);
             }
         },
         |pixel, part, asked| {
@@ -351,7 +351,7 @@ fn chosen<P: Profile>(surfels: &Surfels, parts: &[(usize, Part<P>)], choice: u32
         let taken = part.open.is_none() || choice >> bit & 1 == 1;
         bit += u32::from(part.open.is_some());
         if taken {
-            sums.add_opaque(surfels, (part.surfel, part.back), part.weight);
+            sums.add_opaque(surfels, part.surfel, part.back, part.weight);
         }
     }
     sums

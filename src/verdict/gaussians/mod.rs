@@ -141,8 +141,9 @@ impl<'a, P: Profile> Judge<'a, P> {
         let own = PossibleSplats::found(job, &source, client.supposed);
         let (splats, projection) = match &client.gaussian_records {
             Some(records) => {
-                let rules = (&source, client.supposed, client.depth_test);
-                let (splats, projection) = records::judge(job, rules, records, own);
+                let (supposed, depth_test) = (client.supposed, client.depth_test);
+                let (splats, projection) =
+                    records::judge(job, &source, supposed, depth_test, records, own);
                 (splats, Some(projection))
             }
             None => (own, None),
@@ -179,8 +180,8 @@ impl<'a, P: Profile> Judge<'a, P> {
     fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
         let [blending, display] = marks;
         let mut counts = Counts::default();
-        let rules = (&self.source, self.supposed, self.depth_test);
-        let mut walker = Walker::new(rules, &self.splats, (tile, rect));
+        let Self { source, supposed, depth_test, splats, .. } = self;
+        let mut walker = Walker::new(source, *supposed, *depth_test, splats, (tile, rect));
         for y in rect.y0..rect.y1 {
             for (column, at) in counted(Rect { y0: y, y1: y + 1, ..rect }) {
                 let pixel = (y - rect.y0) as usize * rect.columns() + column;
@@ -212,7 +213,7 @@ impl<'a, P: Profile> Judge<'a, P> {
             truth
         };
         let check = |numbers, report: &mut Report<'_>| {
-            self.planes.check((0, &GaussianPixel::PLANES), at, &truth(numbers), report);
+            self.planes.check(0, &GaussianPixel::PLANES, at, &truth(numbers), report);
         };
         let closest = walked.closest(|numbers| worst(|report| check(numbers, report)));
         check(closest, &mut |_, error, fault| pixel.found(error, fault));

@@ -29,15 +29,16 @@ const SIZE: usize = 1024;
 /// of its centre: then the projection is at fault, and not what follows.
 pub(super) fn judge<P: Profile>(
     job: &Job<'_>,
-    rules: (&Source<'_, Ball<P>>, Supposed, Storage),
+    source: &Source<'_, Ball<P>>,
+    supposed: Supposed,
+    depth_test: Storage,
     records: &[GaussianRecord],
     own: Vec<PossibleSplat<P>>,
 ) -> (Vec<PossibleSplat<P>>, StageVerdict) {
-    let (source, supposed, _) = rules;
     let keys = Keys::new(source, &own);
     let chunks = records.chunks(SIZE).collect();
     let found = job.exec.ordered(chunks, |chunk: &[GaussianRecord]| {
-        chunk.iter().map(|record| one(job, (source, supposed), record, &keys)).collect::<Vec<_>>()
+        chunk.iter().map(|record| one(job, source, supposed, record, &keys)).collect::<Vec<_>>()
     });
     let mut marks = Marks::picture(job);
     let mut all = Vec::with_capacity(records.len());
@@ -46,7 +47,7 @@ pub(super) fn judge<P: Profile>(
         all.extend(splat);
     }
     let none = PossibleSplats::new(job, Vec::new(), supposed);
-    let walker = Walker::new(rules, &none, (0, Rect::default()));
+    let walker = Walker::new(source, supposed, depth_test, &none, (0, Rect::default()));
     let has_record = |splat: &PossibleSplat<P>| {
         records.binary_search_by_key(&splat.splat.index, |record| record.index).is_ok()
     };
@@ -82,7 +83,8 @@ impl<P: Profile> Keys<P> {
 /// The splat of a record, if it may touch a pixel, and the worst error in the record.
 fn one<P: Profile>(
     job: &Job<'_>,
-    (source, supposed): (&Source<'_, Ball<P>>, Supposed),
+    source: &Source<'_, Ball<P>>,
+    supposed: Supposed,
     record: &GaussianRecord,
     keys: &Keys<P>,
 ) -> (Option<PossibleSplat<P>>, Worst) {
@@ -97,7 +99,7 @@ fn one<P: Profile>(
     } else {
         not_drawn
     };
-    (recorded((job, source), (record, worst.error > 1.0), &own), worst)
+    (recorded(job, source, record, worst.error > 1.0, &own), worst)
 }
 
 /// The record of an item in balls.

@@ -84,7 +84,7 @@ impl<P: Profile> PossibleSplats<P> {
         let firsts: Vec<usize> = (0..source.len()).step_by(SIZE).collect();
         let batches = job.exec.ordered(firsts, |first| {
             let range = (first..source.len().min(first + SIZE)).filter(near);
-            range.filter_map(|i| possible((job, part), source, supposed, i)).collect::<Vec<_>>()
+            range.filter_map(|i| possible(job, part, source, supposed, i)).collect::<Vec<_>>()
         });
         let mut all: Vec<_> = batches.into_iter().flatten().collect();
         if source.settings.order == Order::Steps {
@@ -157,7 +157,8 @@ fn beside<P: Profile>(
 
 /// An item, if it may be drawn.
 fn possible<P: Profile>(
-    (job, part): (&Job<'_>, Option<Part<'_>>),
+    job: &Job<'_>,
+    part: Option<Part<'_>>,
     source: &Source<'_, Ball<P>>,
     supposed: Supposed,
     i: usize,
@@ -197,8 +198,10 @@ fn possible<P: Profile>(
 /// bounds leave open as much as those of the item itself. In a wrong record the conic may be of another
 /// ellipse, which has bounds of its own.
 pub(super) fn recorded<P: Profile>(
-    (job, source): (&Job<'_>, &Source<'_, Ball<P>>),
-    (record, is_wrong): (&GaussianRecord, bool),
+    job: &Job<'_>,
+    source: &Source<'_, Ball<P>>,
+    record: &GaussianRecord,
+    is_wrong: bool,
     own: &Projected<Ball<P>>,
 ) -> Option<PossibleSplat<P>> {
     let exact = |number: f32| known::<P>(number.into(), 0.0);

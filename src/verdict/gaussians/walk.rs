@@ -48,7 +48,9 @@ pub(super) struct Walker<'a, P: Profile> {
 
 impl<'a, P: Profile> Walker<'a, P> {
     pub(super) fn new(
-        (source, supposed, depth_test): (&'a Source<'a, Ball<P>>, Supposed, Storage),
+        source: &'a Source<'a, Ball<P>>,
+        supposed: Supposed,
+        depth_test: Storage,
         splats: &'a PossibleSplats<P>,
         part: (usize, Rect),
     ) -> Self {

@@ -68,7 +68,7 @@ pub(super) fn verify<P: Profile>(
     let mut verdict = marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks));
     let (rows, there) = (rows(&PeeledLayer::<f32>::PLANES), job.there(Keep::Stages));
     let layers = 1..client_planes.layers.len() + 1;
-    verdict.stages[0].missing = missing(client, ("layer", &rows), layers, &there);
+    verdict.stages[0].missing = missing(client, "layer", &rows, layers, &there);
     verdict.stages[0].unjudged = client_planes.unjudged();
     verdict
 }
@@ -114,7 +114,8 @@ impl<'a, P: Profile> Judge<'a, P> {
                 let own: Vec<_> = fragments.at(column).in_group(0).copied().collect();
                 let found = self.layers.judge(at, &own, &mut layers.at(pixel));
                 let blends = blending::judge::<P>(
-                    (self.client_planes, &self.backdrop),
+                    self.client_planes,
+                    &self.backdrop,
                     at,
                     &mut blending.at(pixel),
                 );

@@ -97,13 +97,14 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         snap: Snap,
         limits: Option<&'a Tiled<Ball<P>>>,
     ) -> Self {
-        Self::drawn_where(job, (cull, snap), limits, |_| true)
+        Self::drawn_where(job, cull, snap, limits, |_| true)
     }
 
     /// Only those surfels whose indices `draws` accepts.
     pub(crate) fn drawn_where(
         job: &Job<'a>,
-        (cull, snap): (bool, Snap),
+        cull: bool,
+        snap: Snap,
         limits: Option<&'a Tiled<Ball<P>>>,
         draws: impl Fn(usize) -> bool + Sync + Send,
     ) -> Self {
@@ -260,7 +261,7 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         let surfels = &self.projector.scene.surfels;
         self.each((tile, &rect), |pixel, one| {
             claims[pixel].doubt(&one, &mut marks.at(pixel));
-            claims[pixel].judge_tie(&one, (planes.ties, surfels), &mut marks.at(pixel));
+            claims[pixel].judge_tie(&one, planes.ties, surfels, &mut marks.at(pixel));
         });
         marks
     }

@@ -18,7 +18,7 @@ use crate::frame::raster::{GUARD_BAND, Snap, Triangle};
 use crate::frame::{Bins, Grid, Rect};
 use crate::method::Job;
 use crate::method::projection::primitives::{
-    Piece, PiecePixel, corners, triangle_piece, triangle_within,
+    Piece, PiecePixel, Primitive, corners, triangle_piece, triangle_within,
 };
 use crate::method::projection::{PixelSample, SampleKind, SceneProjector};
 use crate::number::ball::Profile;
@@ -206,10 +206,10 @@ fn piece<P: Profile>(
     let least = std::array::from_fn(|k| (places[k].map_inline(|[least, _]| least), placed[k].m));
     let weights = fan.map_inline(|corner| corner.weights);
     let depths = depths(projector, &fan.map_inline(|corner| corner.position), p);
-    let id = ((projector.scene.surfels.len() + index) as u32, index);
+    let of = Primitive { id: (projector.scene.surfels.len() + index) as u32, index };
     let index = index as u32;
     if places.iter().flatten().all(|[least, greatest]| least == greatest) {
-        let piece = triangle_piece(projector, id, least, weights, *p)?;
+        let piece = triangle_piece(projector, of, least, weights, *p)?;
         return Some(PossiblePolygon {
             index,
             bounds: piece.bounds,
@@ -225,7 +225,7 @@ fn piece<P: Profile>(
         return Some(PossiblePolygon { index, bounds, depths, form });
     }
     let raster = Triangle::new(snap, least.map_inline(|(place, _)| place))?;
-    let piece = triangle_within(projector, id, (raster, bounds), least, weights, *p)?;
+    let piece = triangle_within(projector, of, raster, bounds, least, weights, *p)?;
     let between = Depths::new(intervals, placed.map_inline(|at| at.m), &weights);
     let form = Form::Between(Box::new((piece, between)));
     Some(PossiblePolygon { index, bounds, depths, form })

@@ -183,7 +183,7 @@ impl<'a, P: Profile> Judge<'a, P> {
     /// The planes of groups that the client lacks.
     pub(crate) fn missing(&self, job: &Job<'_>) -> Vec<String> {
         let (groups, there) = (0..self.images.len(), job.there(Keep::Stages));
-        gaps::missing(self.of.client, ("group", &self.of.images), groups, &there)
+        gaps::missing(self.of.client, "group", &self.of.images, groups, &there)
     }
 
     /// Opacity and colour of a pixel as the next pass reads them.
@@ -227,7 +227,7 @@ impl<'a, P: Profile> Judge<'a, P> {
             let samples = images.judge(at, &fragments.at(column), &mut geometry.at(pixel));
             let (depth, sums) = self.compositing.judge(at, &samples, &mut parts[0].at(column));
             let nearest = Nearest { depth, id: None };
-            self.pixels.judge((column, at), &nearest, &sums, parts);
+            self.pixels.judge(column, at, &nearest, &sums, parts);
             PixelFindings { nearest, sums }
         };
         counted(row).map(of_pixel).collect()

@@ -125,10 +125,9 @@ impl<'a, P: Profile> Judge<'a, P> {
             for (column, at) in counted(row) {
                 let pixel = (y - rect.y0) as usize * row.columns() + column;
                 let all = |_| true.into();
-                let found =
-                    self.layers.judge((column, at), &drawings, all, &mut blending.at(pixel));
+                let found = self.layers.judge(column, at, &drawings, all, &mut blending.at(pixel));
                 let pixel = &mut averaging.at(pixel);
-                let average = self.averages.judge(at, (&found.groups, self.holes), pixel);
+                let average = self.averages.judge(at, &found.groups, self.holes, pixel);
                 let judged = self.shown.judge(at, &found.groups, &average, pixel);
                 counts.covered += u64::from(found.groups.iter().any(GroupFound::covered));
                 counts.undecided += u64::from(found.open || !judged);

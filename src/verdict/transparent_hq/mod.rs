@@ -167,9 +167,9 @@ impl<'a, P: Profile> Judge<'a, P> {
             let near = self.front(at, &front);
             let behind = self.behind(at, near.depth);
             let marks = &mut blending.at(pixel);
-            let others = self.others.judge((column, at), &drawings, behind, marks);
-            let of = (others.groups.as_slice(), self.settings.layers.holes);
-            let average = self.averages.judge(at, of, &mut averaging.at(pixel));
+            let others = self.others.judge(column, at, &drawings, behind, marks);
+            let (groups, holes) = (others.groups.as_slice(), self.settings.layers.holes);
+            let average = self.averages.judge(at, groups, holes, &mut averaging.at(pixel));
             let judged = self.shown.judge(at, &near, &average, &mut compositing.at(pixel));
             counts.covered += u64::from(front.covered());
             counts.undecided += u64::from(!front.certain() || others.open || !judged);
