@@ -196,15 +196,8 @@ pub(super) fn run(args: &Args) -> Ended {
     args.read_part(&mut ready, &exec)?;
     let (mut session, made) = draw::session(&ready, &args.options, &exec)?;
     if let Some(count) = args.bands {
-        return bands::render(
-            &mut session,
-            &ready,
-            &destination,
-            &picture,
-            file.output,
-            count,
-            &exec,
-        );
+        let (to, output) = (&destination, file.output);
+        return bands::render(&mut session, &ready, to, &picture, output, count, &exec);
     }
     let window = destination.limit(&mut session, &ready.camera)?;
     let loading = start.elapsed();

@@ -255,6 +255,14 @@ fn keep_worse(worst: &mut Option<Finding>, own: Option<Finding>) {
     }
 }
 
+/// A rectangle of pixels in a tile.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TilePart {
+    /// The number of the tile.
+    pub(crate) tile: usize,
+    pub(crate) rect: Rect,
+}
+
 /// Which pixels of the planes to judge.
 #[derive(Clone, Copy, Debug)]
 pub(crate) enum Watch {
@@ -352,7 +360,7 @@ pub(crate) fn verdict<const N: usize>(
     job: &Job<'_>,
     stages: [(&'static str, Vec<&'static str>); N],
     budget: f64,
-    judge: impl Fn((usize, Rect), &mut [Marks; N]) -> Counts + Sync + Send,
+    judge: impl Fn(TilePart, &mut [Marks; N]) -> Counts + Sync + Send,
 ) -> Verdict {
     let tiles = match job.part {
         Some(part) => part.pieces.to_vec(),
@@ -360,7 +368,7 @@ pub(crate) fn verdict<const N: usize>(
     };
     let found = job.exec.ordered(tiles, |(tile, rect)| {
         let mut marks = [(); N].map(|()| Marks::new(rect));
-        let counts = judge((tile, rect), &mut marks);
+        let counts = judge(TilePart { tile, rect }, &mut marks);
         (marks, counts)
     });
     let mut all = Counts::default();
@@ -382,11 +390,11 @@ pub(crate) fn checks<const N: usize>(
     job: &Job<'_>,
     stages: [&'static str; N],
     pixel: (u32, u32),
-    judge: impl FnOnce((usize, Rect), &mut [Marks; N]) -> Counts,
+    judge: impl FnOnce(TilePart, &mut [Marks; N]) -> Counts,
 ) -> Result<Vec<Check>> {
     let Place { tile, rect } = Place::new(job, pixel)?;
     let mut marks = [(); N].map(|()| Marks::logging(rect));
-    judge((tile, rect), &mut marks);
+    judge(TilePart { tile, rect }, &mut marks);
     Ok(logged(&mut marks, &stages))
 }
 

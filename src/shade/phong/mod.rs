@@ -288,7 +288,8 @@ impl<R: Exact> Shader<R> {
         &self,
         (x, y): (usize, usize),
         t: R,
-        (normal, tangent): (Vector3<R>, Vector3<R>),
+        normal: Vector3<R>,
+        tangent: Vector3<R>,
         surface: [R; 3],
     ) -> [R; 3] {
         if !t.is_finite() {

@@ -63,7 +63,7 @@ use crate::number::ball::Profile;
 use crate::number::lanes::LANES;
 use crate::scene::Surfels;
 use crate::verdict::client::Client;
-use crate::verdict::marks::{self, Counts, Marks, counted};
+use crate::verdict::marks::{self, Counts, Marks, TilePart, counted};
 use crate::verdict::shift::ShiftSums;
 use crate::verdict::{Check, Doubt, Verdict};
 use band::Bands;
@@ -140,15 +140,16 @@ impl<'a, P: Profile> Judge<'a, P> {
     }
 
     /// Marks the wrong pixels of a rectangle in a tile, stage by stage.
-    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 4]) -> Counts {
+    fn judge(&self, part: TilePart, marks: &mut [Marks; 4]) -> Counts {
+        let rect = part.rect;
         let Self { surfels, client_planes, splats, bands, pixels, .. } = self;
         let [first, rest @ ..] = marks;
-        let certificate = Certificate::new(splats, &[], (client_planes, surfels), (tile, &rect));
+        let certificate = Certificate::new(splats, &[], client_planes, surfels, part);
         let nearest = certificate.nearest();
         let limits = bands.moved(&nearest, &rect);
         let beside = Some((&certificate, &mut *first));
-        let rule = (client_planes.supposed, &*limits);
-        let added = sums::add(splats, surfels, rule, (tile, &rect), beside, &mut rest[0]);
+        let supposed = client_planes.supposed;
+        let added = sums::add(splats, surfels, supposed, &limits, part, beside, &mut rest[0]);
         certificate.end(first);
         let right = self.right(rect, &nearest, &added.sums, &rest[0]);
         let sums = added.followed(|pixel| right[pixel].is_none());

@@ -346,7 +346,7 @@ mod tests {
     use crate::number::ball::{Gpu, Ieee};
     use crate::verdict::client::Client;
     use crate::verdict::ewa::tests::each_scene;
-    use crate::verdict::marks::{self, Marks};
+    use crate::verdict::marks::{self, Marks, TilePart};
 
     /// Compares the findings with lanes and without. Returns how many pixels are right in lanes,
     /// and how many are wrong.
@@ -355,13 +355,13 @@ mod tests {
         let mut judge = Judge::<P>::new(job, settings, client, &client_planes);
         let mut found = [0; 2];
         for (tile, rect) in job.grid().rects().into_iter().enumerate() {
-            let given = (&client_planes, judge.surfels);
+            let part = TilePart { tile, rect };
+            let (splats, surfels) = (&judge.splats, judge.surfels);
             let mut marks = Marks::new(rect);
             let nearest =
-                certificate::judge_among(&judge.splats, &[], given, (tile, &rect), &mut marks);
-            let (surfels, at) = (judge.surfels, (tile, &rect));
-            let rule = (Supposed::Nothing, &*nearest);
-            let added = sums::add(&judge.splats, surfels, rule, at, None, &mut marks);
+                certificate::judge_among(splats, &[], &client_planes, surfels, part, &mut marks);
+            let added =
+                sums::add(splats, surfels, Supposed::Nothing, &nearest, part, None, &mut marks);
             let right = judge.right(rect, &nearest, &added.sums, &marks);
             found[0] += right.iter().flatten().count() as u64;
         }

@@ -76,7 +76,7 @@ use crate::scene::Environment;
 use crate::scene::gaussians::Encoding;
 use crate::verdict::checks::{Report, input, inputs, number, triple, widened};
 use crate::verdict::client::{Client, Storage, StoredPlane};
-use crate::verdict::marks::{self, Counts, Marks, PixelMarks, counted};
+use crate::verdict::marks::{self, Counts, Marks, PixelMarks, TilePart, counted};
 use crate::verdict::planes::RecordPlanes;
 use crate::verdict::supposed::Supposed;
 use crate::verdict::{Check, StageVerdict, Verdict};
@@ -177,11 +177,12 @@ impl<'a, P: Profile> Judge<'a, P> {
     }
 
     /// Marks the wrong pixels of a rectangle in a tile.
-    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
+    fn judge(&self, part: TilePart, marks: &mut [Marks; 2]) -> Counts {
+        let rect = part.rect;
         let [blending, display] = marks;
         let mut counts = Counts::default();
         let Self { source, supposed, depth_test, splats, .. } = self;
-        let mut walker = Walker::new(source, *supposed, *depth_test, splats, (tile, rect));
+        let mut walker = Walker::new(source, *supposed, *depth_test, splats, part);
         for y in rect.y0..rect.y1 {
             for (column, at) in counted(Rect { y0: y, y1: y + 1, ..rect }) {
                 let pixel = (y - rect.y0) as usize * rect.columns() + column;

@@ -14,6 +14,7 @@ use crate::number::{Ball, MapInline, Real, Truth, Vector2, Vector3};
 use crate::splat::gaussian::ProjectedGaussian;
 use crate::verdict::checks::widened;
 use crate::verdict::client::known;
+use crate::verdict::marks::TilePart;
 use crate::verdict::supposed::Supposed;
 use std::cmp::Ordering;
 
@@ -108,7 +109,7 @@ impl<P: Profile> PossibleSplats<P> {
     }
 
     /// The places of the splats that may touch some pixels of a tile, ascending.
-    pub(super) fn places(&self, (tile, rect): (usize, Rect)) -> Vec<usize> {
+    pub(super) fn places(&self, TilePart { tile, rect }: TilePart) -> Vec<usize> {
         let mut places = Vec::new();
         self.bins.for_each(tile, |i| {
             if !self.all[i as usize].splat.bounds.intersection(&rect).is_empty() {

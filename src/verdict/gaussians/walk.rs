@@ -14,6 +14,7 @@ use crate::splat::ray_disc::RayFragment;
 use crate::verdict::Doubt;
 use crate::verdict::checks::widened;
 use crate::verdict::client::Storage;
+use crate::verdict::marks::TilePart;
 use crate::verdict::supposed::Supposed;
 
 /// A fragment that may be drawn.
@@ -52,7 +53,7 @@ impl<'a, P: Profile> Walker<'a, P> {
         supposed: Supposed,
         depth_test: Storage,
         splats: &'a PossibleSplats<P>,
-        part: (usize, Rect),
+        part: TilePart,
     ) -> Self {
         let (rules, places) = (Rules::new(source.settings), splats.places(part));
         Self { source, splats, supposed, depth_test, rules, places }

@@ -49,7 +49,7 @@ use crate::number::ball::Profile;
 use crate::verdict::checks::Backdrop;
 use crate::verdict::client::Client;
 use crate::verdict::gaps::missing;
-use crate::verdict::marks::{self, Counts, Marks, counted};
+use crate::verdict::marks::{self, Counts, Marks, TilePart, counted};
 use crate::verdict::single_pass::fragments::GroupFragments;
 use crate::verdict::{Check, Verdict};
 use layer::LayerJudge;
@@ -102,7 +102,7 @@ impl<'a, P: Profile> Judge<'a, P> {
     }
 
     /// Marks the wrong pixels of a rectangle in a tile.
-    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
+    fn judge(&self, TilePart { tile, rect }: TilePart, marks: &mut [Marks; 2]) -> Counts {
         let [layers, blending] = marks;
         let mut counts = Counts::default();
         for y in rect.y0..rect.y1 {

@@ -26,7 +26,7 @@ use crate::number::{Ball, MapInline, Real, Vector2, Vector3};
 use crate::scene::Scene;
 use crate::splat::clip::Clipped;
 use crate::verdict::checks::anything;
-use crate::verdict::marks::counted;
+use crate::verdict::marks::{TilePart, counted};
 
 /// Triangles that may be drawn, and where.
 pub(crate) struct AllPolygons<'a, P: Profile> {
@@ -95,11 +95,12 @@ impl<'a, P: Profile> AllPolygons<'a, P> {
     }
 
     /// The fragments that may lie in each pixel of a tile.
-    pub(crate) fn fragments(&self, (tile, rect): (usize, &Rect)) -> Vec<Vec<PossibleFragment<P>>> {
-        let mut found: Vec<_> = counted(*rect).map(|_| Vec::new()).collect();
+    pub(crate) fn fragments(&self, part: TilePart) -> Vec<Vec<PossibleFragment<P>>> {
+        let rect = part.rect;
+        let mut found: Vec<_> = counted(rect).map(|_| Vec::new()).collect();
         let place =
             |x: u32, y: u32| (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize;
-        self.each((tile, rect), |(x, y), index, sample, lies| {
+        self.each(part, |(x, y), index, sample, lies| {
             let PixelSample { depth, normal, color, .. } = sample;
             found[place(x, y)].push(PossibleFragment { index, depth, normal, color, lies });
         });
@@ -110,12 +111,12 @@ impl<'a, P: Profile> AllPolygons<'a, P> {
     /// triangle, its sample, and whether it certainly lies there.
     pub(super) fn each(
         &self,
-        (tile, rect): (usize, &Rect),
+        TilePart { tile, rect }: TilePart,
         mut visit: impl FnMut((u32, u32), u32, PixelSample<Ball<P>>, bool),
     ) {
         self.bins.for_each(tile, |i| {
             let one = &self.drawn[i as usize];
-            let inner = one.bounds.intersection(rect);
+            let inner = one.bounds.intersection(&rect);
             match &one.form {
                 _ if inner.is_empty() => {}
                 Form::Exact(piece) => piece.for_each(&inner, |at| {
@@ -350,7 +351,7 @@ mod tests {
         let drawn = project::<R>(&job, cull, Snap::default()).unwrap().samples;
         let mut counts = [0; 3];
         for (tile, rect) in job.grid().rects().into_iter().enumerate() {
-            for ((_, (x, y)), may) in counted(rect).zip(all.fragments((tile, &rect))) {
+            for ((_, (x, y)), may) in counted(rect).zip(all.fragments(TilePart { tile, rect })) {
                 let sample = drawn.at(x, y);
                 let before = |one: &&PossibleFragment<P>| {
                     one.lies && { one.depth.middle + one.depth.radius < sample.depth.to_f64() }
