@@ -13,7 +13,7 @@ pub(super) use splatref::report::short;
 use splatref::scene::gaussians::UNDRAWABLE;
 use splatref::scene::objects::detail::prefix::Estimate;
 use splatref::scene::objects::{Detail, Split};
-use splatref::scene::{Camera, Counts, Dropped, Gaussians, Groups, Objects, Projection};
+use splatref::scene::{Camera, Counts, Dropped, Gaussians, Groups, Objects, Projection, Sphere};
 use splatref::scene::{Scene, Surfels};
 use splatref::setting::{Fields, Word};
 use splatref::source::derive::Origin;
@@ -129,7 +129,7 @@ fn objects_of(loaded: &Loaded, objects: &Objects) {
         }
     }
     line("  dropped", dropped(&loaded.dropped, loaded.dropped_primitives));
-    let (middle, radius) = objects.bounding_sphere();
+    let Sphere { center: middle, radius } = objects.bounding_sphere();
     let (middle, radius) = (point(middle.to_array()), short(radius));
     line("  bounds", format!("a sphere around {middle} of radius {radius}"));
     if surfels > 0 {
@@ -279,7 +279,7 @@ pub(super) fn camera(camera: &Camera) {
 /// Says if the scene reaches beyond the far plane of another renderer.
 pub(super) fn far(file: &SceneFile, scene: &Scene, camera: &Camera) {
     let Some(far) = file.camera.far else { return };
-    let (middle, radius) = scene.bounding_sphere();
+    let Sphere { center: middle, radius } = scene.bounding_sphere();
     let reach = radius - camera.view_from_world.as_dmat4().transform_point3(middle).z;
     if reach > far {
         let (far, reach) = (short(far), short(reach));

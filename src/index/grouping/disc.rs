@@ -1,5 +1,6 @@
 //! A disc in space, and the dot product of this module.
 
+use crate::scene::Sphere;
 use glam::{DVec3, Vec3};
 
 /// A disc in space.
@@ -29,13 +30,6 @@ impl SpaceDisc {
     pub(super) fn cosine(&self, other: &Self) -> f64 {
         dot(self.normal.as_dvec3(), other.normal.as_dvec3())
     }
-}
-
-/// The sphere around a disc.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Sphere {
-    pub(super) center: DVec3,
-    pub(super) radius: f64,
 }
 
 /// Whether two discs, by their spheres, are near by a factor, see the [module](super).

@@ -8,11 +8,11 @@
 //! depends on the discs alone; the tree affects only the order in which neighbours are found.
 
 use super::curve;
-use super::disc::{SpaceDisc, Sphere, are_near};
+use super::disc::{SpaceDisc, are_near};
 use super::samples::DiscSamples;
 use crate::frame::Exec;
 use crate::number::MapInline;
-use crate::scene::Surfels;
+use crate::scene::{Sphere, Surfels};
 use glam::{DVec3, Vec3};
 
 /// How many discs a block has. The compiler unrolls loops over fewer lanes before it can vectorize

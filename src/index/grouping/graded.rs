@@ -1,6 +1,6 @@
 //! Make the graphs of all c that are multiples of 1/64 from one graph that has all their edges.
 
-use super::disc::{Sphere, are_near, dot};
+use super::disc::{are_near, dot};
 use super::disc_tree::{DISCS, DiscBlock, DiscTree};
 use super::graph::{Graph, relaxed};
 use super::parts::Parts;
@@ -9,7 +9,7 @@ use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::lanes::vectorized;
 use crate::progress::Progress;
-use crate::scene::Surfels;
+use crate::scene::{Sphere, Surfels};
 use std::borrow::Cow;
 use std::ops::Range;
 

@@ -15,7 +15,7 @@ use crate::io::{Reason, checksum};
 use crate::memory;
 use crate::number::{MapInline, Real};
 use crate::progress::Progress;
-use crate::scene::hash;
+use crate::scene::{Sphere, hash};
 use glam::Vec3;
 use sha2::Sha256;
 use std::fs::{self, File};
@@ -149,7 +149,7 @@ fn survey(
         kind,
         median_radius: median.found(),
         bounds: (low, high),
-        sphere: (middle, far),
+        sphere: Sphere { center: middle, radius: far },
         offset: input.offset(),
         hash,
         blocks: Vec::new(),

@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::number::{elementary, random};
+use crate::scene::Sphere;
 
 type V = [f64; 3];
 
@@ -127,7 +128,7 @@ fn a_framing_camera_has_the_bits_of_its_formulas() {
         }
         let radius = if i % 5 == 0 { 0.0 } else { 3.0 * f64::from(random::unit(4, i)) };
         let (width, height) = if i % 2 == 0 { (33_u32, 24_u32) } else { (20, 31) };
-        let sphere = (DVec3::from(center), radius);
+        let sphere = Sphere { center: DVec3::from(center), radius };
         let camera = Camera::framing(width, height, sphere, from.into(), lens(i)).unwrap();
 
         let scale = scale(f64::from(height), lens(i));
