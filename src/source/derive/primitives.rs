@@ -91,12 +91,12 @@ pub fn hybrid(
 /// each edge has an end that is degenerate.
 pub fn ribbons(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived)> {
     let before = cloud.edges.len();
-    let (radius, radii) = radii(&mut cloud, options, "ribbons")?;
+    let (radius, radius_from) = radii(&mut cloud, options, "ribbons")?;
     let Some(normal) = cloud.take_normals() else {
         return Err(Error::Invalid("ribbons need normals; give nx, ny and nz".into()));
     };
     let edges = std::mem::take(&mut cloud.edges);
-    finish(before, bare(cloud), normal, Origin::File, radius, radii, edges)
+    finish(before, bare(cloud), normal, Origin::File, radius, radius_from, edges)
 }
 
 /// The edges of a cloud as tubes. Radii come from the file or from the options.
@@ -116,13 +116,13 @@ pub fn ribbons(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived
 /// has an end that is degenerate.
 pub fn tubes(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived)> {
     let before = cloud.edges.len();
-    let (radius, radii) = radii(&mut cloud, options, "tubes")?;
-    let (tangent, origin) = match cloud.tangent.take() {
+    let (radius, radius_from) = radii(&mut cloud, options, "tubes")?;
+    let (tangent, tangent_from) = match cloud.tangent.take() {
         Some(tangent) => (tangent, Origin::File),
         None => (tangents(&cloud.position, &cloud.edges), Origin::Edges),
     };
     let edges = std::mem::take(&mut cloud.edges);
-    finish(before, bare(cloud), tangent, origin, radius, radii, edges)
+    finish(before, bare(cloud), tangent, tangent_from, radius, radius_from, edges)
 }
 
 /// Refuses a cloud without triangles.
@@ -157,9 +157,9 @@ fn finish<const N: usize>(
     before: usize,
     cloud: Cloud,
     direction: Vec<Vec3>,
-    normals: Origin,
+    direction_from: Origin,
     radius: Vec<f32>,
-    radii: Origin,
+    radius_from: Origin,
     corners: Vec<[u32; N]>,
 ) -> Result<(Indexed<N>, Derived)> {
     let (indexed, _) = Indexed::new(vertices(cloud, direction, radius), corners)?;
@@ -170,6 +170,7 @@ fn finish<const N: usize>(
     }
     let dropped_primitives = (before - indexed.len()) as u64;
     let dropped = Dropped::default();
+    let (normals, radii) = (direction_from, radius_from);
     Ok((indexed, Derived { normals, radii, dropped, dropped_primitives }))
 }
 
