@@ -110,10 +110,11 @@ fn main() -> Result<()> {
     for (name, method, rows, side, colored) in tables {
         for row in rows.iter().filter(|_| name.contains(&arguments.pattern)) {
             let scene = scene(scans.as_ref(), row.count, colored)?;
-            let (center, radius) = scene.surfels.bounding_sphere();
+            let mut sphere = scene.surfels.bounding_sphere();
+            sphere.radius *= 0.8;
             let side_on = glam::DVec3::new(0.25, 0.25, 1.0);
             let lens = Lens::FieldOfView(34.0);
-            let camera = Camera::framing(side, side, (center, radius * 0.8), side_on, lens)?;
+            let camera = Camera::framing(side, side, sphere, side_on, lens)?;
             let exec = Exec::new(0, 32)?;
             let (mut frames, stages, seen) = measure(&scene, &camera, &method, &exec)?;
             let mut points = vec![[1; 6]; row.count];

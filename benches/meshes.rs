@@ -20,14 +20,14 @@ use common::mesh::Mesh;
 use common::models::models;
 use common::report::{Arguments, Table};
 use common::shot::Shot;
-use glam::{DVec3, Vec3};
+use glam::Vec3;
 use splatref::Result;
 use splatref::compare::metrics::{coverage, rmse};
 use splatref::frame::Exec;
 use splatref::io::scene_file;
 use splatref::method::{Method, Session, ewa, pyramid, single_pass, template};
 use splatref::number::elementary::{cos, sin};
-use splatref::scene::{Camera, Cloud, Lens, Scene};
+use splatref::scene::{Camera, Cloud, Lens, Scene, Sphere};
 use splatref::source::derive::{self, Derive};
 
 /// Rows; 4/3 as many columns.
@@ -79,12 +79,7 @@ fn main() -> Result<()> {
 }
 
 /// A camera that frames a sphere, and the mesh before it.
-fn true_picture(
-    mesh: &Mesh,
-    sphere: (DVec3, f64),
-    height: u32,
-    exec: &Exec,
-) -> Result<(Camera, Shot)> {
+fn true_picture(mesh: &Mesh, sphere: Sphere, height: u32, exec: &Exec) -> Result<(Camera, Shot)> {
     let lens = Lens::FieldOfView(scene_file::DEFAULT_FIELD_OF_VIEW);
     let side = scene_file::DEFAULT_SIDE;
     let camera = Camera::framing(height * 4 / 3, height, sphere, side, lens)?;

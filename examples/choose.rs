@@ -28,7 +28,7 @@ fn main() -> Result<()> {
     let place = Similarity::IDENTITY;
     let surface = Surface::Shape { shape, place, color: None };
     let none = |_step: &str, _done, _total| ();
-    let truth = of_surfaces(&[surface], &scene, true, (&camera, &[]), &exec, &none)?;
+    let truth = of_surfaces(&[surface], &scene, true, &camera, &[], &exec, &none)?;
     println!("truth: {}", truth.how);
 
     let mut fits = Vec::new();

@@ -7,7 +7,7 @@
 use glam::DVec3;
 use splatref::frame::{Exec, Frame};
 use splatref::io::ply;
-use splatref::scene::{Camera, Cloud, Lens, Scene};
+use splatref::scene::{Camera, Cloud, Lens, Scene, Sphere};
 use splatref::source::candidates::{self, Directions};
 use splatref::source::derive::{self, Derive};
 use splatref::source::sampler::{Greedy, Start, quality, shuffled};
@@ -51,7 +51,7 @@ fn main() -> Result<()> {
 fn draw(cloud: Cloud, radius: f32, exec: &Exec) -> Result<Frame<f32>> {
     let options = Derive { radius: Some(radius) };
     let (surfels, _) = derive::surfels(cloud, &options, exec, &|_step, _done, _total| ())?;
-    let ball = (DVec3::ZERO, 1.0);
+    let ball = Sphere { center: DVec3::ZERO, radius: 1.0 };
     let camera = Camera::framing(160, 120, ball, DVec3::ONE, Lens::FieldOfView(34.0))?;
     let scene = Scene::lit("ball", surfels);
     let mut session = Session::new(&scene, Method::by_name("ewa")?, exec)?;

@@ -10,7 +10,7 @@ use glam::{DVec3, Vec3};
 use splatref::frame::Exec;
 use splatref::method::{Session, deferred};
 use splatref::scene::objects::{Geometry, Motion, Object, Objects, Split};
-use splatref::scene::{Camera, Lens, Primitives, Scene, Similarity, Surfels};
+use splatref::scene::{Camera, Lens, Primitives, Scene, Similarity, Sphere, Surfels};
 use splatref::source::Shape;
 use splatref::{Error, Result};
 use std::time::Instant;
@@ -37,7 +37,7 @@ pub(crate) fn table(arguments: &Arguments, exec: &Exec) -> Result<()> {
         })
         .into_iter()
         .collect::<Result<Vec<Scene>>>()?;
-    let sphere = (DVec3::ZERO, 9.0);
+    let sphere = Sphere { center: DVec3::ZERO, radius: 9.0 };
     let from = DVec3::new(0.0, 0.2, 1.0);
     let camera = Camera::framing(SIDE, SIDE, sphere, from, Lens::FieldOfView(34.0))?;
     let method = deferred::Settings::default().into();

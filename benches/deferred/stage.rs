@@ -5,7 +5,7 @@ use splatref::Result;
 use splatref::scene::objects::{Geometry, Motion, Object, Objects};
 use splatref::scene::transform::rotation;
 use splatref::scene::{
-    Camera, Cloud, Lens, Pose, Primitives, Scene, Similarity, Surfels, objects::Ids,
+    Camera, Cloud, Lens, Pose, Primitives, Scene, Similarity, Sphere, Surfels, objects::Ids,
 };
 
 /// The model is at rest up to this frame, and turned in the next.
@@ -21,7 +21,7 @@ pub(crate) struct Stage {
 impl Stage {
     /// `lean` is what the model is turned by, in degrees about +x, before it stands there.
     pub(crate) fn new(model: Surfels, lean: f64) -> Result<Self> {
-        let (center, radius) = model.bounding_sphere();
+        let Sphere { center, radius } = model.bounding_sphere();
         let lean: DMat3 = rotation(DVec3::X, lean);
         let scale = 1.0 / radius;
         let base = Similarity { rotation: lean, scale, translation: lean * (center * -scale) };
@@ -106,7 +106,7 @@ pub(crate) fn check(p: DVec3, side: f64) -> Vec3 {
 /// The surfels in the order of their cells along the curve of Morton, 1024 cells a side of the cube
 /// around them: consecutive surfels are neighbours.
 pub(crate) fn along_a_curve(surfels: Surfels) -> Result<Surfels> {
-    let (center, radius) = surfels.bounding_sphere();
+    let Sphere { center, radius } = surfels.bounding_sphere();
     let cell = |p: &Vec3| {
         let from_corner = (p.as_dvec3() - center) / (2.0 * radius) + 0.5;
         (from_corner * 1023.0).as_uvec3()

@@ -10,7 +10,9 @@ use splatref::io::ply;
 use splatref::number::random::unit;
 use splatref::scene::objects::{Geometry, Motion, Object, Objects};
 use splatref::scene::transform::rotation;
-use splatref::scene::{Camera, Cloud, Environment, Lens, Pose, Primitives, Scene, Similarity};
+use splatref::scene::{
+    Camera, Cloud, Environment, Lens, Pose, Primitives, Scene, Similarity, Sphere,
+};
 use splatref::scene::{Surfels, Triangles, Vertices};
 use splatref::source::derive::{self, Derive};
 use splatref::source::plant::{LEAVES, apple_tree};
@@ -35,7 +37,7 @@ pub(crate) struct Subject {
 /// How a scene is looked at.
 enum View {
     /// From all around a sphere: what is seen of it first, from this direction.
-    Around((DVec3, f64), DVec3),
+    Around(Sphere, DVec3),
     /// From one place, in all directions; this one first.
     From(DVec3, DVec3),
 }
@@ -153,7 +155,7 @@ fn tree() -> Result<Subject> {
 /// times the radius of the largest, turned and scaled. The camera stands at the edge and looks about.
 pub(crate) fn forest(exec: &Exec) -> Result<Subject> {
     let surfels = points_of_tree()?;
-    let (center, radius) = surfels.bounding_sphere();
+    let Sphere { center, radius } = surfels.bounding_sphere();
     let (primitives, side) = (Primitives::default(), 250.0);
     let geometry = Geometry { name: "tree".into(), surfels, primitives, detail: None };
     let geometry = geometry.with_detail(2.0, exec)?;
@@ -229,7 +231,7 @@ fn points_of_tree() -> Result<Surfels> {
 /// Armadillos of 2,250 surfels in ten ranks of twenty, which walk and turn.
 fn crowd(mesh: &Cloud, exec: &Exec) -> Result<Subject> {
     let surfels = along_a_curve(sampled(mesh, 2_250, exec)?)?;
-    let (center, radius) = surfels.bounding_sphere();
+    let Sphere { center, radius } = surfels.bounding_sphere();
     let primitives = Primitives::default();
     let geometry = Geometry { name: "armadillo".into(), surfels, primitives, detail: None };
     let place = |i: u32, degrees: f64, way: f64| {
@@ -251,7 +253,7 @@ fn crowd(mesh: &Cloud, exec: &Exec) -> Result<Subject> {
     let objects = Objects::new(vec![geometry], objects, Vec3::splat(0.75))?;
     Ok(Subject {
         name: CROWD,
-        view: View::Around((DVec3::ZERO, 9.0), DVec3::new(0.0, 0.2, 1.0)),
+        view: View::Around(Sphere { center: DVec3::ZERO, radius: 9.0 }, DVec3::new(0.0, 0.2, 1.0)),
         scene: Scene { objects: Some(objects), ..Scene::lit(CROWD, Surfels::none()) },
         splats: SplatSettings::default(),
         paper: ["11.5", "90", "33.5"],

@@ -14,7 +14,7 @@ use splatref::frame::Exec;
 use splatref::io::scene_file;
 use splatref::method::{Session, pyramid};
 use splatref::scene::indexed::Indexed;
-use splatref::scene::{Camera, Lens, Primitives};
+use splatref::scene::{Camera, Lens, Primitives, Sphere};
 use splatref::source::plant::{LEAVES, apple_tree};
 use std::time::Instant;
 
@@ -32,7 +32,7 @@ pub(crate) fn table(arguments: &Arguments, exec: &Exec) -> Result<()> {
                 let scene = scene(grove(primitives, trees)?);
                 let width = if trees == 1 { 1.8 } else { 6.0 };
                 let lens = Lens::FieldOfView(scene_file::DEFAULT_FIELD_OF_VIEW);
-                let sphere = (DVec3::new(0.0, 1.5, 0.0), width);
+                let sphere = Sphere { center: DVec3::new(0.0, 1.5, 0.0), radius: width };
                 let camera = Camera::framing(1024, 1024, sphere, DVec3::Z, lens)?;
                 let mut session = Session::new(&scene, pyramid::Settings::default().into(), exec)?;
                 session.render(&camera)?;

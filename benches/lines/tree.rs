@@ -13,7 +13,7 @@ use splatref::compare::metrics::{rmse, ssim};
 use splatref::frame::{Exec, Plane};
 use splatref::io::scene_file;
 use splatref::method::{Session, pyramid};
-use splatref::scene::{Camera, Lens, Primitives, Scene, Surfels};
+use splatref::scene::{Camera, Lens, Primitives, Scene, Sphere, Surfels};
 use splatref::source::plant::{LEAVES, apple_tree};
 
 /// What is seen, as the centre and the radius of a sphere that fills the picture.
@@ -42,7 +42,7 @@ pub(crate) fn table(arguments: &Arguments, exec: &Exec) -> Result<()> {
         for height in HEIGHTS {
             let camera = |scale: u32| {
                 let lens = Lens::FieldOfView(scene_file::DEFAULT_FIELD_OF_VIEW);
-                let sphere = (DVec3::from_array(center), radius);
+                let sphere = Sphere { center: DVec3::from_array(center), radius };
                 let [width, height] = [height * 4 / 3 * scale, height * scale];
                 Camera::framing(width, height, sphere, DVec3::Z, lens)
             };

@@ -311,7 +311,7 @@ pub(crate) fn truth<'py>(
         let setup = Setup::new(scene, &file, None, exec, show)?;
         let camera = &setup.camera;
         match &*scene.content {
-            Content::Arrays(scene) => of_points(scene, (camera, &[]), exec, show),
+            Content::Arrays(scene) => of_points(scene, camera, &[], exec, show),
             Content::File(_) => {
                 Known::about(&file, setup.scene(), exec, show)?.still(camera, exec, show)
             }
@@ -343,8 +343,10 @@ pub(crate) fn save_exr(
         || exr::Window::whole(&frame),
         |([x0, y0, x1, y1], picture)| exr::Window { region: Rect { x0, y0, x1, y1 }, picture },
     );
-    let (part, compression) = ((&frame, window), output.compression);
-    call(py, &how, |exec, _| exr::pending_part(&path, part, &text, compression, exec)?.put())
+    let compression = output.compression;
+    call(py, &how, |exec, _| {
+        exr::pending_part(&path, &frame, window, &text, compression, exec)?.put()
+    })
 }
 
 /// Writes the preview of planes into a PNG.

@@ -11,7 +11,7 @@ use splatref::io::scene_file::{EnvironmentChoice, Loaded, SceneFile};
 use splatref::io::{environment, surface};
 use splatref::memory;
 use splatref::scene::gaussians::{Encoding, UNDRAWABLE, coefficients};
-use splatref::scene::{self, Cloud, Environment, GaussianArrays, Gaussians, Groups};
+use splatref::scene::{self, Cloud, Environment, GaussianArrays, Gaussians, Groups, Sphere};
 use splatref::source::derive::{self, Derive};
 use std::path::PathBuf;
 use std::sync::{Arc, Mutex, PoisonError};
@@ -287,7 +287,7 @@ impl Scene {
     /// The middle and the radius of a sphere around the scene.
     #[getter]
     fn bounds(&self) -> ([f64; 3], f64) {
-        let (middle, radius) = self.content.scene().bounding_sphere();
+        let Sphere { center: middle, radius } = self.content.scene().bounding_sphere();
         (middle.to_array(), radius)
     }
 

@@ -114,8 +114,9 @@ pub(crate) fn verify(
             true => likely_cause(&session, &setup.camera, &client, &verdict)?,
             false => None,
         };
-        let found = (&client, &verdict, likely.clone());
-        let report = VerdictReport::new(&session, &setup.camera, found, &replay)?;
+        let words = likely.clone();
+        let report =
+            VerdictReport::new(&session, &setup.camera, &client, &verdict, words, &replay)?;
         let (lines, json) = (report.lines(), report.json()?);
         drop(session);
         Ok(Judged { setup, client, verdict, likely, lines, json })
@@ -179,8 +180,9 @@ impl Judged {
         call(py, &how, |exec, show| {
             show("writing", 0, 0);
             let session = setup.session(exec)?;
-            let found = (client, verdict, likely.clone());
-            let report = VerdictReport::new(&session, &setup.camera, found, &replay)?;
+            let words = likely.clone();
+            let report =
+                VerdictReport::new(&session, &setup.camera, client, verdict, words, &replay)?;
             let page = report.page(&session, &setup.camera, setup.output.number, exec)?;
             let text = page::html(&page, exec)?;
             Pending::write(&path, |file| file.write_all(text.as_bytes()))?.put()

@@ -40,8 +40,9 @@ pub(super) fn run(args: &Args) -> Ended {
     }
     let output = OutputSettings { compression: whole.compression, ..OutputSettings::default() };
     let (frame, text) = (&whole.frame, || whole.text.clone());
-    let pixels = (frame, Window::whole(frame));
-    progress::during("writing", || write(place, pixels, text, (output, None), &exec))?;
+    progress::during("writing", || {
+        write(place, frame, Window::whole(frame), text, output, None, &exec)
+    })?;
     report::line("picture", format!("{} x {} pixels", frame.width, frame.height));
     let holds = if projection { " with the projection; the other stages ran here" } else { "" };
     report::line("parts", format!("{}{holds}", args.parts.len()));

@@ -91,8 +91,10 @@ fn most_rows(session: &mut Session<'_>, ready: &Ready, output: OutputSettings) -
 pub(super) fn render(
     session: &mut Session<'_>,
     ready: &Ready,
-    (to, picture): (&Destination<'_>, &Path),
-    (output, count): (OutputSettings, Count),
+    to: &Destination<'_>,
+    picture: &Path,
+    output: OutputSettings,
+    count: Count,
     exec: &Exec,
 ) -> Ended {
     let start = Instant::now();
@@ -109,10 +111,10 @@ pub(super) fn render(
     let mut draw = |band: Rect| {
         steps.show("bands", band.y0.into(), camera.height.into());
         bands += 1;
-        band_of_parts(session, ready, band, (output, divides), exec, &mut parts)
+        band_of_parts(session, ready, band, output, divides, exec, &mut parts)
     };
-    let how = (output.compression, exec);
-    exr::pending_bands(picture, (camera.size(), rows), &text, how, &mut draw)?.put()?;
+    exr::pending_bands(picture, camera.size(), rows, &text, output.compression, exec, &mut draw)?
+        .put()?;
     drop(steps);
     report::scene(loaded);
     report::camera(camera);
@@ -132,7 +134,8 @@ fn band_of_parts(
     session: &mut Session<'_>,
     ready: &Ready,
     part: Rect,
-    (output, divides): (OutputSettings, bool),
+    output: OutputSettings,
+    divides: bool,
     exec: &Exec,
     parts: &mut u32,
 ) -> Result<Frame<f32>> {
@@ -141,8 +144,7 @@ fn band_of_parts(
         if !fits && reads {
             let middle = part.x0.midpoint(part.x1);
             let halves = [Rect { x1: middle, ..part }, Rect { x0: middle, ..part }];
-            let mut draw =
-                |half| band_of_parts(session, ready, half, (output, divides), exec, parts);
+            let mut draw = |half| band_of_parts(session, ready, half, output, divides, exec, parts);
             let left = draw(halves[0])?;
             return left.beside(&draw(halves[1])?);
         }

@@ -37,7 +37,7 @@ pub(super) fn run(args: &Args) -> Ended {
     let folder = args.output.join(PICTURES);
     fs::create_dir_all(&folder).map_err(|source| Error::io(&folder, source))?;
     let steps = progress::Steps::new("measuring");
-    let verdicts = verdicts(&claims(), (&scans, &FORMATS), &exec, &|what, done, of| {
+    let verdicts = verdicts(&claims(), &scans, &FORMATS, &exec, &|what, done, of| {
         steps.show(what, done, of);
     })?;
     steps.show("writing", 0, 1);

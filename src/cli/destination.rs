@@ -137,8 +137,10 @@ impl Destination<'_> {
     /// The text of the picture, or of the part.
     pub(super) fn text(
         &self,
-        (scene, groups): (&Scene, Option<&Groups>),
-        (camera, method): (&Camera, &Method),
+        scene: &Scene,
+        groups: Option<&Groups>,
+        camera: &Camera,
+        method: &Method,
         output: OutputSettings,
     ) -> String {
         let whole = provenance::text(scene, groups, camera, method, output);
@@ -168,14 +170,16 @@ impl Destination<'_> {
 /// writes the depths, if they are wanted.
 pub(super) fn write(
     picture: &Path,
-    (frame, window): (&Frame<f32>, Window),
+    frame: &Frame<f32>,
+    window: Window,
     text: impl Fn() -> String + Sync,
-    (output, depth): (OutputSettings, Option<Depth>),
+    output: OutputSettings,
+    depth: Option<Depth>,
     exec: &Exec,
 ) -> Result<()> {
     let (small, large) = exec.join(
         || png::pending_frame(&picture.with_extension("png"), frame),
-        || exr::pending_part(picture, (frame, window), &text(), output.compression, exec),
+        || exr::pending_part(picture, frame, window, &text(), output.compression, exec),
     );
     let (small, large) = (small?, large?);
     large.put()?;

@@ -55,8 +55,14 @@ pub(super) fn run(args: &Args) -> Ended {
         None => (Vec::new(), None),
         Some(path) => {
             let described = Description::open(path)?;
-            let numbers = (file.output.number, &ready.camera);
-            let client = verify::read((&described, args.promise), numbers, &session, &exec)?;
+            let client = verify::read(
+                &described,
+                args.promise,
+                file.output.number,
+                &ready.camera,
+                &session,
+                &exec,
+            )?;
             let named =
                 named(&client, pixel).and_then(|id| fate(&session, &ready.camera, id, pixel));
             (session.checks(&ready.camera, &client, pixel)?, named)

@@ -58,7 +58,7 @@ pub(super) fn info(folder: &Path) -> Result<()> {
         let root = &hierarchy.nodes()[0];
         // Boxes of nodes over objects are one f32 wider on each side; that is hidden here.
         let (low, high) = (root.low.map(f32::next_up), root.high.map(f32::next_down));
-        report::bounds((low + Vec3::ZERO, high + Vec3::ZERO));
+        report::bounds(low + Vec3::ZERO, high + Vec3::ZERO);
     }
     Ok(())
 }

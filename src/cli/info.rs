@@ -104,7 +104,8 @@ fn points(path: &Path) -> Result<()> {
     line("  radii", report::radii(derived.radii));
     line("  dropped", report::dropped(&derived.dropped, 0));
     report::offset(offset);
-    report::bounds(surfels.bounds());
+    let (low, high) = surfels.bounds();
+    report::bounds(low, high);
     report::radius(&surfels);
     Ok(())
 }

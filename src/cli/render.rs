@@ -187,7 +187,7 @@ pub(super) fn run(args: &Args) -> Ended {
         return Err(Error::Usage(what.into()));
     }
     if frames.is_some() || pair {
-        return several(args, &destination, file, (frames, pair), &exec);
+        return several(args, &destination, file, frames, pair, &exec);
     }
     let picture = destination.place(&file, "")?;
     let mut ready = draw::ready_in_parts(&file, &exec)?;
@@ -196,8 +196,8 @@ pub(super) fn run(args: &Args) -> Ended {
     args.read_part(&mut ready, &exec)?;
     let (mut session, made) = draw::session(&ready, &args.options, &exec)?;
     if let Some(count) = args.bands {
-        let to = (&destination, picture.as_path());
-        return bands::render(&mut session, &ready, to, (file.output, count), &exec);
+        let (to, output) = (&destination, file.output);
+        return bands::render(&mut session, &ready, to, &picture, output, count, &exec);
     }
     let window = destination.limit(&mut session, &ready.camera)?;
     let loading = start.elapsed();
@@ -208,14 +208,14 @@ pub(super) fn run(args: &Args) -> Ended {
 
     let mut times = Vec::new();
     let drawing = progress::during("rendering", || {
-        repeated(&mut session, &ready, (file.output, args.repeat), &mut times)
+        repeated(&mut session, &ready, file.output, args.repeat, &mut times)
     })?;
 
     let writing = Instant::now();
     destination.make_folder()?;
     progress::during("writing", || -> Result<()> {
-        let text = || destination.text((scene, groups.as_ref()), (camera, method), file.output);
-        write(&picture, (&drawing.frame, window), text, (file.output, destination.depth), &exec)
+        let text = || destination.text(scene, groups.as_ref(), camera, method, file.output);
+        write(&picture, &drawing.frame, window, text, file.output, destination.depth, &exec)
     })?;
     let (writing, tally, seen) = (writing.elapsed(), drawing.tally, drawing.seen.clone());
     drop(drawing);
@@ -231,7 +231,7 @@ pub(super) fn run(args: &Args) -> Ended {
     report::tally(&tally);
     report::selection(scene, seen.as_ref());
     let steady = if seen.is_some() { " after this one" } else { "" };
-    print_times(&exec, loading, (times, steady), writing);
+    print_times(&exec, loading, times, steady, writing);
     report::time("total", vec![start.elapsed()]);
     print_files(&destination, &picture, projects);
     Ok(Ending::Good)
@@ -242,7 +242,8 @@ fn several(
     args: &Args,
     destination: &Destination<'_>,
     mut file: SceneFile,
-    (frames, pair): (Option<Range<u32>>, bool),
+    frames: Option<Range<u32>>,
+    pair: bool,
     exec: &Exec,
 ) -> Ended {
     if let Some(frames) = &frames {
@@ -253,7 +254,7 @@ fn several(
     let walk = |target| Walk::new(target, size, &destination.place(&file, "")?);
     let walk = args.target_ms.map(walk).transpose()?;
     let shots = sequence::shots(destination, &file, frames, pair)?;
-    sequence::render(destination, &file, (&shots, walk), exec)
+    sequence::render(destination, &file, &shots, walk, exec)
 }
 
 /// What a part holds by a method whose other stages need the whole picture.
@@ -265,7 +266,8 @@ pub(super) const PROJECTION: &str =
 fn repeated<'s>(
     session: &'s mut Session<'_>,
     Ready { camera, method, .. }: &Ready,
-    (output, count): (OutputSettings, u32),
+    output: OutputSettings,
+    count: u32,
     times: &mut Times,
 ) -> Result<Cow<'s, Picture<f32>>> {
     if count > 1 && matches!(method, Method::Deferred(_)) {
@@ -323,7 +325,7 @@ fn print_files(destination: &Destination<'_>, picture: &Path, projects: bool) {
 }
 
 /// Prints the times. `which` says which pictures were timed.
-fn print_times(exec: &Exec, loading: Duration, (times, which): (Times, &str), writing: Duration) {
+fn print_times(exec: &Exec, loading: Duration, times: Times, which: &str, writing: Duration) {
     let threads = report::threads(exec);
     let of = match times.len() {
         1 => String::new(),

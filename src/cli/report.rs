@@ -13,7 +13,7 @@ pub(super) use splatref::report::short;
 use splatref::scene::gaussians::UNDRAWABLE;
 use splatref::scene::objects::detail::prefix::Estimate;
 use splatref::scene::objects::{Detail, Split};
-use splatref::scene::{Camera, Counts, Dropped, Gaussians, Groups, Objects, Projection};
+use splatref::scene::{Camera, Counts, Dropped, Gaussians, Groups, Objects, Projection, Sphere};
 use splatref::scene::{Scene, Surfels};
 use splatref::setting::{Fields, Word};
 use splatref::source::derive::Origin;
@@ -51,7 +51,8 @@ pub(super) fn scene(loaded: &Loaded) {
     }
     line("  dropped", dropped(&loaded.dropped, loaded.dropped_primitives));
     offset(scene.offset);
-    bounds(scene.bounds());
+    let (low, high) = scene.bounds();
+    bounds(low, high);
     radius(&scene.surfels);
 }
 
@@ -64,7 +65,8 @@ fn gaussians_of(scene: &Scene, gaussians: &Gaussians, report: &GaussianReport) {
     line("  colours", gaussians.encoding().name());
     line("  dropped", dropped_gaussians(report.dropped));
     offset(scene.offset);
-    bounds(scene.bounds());
+    let (low, high) = scene.bounds();
+    bounds(low, high);
 }
 
 /// How many Gaussians were dropped, and why.
@@ -127,7 +129,7 @@ fn objects_of(loaded: &Loaded, objects: &Objects) {
         }
     }
     line("  dropped", dropped(&loaded.dropped, loaded.dropped_primitives));
-    let (middle, radius) = objects.bounding_sphere();
+    let Sphere { center: middle, radius } = objects.bounding_sphere();
     let (middle, radius) = (point(middle.to_array()), short(radius));
     line("  bounds", format!("a sphere around {middle} of radius {radius}"));
     if surfels > 0 {
@@ -195,7 +197,7 @@ pub(super) fn offset(offset: DVec3) {
 }
 
 /// Prints the bounding box.
-pub(super) fn bounds((low, high): (Vec3, Vec3)) {
+pub(super) fn bounds(low: Vec3, high: Vec3) {
     let [low, high] = [low, high].map(|corner| point(corner.to_array().map(f64::from)));
     line("  bounds", format!("{low} to {high}"));
 }
@@ -277,7 +279,7 @@ pub(super) fn camera(camera: &Camera) {
 /// Says if the scene reaches beyond the far plane of another renderer.
 pub(super) fn far(file: &SceneFile, scene: &Scene, camera: &Camera) {
     let Some(far) = file.camera.far else { return };
-    let (middle, radius) = scene.bounding_sphere();
+    let Sphere { center: middle, radius } = scene.bounding_sphere();
     let reach = radius - camera.view_from_world.as_dmat4().transform_point3(middle).z;
     if reach > far {
         let (far, reach) = (short(far), short(reach));

@@ -69,7 +69,8 @@ pub(super) fn shots(
 pub(super) fn render(
     to: &Destination<'_>,
     file: &SceneFile,
-    (shots, mut walk): (&[Shot], Option<Walk>),
+    shots: &[Shot],
+    mut walk: Option<Walk>,
     exec: &Exec,
 ) -> Ended {
     let start = Instant::now();
@@ -94,6 +95,7 @@ pub(super) fn render(
     report::method(&ready.method, &ready.loaded.scene, &ready.camera);
     to.make_folder()?;
 
+    let pictures = Pictures { to, output: file.output, exec };
     let steps = progress::Steps::new("preparing");
     let show = |done: usize| steps.show("rendering", done as u64, shots.len() as u64);
     if ready.is_still() && walk.is_none() {
@@ -101,8 +103,7 @@ pub(super) fn render(
         for (done, shot) in shots.iter().enumerate() {
             show(done);
             let camera = ready.camera_at(shot.frame)?;
-            let pictures = (to, file.output, shot);
-            both(&mut session, (&camera, &mut seen), pictures, exec, &mut times)?;
+            pictures.both(&mut session, &camera, &mut seen, shot, &mut times)?;
         }
     } else {
         for (done, shot) in shots.iter().enumerate() {
@@ -114,8 +115,8 @@ pub(super) fn render(
             })?;
             let mut session = times.of("preparing", || ready.session(exec, &|_, _, _| ()))?.0;
             let placing = start.elapsed();
-            let (eyes, pictures) = ((&ready.camera, &mut seen), (to, file.output, shot));
-            let drawing = both(&mut session, eyes, pictures, exec, &mut times)?;
+            let drawing =
+                pictures.both(&mut session, &ready.camera, &mut seen, shot, &mut times)?;
             if let Some(walk) = &mut walk {
                 walk.note(&ready, [placing, drawing])?;
             }
@@ -130,53 +131,65 @@ pub(super) fn render(
     times.0.into_iter().for_each(|(what, time)| report::time(what, vec![time]));
     report::time("total", vec![start.elapsed()]);
     let walked = walk.map(Walk::finish).transpose()?;
-    files(&places, (!projects, to.depth));
+    files(&places, !projects, to.depth);
     walked.iter().flatten().for_each(|file| report::line("", file.display()));
     Ok(Ending::Good)
 }
 
-/// Draws and writes the pictures of a frame, of the camera's eye and then of the other one, each after
-/// its own state. Returns how long drawing took.
-fn both(
-    session: &mut Session<'_>,
-    (camera, seen): (&Camera, &mut [Option<Seen>; 2]),
-    (to, output, shot): (&Destination<'_>, OutputSettings, &Shot),
-    exec: &Exec,
-    times: &mut Times,
-) -> Result<Duration> {
-    let cameras = [Some(*camera), camera.seen_by_other_eye()].into_iter().flatten();
-    let mut drawing = Duration::ZERO;
-    for ((camera, path), seen) in cameras.zip(&shot.places).zip(seen) {
-        session.resume(seen.take());
-        let drawn;
-        (*seen, drawn) = one(session, &camera, (to, output, path), exec, times)?;
-        drawing += drawn;
-    }
-    Ok(drawing)
+/// Where and how the pictures of a sequence are written.
+struct Pictures<'a> {
+    to: &'a Destination<'a>,
+    output: OutputSettings,
+    exec: &'a Exec,
 }
 
-/// Draws and writes one picture, and returns the state after it, and how long drawing took.
-fn one(
-    session: &mut Session<'_>,
-    camera: &Camera,
-    (to, output, path): (&Destination<'_>, OutputSettings, &Path),
-    exec: &Exec,
-    times: &mut Times,
-) -> Result<(Option<Seen>, Duration)> {
-    let start = Instant::now();
-    let (scene, method, groups) = (session.scene(), *session.method(), session.groups().cloned());
-    let window = to.limit(session, camera)?;
-    let drawing = output.draw(session, camera)?;
-    let drawn = start.elapsed();
-    drawing.timings.iter().for_each(|(stage, time)| times.add(stage, *time));
-    let text = || to.text((scene, groups.as_ref()), (camera, &method), output);
-    let pixels = (&drawing.frame, window);
-    times.of("writing", || write(path, pixels, text, (output, to.depth), exec))?;
-    Ok((drawing.seen.clone(), drawn))
+impl Pictures<'_> {
+    /// Draws and writes the pictures of a frame, of the camera's eye and then of the other one, each after
+    /// its own state. Returns how long drawing took.
+    fn both(
+        &self,
+        session: &mut Session<'_>,
+        camera: &Camera,
+        seen: &mut [Option<Seen>; 2],
+        shot: &Shot,
+        times: &mut Times,
+    ) -> Result<Duration> {
+        let cameras = [Some(*camera), camera.seen_by_other_eye()].into_iter().flatten();
+        let mut drawing = Duration::ZERO;
+        for ((camera, path), seen) in cameras.zip(&shot.places).zip(seen) {
+            session.resume(seen.take());
+            let drawn;
+            (*seen, drawn) = self.one(session, &camera, path, times)?;
+            drawing += drawn;
+        }
+        Ok(drawing)
+    }
+
+    /// Draws and writes one picture, and returns the state after it, and how long drawing took.
+    fn one(
+        &self,
+        session: &mut Session<'_>,
+        camera: &Camera,
+        path: &Path,
+        times: &mut Times,
+    ) -> Result<(Option<Seen>, Duration)> {
+        let Self { to, output, exec } = *self;
+        let start = Instant::now();
+        let (scene, method, groups) =
+            (session.scene(), *session.method(), session.groups().cloned());
+        let window = to.limit(session, camera)?;
+        let drawing = output.draw(session, camera)?;
+        let drawn = start.elapsed();
+        drawing.timings.iter().for_each(|(stage, time)| times.add(stage, *time));
+        let text = || to.text(scene, groups.as_ref(), camera, &method, output);
+        let frame = &drawing.frame;
+        times.of("writing", || write(path, frame, window, text, output, to.depth, exec))?;
+        Ok((drawing.seen.clone(), drawn))
+    }
 }
 
 /// Prints the first and the last of the files.
-fn files(places: &[PathBuf], (png, depth): (bool, Option<Depth>)) {
+fn files(places: &[PathBuf], png: bool, depth: Option<Depth>) {
     let [Some(first), Some(last)] = [places.first(), places.last()] else { return };
     let depth = depth.map(|depth| format!("depth.{}", depth.file.extension()));
     let ends = [Some("exr"), png.then_some("png"), depth.as_deref()];

@@ -174,7 +174,7 @@ pub fn compare(reference: &Image, picture: &Image, criteria: &Criteria) -> Resul
         let relation = if b.is_none() && criteria.skip_observations && is_observation(&name) {
             Relation::Observation
         } else {
-            relation((a, b), reference.width, criteria.tolerance_of(&name, &all))
+            relation(a, b, reference.width, criteria.tolerance_of(&name, &all))
         };
         ChannelComparison { name, relation }
     });
@@ -183,11 +183,12 @@ pub fn compare(reference: &Image, picture: &Image, criteria: &Criteria) -> Resul
 
 /// Relates two channels, each with `width` values a row.
 fn relation(
-    channels: (Option<&Values>, Option<&Values>),
+    first: Option<&Values>,
+    second: Option<&Values>,
     width: u32,
     tolerance: Tolerance,
 ) -> Relation {
-    match channels {
+    match (first, second) {
         (_, None) => Relation::OnlyFirst,
         (None, _) => Relation::OnlySecond,
         (Some(Values::Float(a)), Some(Values::Float(b))) => {

@@ -202,7 +202,7 @@ impl<'a> Samples<'a> {
             self.tree.search(point, &mut within);
             within.found.sort_unstable();
             let near = within.found.iter().map(|&id| &self.all[id as usize]);
-            mean(near, (center, self.surfels.normal()[i].as_dvec3()), reach2)
+            mean(near, center, self.surfels.normal()[i].as_dvec3(), reach2)
         };
         some.iter().map(mean).collect()
     }
@@ -237,7 +237,8 @@ impl Search for Within<'_> {
 /// The mean of samples, in their order, around a surfel with this position and normal.
 fn mean<'s>(
     samples: impl Iterator<Item = &'s Sample>,
-    (center, normal): (DVec3, DVec3),
+    center: DVec3,
+    normal: DVec3,
     reach2: f64,
 ) -> Option<Vec3> {
     let (mut sum, mut weight) = (DVec3::ZERO, 0.0);

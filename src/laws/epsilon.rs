@@ -75,7 +75,9 @@ const INFINITE: Law = Law::odd(
 fn decides<R: Exact>(
     what: &Law,
     visible: &impl Fn(R, R, R) -> bool,
-    (t, nearest, epsilon): (R, R, R),
+    t: R,
+    nearest: R,
+    epsilon: R,
     expected: bool,
 ) -> Lawful {
     let found = visible(t, nearest, epsilon);
@@ -98,19 +100,19 @@ pub fn case<R: Exact>(
     nearest: R,
     [a, b]: [R; 2],
 ) -> Lawful {
-    decides(&NEAREST, visible, (nearest, nearest, a), true)?;
+    decides(&NEAREST, visible, nearest, nearest, a, true)?;
     let (near, far) = if t < nearest { (t, nearest) } else { (nearest, t) };
     let (small, large) = if a < b { (a, b) } else { (b, a) };
     if visible(t, nearest, small) {
-        decides(&GREATER, visible, (t, nearest, large), true)?;
+        decides(&GREATER, visible, t, nearest, large, true)?;
     }
     if visible(far, nearest, a) {
-        decides(&NEARER, visible, (near, nearest, a), true)?;
+        decides(&NEARER, visible, near, nearest, a, true)?;
     }
     let (depth, limit) = (t.to_f64(), nearest.to_f64() + a.to_f64());
     let rounding = 4.0 * unit::<R>() * limit;
     if (depth - limit).abs() > rounding || limit == f64::INFINITY {
-        decides(&ABOUT, visible, (t, nearest, a), depth <= limit)?;
+        decides(&ABOUT, visible, t, nearest, a, depth <= limit)?;
     }
     Ok(())
 }
@@ -124,8 +126,8 @@ pub fn case<R: Exact>(
 /// The first counterexample.
 pub fn limit<R: Exact>(visible: &impl Fn(R, R, R) -> bool, t: R, nearest: R, epsilon: R) -> Lawful {
     let (near, far) = if t < nearest { (t, nearest) } else { (nearest, t) };
-    decides(&ZERO, visible, (far, near, R::ZERO), far == near)?;
-    decides(&LIMIT, visible, (t, nearest, epsilon), t <= nearest + epsilon)
+    decides(&ZERO, visible, far, near, R::ZERO, far == near)?;
+    decides(&LIMIT, visible, t, nearest, epsilon, t <= nearest + epsilon)
 }
 
 /// epsilon = +inf keeps everything.
@@ -133,5 +135,5 @@ pub fn limit<R: Exact>(visible: &impl Fn(R, R, R) -> bool, t: R, nearest: R, eps
 /// # Errors
 /// The counterexample.
 pub fn infinite<R: Exact>(visible: &impl Fn(R, R, R) -> bool, t: R, nearest: R) -> Lawful {
-    decides(&INFINITE, visible, (t, nearest, R::INFINITY), true)
+    decides(&INFINITE, visible, t, nearest, R::INFINITY, true)
 }

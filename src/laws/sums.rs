@@ -63,8 +63,10 @@ const NEGATIVE: Law = Law::odd(
 
 /// The averages of a constant, with all weights times `scale`.
 fn mean<R: Exact>(
-    (add, average): (&impl Fn([R; 3], R, [R; 3]) -> [R; 3], &impl Fn([R; 3], R) -> [R; 3]),
-    (weights, scale): (&[R], f32),
+    add: &impl Fn([R; 3], R, [R; 3]) -> [R; 3],
+    average: &impl Fn([R; 3], R) -> [R; 3],
+    weights: &[R],
+    scale: f32,
     value: [R; 3],
 ) -> [R; 3] {
     let (mut sum, mut total) = ([R::ZERO; 3], R::ZERO);
@@ -88,7 +90,7 @@ pub fn constant<R: Exact>(
     value: [R; 3],
 ) -> Lawful {
     let inputs = format_args!("the value {value:?} with the weights {weights:?}");
-    let found = mean((add, average), (weights, 1.0), value);
+    let found = mean(add, average, weights, 1.0, value);
     let bound = (2 * weights.len() + 2) as f64 * unit::<R>();
     let near = |i: usize| {
         let (found, value) = (found[i].to_f64(), value[i].to_f64());
@@ -113,7 +115,7 @@ pub fn bits<R: Exact>(
     value: [R; 3],
 ) -> Lawful {
     let inputs = format_args!("the value {value:?} with the weights {weights:?}");
-    let mean = |scale: f32, value: [R; 3]| mean((add, average), (weights, scale), value);
+    let mean = |scale: f32, value: [R; 3]| mean(add, average, weights, scale, value);
     let (ones, one) = ([R::ONE; 3], mean(1.0, [R::ONE; 3]));
     law(&ONE, same(one, ones), &inputs, &ones, &one)?;
     let (found, scaled) = (mean(1.0, value), mean(1024.0, value));

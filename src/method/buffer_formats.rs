@@ -73,7 +73,7 @@ use crate::composite::over::Blend;
 use crate::composite::under::Under;
 use crate::frame::{Frame, NamedPlane, Samples};
 use crate::number::{Exact, MapInline, Real};
-use crate::scene::{Camera, Projection, Scene};
+use crate::scene::{Camera, Projection, Scene, Sphere};
 use crate::setting::Words;
 
 /// The buffer format of colours, weights, normals and their sums.
@@ -233,7 +233,7 @@ pub(crate) struct DepthRange {
 
 impl DepthRange {
     pub(crate) fn new(scene: &Scene, camera: &Camera) -> Self {
-        let (center, radius) = scene.bounding_sphere();
+        let Sphere { center, radius } = scene.bounding_sphere();
         let [m0, m1, m2, m3] = camera.view_from_world.row(2).to_array().map_inline(f64::from);
         let t = -(((m0 * center.x + m1 * center.y) + m2 * center.z) + m3);
         let least = f64::from(camera.near);

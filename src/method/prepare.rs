@@ -25,7 +25,8 @@ impl<R: Real, S: Send> Prepared<R, S> {
     ///
     /// `project` makes the records of a range of items; `bounds` returns the pixels of a record.
     pub(crate) fn new(
-        (job, grid): (&Job<'_>, &Grid),
+        job: &Job<'_>,
+        grid: &Grid,
         settings: &SplatSettings,
         count: usize,
         project: impl Fn(&Projector<R>, Range<usize>, &mut Vec<S>) -> Tally + Sync + Send,
@@ -46,26 +47,28 @@ impl<R: Real, S: Send> Prepared<R, S> {
             Some(order) => order.iter().map(|&i| splats[i as usize]).collect(),
             None => splats,
         };
-        Self::arranged((job, grid), settings, ranges.collect(), projected, bounds, side_by_side)
+        Self::arranged(job, grid, settings, ranges.collect(), projected, bounds, side_by_side)
     }
 
     /// Projects the items of some batches and sorts the splats into tiles. The order of the items
     /// is the order of the batches; the items of one batch are near each other. `project` and
     /// `bounds` are as in [`Prepared::new`].
     pub(crate) fn of_batches<B: Send>(
-        (job, grid): (&Job<'_>, &Grid),
+        job: &Job<'_>,
+        grid: &Grid,
         settings: &SplatSettings,
         batches: Vec<B>,
         project: impl Fn(&Projector<R>, B, &mut Vec<S>) -> Tally + Sync + Send,
         bounds: impl Fn(&S) -> Rect + Sync + Send,
     ) -> Self {
-        Self::arranged((job, grid), settings, batches, project, bounds, |splats, _| splats)
+        Self::arranged(job, grid, settings, batches, project, bounds, |splats, _| splats)
     }
 
     /// [`Prepared::of_batches`], with the splats of a batch in the order in which `arrange` puts
     /// them for its bins.
     fn arranged<B: Send>(
-        (job, grid): (&Job<'_>, &Grid),
+        job: &Job<'_>,
+        grid: &Grid,
         settings: &SplatSettings,
         batches: Vec<B>,
         project: impl Fn(&Projector<R>, B, &mut Vec<S>) -> Tally + Sync + Send,
@@ -144,7 +147,8 @@ impl<R: Exact> Prepared<R, Splat<R>> {
     pub(crate) fn splats(job: &Job<'_>, settings: &SplatSettings) -> Self {
         let surfels = &job.scene.surfels;
         Self::new(
-            (job, &job.grid()),
+            job,
+            &job.grid(),
             settings,
             surfels.len(),
             |projector, range, splats| {

@@ -109,7 +109,8 @@ pub(crate) use joined;
 pub(crate) fn planes<T, R: Real>(
     fields: &[Field<T, R>],
     number: usize,
-    (window, record): (Rect, &dyn Fn(u32, u32) -> T),
+    window: Rect,
+    record: &dyn Fn(u32, u32) -> T,
     there: &Conditions,
 ) -> Vec<NamedPlane<R>> {
     let plane = |Field { row, part }: &Field<T, R>| match part {

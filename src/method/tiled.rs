@@ -91,7 +91,7 @@ impl<T> Tiled<T> {
     where
         T: Copy,
     {
-        record::planes(fields, number, (self.grid.window(), &|x, y| *self.at(x, y)), there)
+        record::planes(fields, number, self.grid.window(), &|x, y| *self.at(x, y), there)
     }
 
     /// Makes a plane from one value of each record.

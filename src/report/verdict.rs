@@ -50,7 +50,9 @@ impl<'a> VerdictReport<'a> {
     pub fn new(
         session: &Session<'_>,
         camera: &Camera,
-        (client, verdict, likely): (&'a Client, &'a Verdict, Option<String>),
+        client: &'a Client,
+        verdict: &'a Verdict,
+        likely: Option<String>,
         replay: &'a (dyn Fn((u32, u32)) -> String + Sync),
     ) -> Result<Self> {
         let heaviest = match worst(verdict) {
@@ -167,7 +169,11 @@ impl<'a> VerdictReport<'a> {
             replay: worst(verdict).map(|worst| replay(worst.pixel)),
             stages: verdict.stages.iter().map(JsonStage::new).collect(),
             unlike: verdict.unlike.iter().map(JsonUnlike::new).collect(),
-            shifts: LIMITS.iter().zip(&verdict.shifts).map(JsonShift::new).collect(),
+            shifts: LIMITS
+                .iter()
+                .zip(&verdict.shifts)
+                .map(|(limit, shift)| JsonShift::new(limit, shift))
+                .collect(),
         };
         let text = serde_json::to_string_pretty(&json);
         text.map(|text| text + "\n").map_err(|error| Error::Invalid(error.to_string()))

@@ -22,17 +22,26 @@ impl Scene {
     /// used vertex plus its radius. A scene of objects uses [`super::Objects::bounding_sphere`]. Of
     /// Gaussians it reaches three standard deviations beyond their centres.
     #[must_use]
-    pub fn bounding_sphere(&self) -> (DVec3, f64) {
+    pub fn bounding_sphere(&self) -> Sphere {
         match (&self.objects, &self.gaussians) {
             (Some(objects), _) => objects.bounding_sphere(),
             (None, Some(gaussians)) => {
                 let (low, high) = gaussians.bounds();
                 let center = (low.as_dvec3() + high.as_dvec3()) / 2.0;
-                (center, gaussians.reach(center))
+                Sphere { center, radius: gaussians.reach(center) }
             }
             (None, None) => sphere(&self.surfels, &self.primitives),
         }
     }
+}
+
+/// A sphere in world space.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Sphere {
+    /// The middle.
+    pub center: DVec3,
+    /// The radius.
+    pub radius: f64,
 }
 
 /// The box and the sphere around surfels and primitives together, by the rules of
@@ -54,13 +63,13 @@ impl Bounds {
         let (low, high) = corners(surfels, primitives);
         // Adding 0 turns -0 into 0.
         let (low, high) = (low + Vec3::ZERO, high + Vec3::ZERO);
-        Self { low, high, radius: sphere(surfels, primitives).1 }
+        Self { low, high, radius: sphere(surfels, primitives).radius }
     }
 
     /// The box, and the sphere around it.
-    pub(super) fn corners_and_sphere(&self) -> ([DVec3; 2], (DVec3, f64)) {
+    pub(super) fn corners_and_sphere(&self) -> ([DVec3; 2], Sphere) {
         let corners = [self.low.as_dvec3(), self.high.as_dvec3()];
-        (corners, ((corners[0] + corners[1]) / 2.0, self.radius))
+        (corners, Sphere { center: (corners[0] + corners[1]) / 2.0, radius: self.radius })
     }
 }
 
@@ -73,7 +82,7 @@ pub(super) fn corners(surfels: &Surfels, primitives: &Primitives) -> (Vec3, Vec3
 }
 
 /// See [`Scene::bounding_sphere`].
-pub(super) fn sphere(surfels: &Surfels, primitives: &Primitives) -> (DVec3, f64) {
+pub(super) fn sphere(surfels: &Surfels, primitives: &Primitives) -> Sphere {
     if primitives.is_empty() {
         return surfels.bounding_sphere();
     }
@@ -83,7 +92,7 @@ pub(super) fn sphere(surfels: &Surfels, primitives: &Primitives) -> (DVec3, f64)
         (position.as_dvec3() - center).length() + f64::from(radius)
     };
     let most = |most, far| if far > most { far } else { most };
-    (center, primitives.used().map(reach).fold(surfels.reach(center), most))
+    Sphere { center, radius: primitives.used().map(reach).fold(surfels.reach(center), most) }
 }
 
 #[cfg(test)]
@@ -118,7 +127,10 @@ mod tests {
         let corners = (Vec3::new(0.0, 0.0, -3.0), Vec3::new(2.0, 4.0, 5.0));
         assert_eq!(alone.bounds(), corners, "the origin of no surfels is not");
         // Around (1, 2, 1): corners of the triangle at sqrt(6), the ends of the tube at 4 plus 0.5.
-        assert_eq!(alone.bounding_sphere(), (DVec3::new(1.0, 2.0, 1.0), 4.5));
+        assert_eq!(
+            alone.bounding_sphere(),
+            Sphere { center: DVec3::new(1.0, 2.0, 1.0), radius: 4.5 }
+        );
     }
 
     #[test]
@@ -131,7 +143,10 @@ mod tests {
         };
         let (surfels, _) = Surfels::new(cloud).unwrap();
         let mut both = scene(surfels);
-        assert_eq!(both.bounding_sphere(), (DVec3::new(1.0, 2.0, 1.0), 7.0));
+        assert_eq!(
+            both.bounding_sphere(),
+            Sphere { center: DVec3::new(1.0, 2.0, 1.0), radius: 7.0 }
+        );
         both.primitives = Primitives::default();
         assert_eq!(both.bounding_sphere(), both.surfels.bounding_sphere());
         assert_eq!(both.bounds(), both.surfels.bounds());

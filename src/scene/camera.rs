@@ -43,6 +43,7 @@ pub mod turntable;
 
 use crate::error::{Error, Result};
 use crate::frame::Rect;
+use crate::scene::Sphere;
 pub use convention::{Convention, PoseMatrix};
 use glam::{DMat3, DMat4, DVec3, Mat4};
 pub use intrinsics::Intrinsics;
@@ -222,7 +223,7 @@ impl Camera {
     pub fn framing(
         width: u32,
         height: u32,
-        (center, radius): (DVec3, f64),
+        Sphere { center, radius }: Sphere,
         from: DVec3,
         lens: Lens,
     ) -> Result<Self> {

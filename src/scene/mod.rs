@@ -45,6 +45,7 @@ pub mod surfels;
 pub mod texture;
 pub mod transform;
 
+pub use bounds::Sphere;
 pub use boxes::Boxes;
 pub use camera::{Camera, CameraMotion, Convention, Intrinsics, Lens, Pose, PoseMatrix};
 pub use camera::{Projection, Stereo, Turntable};

@@ -11,6 +11,7 @@ use super::degenerate::{CHUNK, Dropped, Points};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::number::MapInline;
+use crate::scene::Sphere;
 use crate::scene::light::is_color;
 use glam::{DVec3, Vec3};
 use std::ops::Range;
@@ -41,7 +42,7 @@ pub struct Surfels {
     mipmap: Option<Mipmap>,
     groups: Option<Groups>,
     median_radius: f32,
-    bounding_sphere: (DVec3, f64),
+    bounding_sphere: Sphere,
 }
 
 impl Surfels {
@@ -121,7 +122,7 @@ impl Surfels {
         let radius = retain(radius, &keep);
         let surfels = Self {
             median_radius: 0.0,
-            bounding_sphere: (DVec3::ZERO, 0.0),
+            bounding_sphere: Sphere::default(),
             position: retain(position, &keep),
             normal: retain(normal, &keep),
             radius,
@@ -153,7 +154,7 @@ impl Surfels {
             mipmap: None,
             groups: None,
             median_radius: 0.0,
-            bounding_sphere: (DVec3::ZERO, 0.0),
+            bounding_sphere: Sphere::default(),
         }
     }
 
@@ -165,7 +166,7 @@ impl Surfels {
     pub(crate) fn part_of(
         cloud: Cloud,
         median_radius: f32,
-        bounding_sphere: (DVec3, f64),
+        bounding_sphere: Sphere,
         exec: &Exec,
     ) -> Result<Option<Self>> {
         if cloud.position.is_empty() {
@@ -349,17 +350,18 @@ impl Surfels {
     /// high) / 2. Its radius is the largest distance from there to a surfel, sqrt((x x + y y) + z
     /// z), plus the surfel's reach: the radius or, for an ellipse, sqrt(U . U + V . V).
     #[must_use]
-    pub fn bounding_sphere(&self) -> (DVec3, f64) {
+    pub fn bounding_sphere(&self) -> Sphere {
         self.bounding_sphere
     }
 
-    fn sphere(&self, exec: &Exec) -> (DVec3, f64) {
+    fn sphere(&self, exec: &Exec) -> Sphere {
         let (low, high) = self.bounds();
         let center = (low.as_dvec3() + high.as_dvec3()) / 2.0;
         let firsts = (0..self.len()).step_by(CHUNK).collect();
         let far = exec
             .ordered(firsts, |first| self.reach_of(first..self.len().min(first + CHUNK), center));
-        (center, far.into_iter().fold(0.0, |most, far| if far > most { far } else { most }))
+        let radius = far.into_iter().fold(0.0, |most, far| if far > most { far } else { most });
+        Sphere { center, radius }
     }
 
     /// The largest distance from a point to a surfel plus its reach; 0 if there is none.

@@ -36,17 +36,19 @@ const OPEN: u32 = 2;
 pub(crate) fn affine_surfels<P: Profile>(
     projector: &Projector<Ball<Common<P>>>,
     surfels: &Surfels,
-    range: (Range<usize>, Option<&[usize]>),
+    range: Range<usize>,
+    list: Option<&[usize]>,
     draw: &mut dyn FnMut(usize, Option<Splat<Ball<P>>>),
 ) {
-    in_lanes(projector, surfels, range, draw);
+    in_lanes(projector, surfels, range, list, draw);
 }
 
 vectorized_avx2!(
     fn in_lanes<P: Profile>(
         projector: &Projector<Ball<Common<P>>>,
         surfels: &Surfels,
-        (range, list): (Range<usize>, Option<&[usize]>),
+        range: Range<usize>,
+        list: Option<&[usize]>,
         draw: &mut dyn FnMut(usize, Option<Splat<Ball<P>>>),
     ) {
         if !target_cfg_f!(target_feature = "avx2") {

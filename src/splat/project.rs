@@ -132,7 +132,7 @@ pub fn project<R: Exact>(
 ) -> (Splat<R>, Reasons<R>) {
     let (placed, shape) = projector.shape(disc);
     let crosses = projector.reaches_near_plane(&placed, &shape);
-    projector.splat(disc, (&placed, &shape), crosses, surfel)
+    projector.splat(disc, &placed, &shape, crosses, surfel)
 }
 
 /// [`project`] where `crosses` says whether the surfel reaches the near plane. A number that cannot
@@ -149,7 +149,7 @@ pub fn project_as<R: Real>(
     let unseen = projector.unseen_if_placed(&placed, disc);
     let shape = projector.shape_if_placed(&placed, disc);
     let (footprint, bounds, reasons) =
-        projector.footprint_of_shape(disc, (&placed, &shape), unseen, crosses);
+        projector.footprint_of_shape(disc, &placed, &shape, unseen, crosses);
     (Splat { footprint, bounds, surfel, back: placed.g.gt(R::ZERO) }, reasons)
 }
 
@@ -179,7 +179,7 @@ pub(crate) fn project_each<R: Real>(
         let possible = if alternative { crosses.possibly() } else { !crosses.certainly() };
         if possible {
             let (footprint, bounds, reasons) =
-                projector.footprint_of_shape(disc, (&placed, &shape), unseen, alternative);
+                projector.footprint_of_shape(disc, &placed, &shape, unseen, alternative);
             let back = placed.g.gt(R::ZERO);
             each(Splat { footprint, bounds, surfel, back }, reasons, crosses);
         }
@@ -208,11 +208,12 @@ impl<R: Real> Projector<R> {
     fn footprint_of_shape(
         &self,
         disc: &Disc<R>,
-        shape: (&PlacedDisc<R>, &Covariance<R>),
+        placed: &PlacedDisc<R>,
+        shape: &Covariance<R>,
         unseen: Reasons<R>,
         crosses: bool,
     ) -> (Footprint<R>, Rect, Reasons<R>) {
-        let (footprint, bounds) = self.footprint(disc, shape, crosses);
+        let (footprint, bounds) = self.footprint(disc, placed, shape, crosses);
         (footprint, bounds, reasons(unseen, &footprint, &bounds))
     }
 }
@@ -242,11 +243,12 @@ impl<R: Real> Projector<R> {
     fn splat(
         &self,
         disc: &Disc<R>,
-        (placed, shape): (&PlacedDisc<R>, &Covariance<R>),
+        placed: &PlacedDisc<R>,
+        shape: &Covariance<R>,
         crosses: bool,
         surfel: u32,
     ) -> (Splat<R>, Reasons<R>) {
-        let (footprint, bounds) = self.footprint(disc, (placed, shape), crosses);
+        let (footprint, bounds) = self.footprint(disc, placed, shape, crosses);
         let reasons = reasons(self.unseen(placed, disc.reach()), &footprint, &bounds);
         (Splat { footprint, bounds, surfel, back: placed.g.gt(R::ZERO) }, reasons)
     }
@@ -256,7 +258,8 @@ impl<R: Real> Projector<R> {
     fn footprint(
         &self,
         disc: &Disc<R>,
-        (placed, shape): (&PlacedDisc<R>, &Covariance<R>),
+        placed: &PlacedDisc<R>,
+        shape: &Covariance<R>,
         crosses: bool,
     ) -> (Footprint<R>, Rect) {
         if self.outline == Outline::RayCast {

@@ -12,7 +12,8 @@ use std::ops::Range;
 /// whole, by this word.
 pub(crate) fn missing(
     client: &Client,
-    (word, rows): (&str, &[PlaneRow]),
+    word: &str,
+    rows: &[PlaneRow],
     numbers: Range<usize>,
     there: &Conditions,
 ) -> Vec<String> {

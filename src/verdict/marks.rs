@@ -68,7 +68,7 @@ impl Marks {
 
     /// Turns the marks of a whole picture into the findings about a stage.
     pub(crate) fn whole(self, stage: &'static str, planes: Vec<&'static str>) -> StageVerdict {
-        whole(Some(self.rect), (stage, planes), vec![self])
+        whole(Some(self.rect), stage, planes, vec![self])
     }
 
     /// Adds the findings of a part of the picture: at each pixel the larger error, and all doubts.
@@ -192,7 +192,7 @@ pub(crate) fn stage_verdicts<const N: usize>(
     }
     let all = stages.into_iter().zip(of_stages).collect();
     let picture = job.part.is_none().then(|| job.picture());
-    job.exec.ordered(all, |(stage, parts)| whole(picture, stage, parts))
+    job.exec.ordered(all, |((stage, planes), parts)| whole(picture, stage, planes, parts))
 }
 
 /// Turns the marks of the parts of a picture, which share no pixel, into the findings about a
@@ -200,7 +200,8 @@ pub(crate) fn stage_verdicts<const N: usize>(
 /// other.
 fn whole(
     picture: Option<Rect>,
-    (stage, planes): (&'static str, Vec<&'static str>),
+    stage: &'static str,
+    planes: Vec<&'static str>,
     parts: Vec<Marks>,
 ) -> StageVerdict {
     let pixels = parts.iter().map(|part| part.found.len()).sum::<usize>() as u32;
@@ -252,6 +253,14 @@ fn keep_worse(worst: &mut Option<Finding>, own: Option<Finding>) {
     if worse {
         *worst = Some(own);
     }
+}
+
+/// A rectangle of pixels in a tile.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct TilePart {
+    /// The number of the tile.
+    pub(crate) tile: usize,
+    pub(crate) rect: Rect,
 }
 
 /// Which pixels of the planes to judge.
@@ -351,7 +360,7 @@ pub(crate) fn verdict<const N: usize>(
     job: &Job<'_>,
     stages: [(&'static str, Vec<&'static str>); N],
     budget: f64,
-    judge: impl Fn((usize, Rect), &mut [Marks; N]) -> Counts + Sync + Send,
+    judge: impl Fn(TilePart, &mut [Marks; N]) -> Counts + Sync + Send,
 ) -> Verdict {
     let tiles = match job.part {
         Some(part) => part.pieces.to_vec(),
@@ -359,7 +368,7 @@ pub(crate) fn verdict<const N: usize>(
     };
     let found = job.exec.ordered(tiles, |(tile, rect)| {
         let mut marks = [(); N].map(|()| Marks::new(rect));
-        let counts = judge((tile, rect), &mut marks);
+        let counts = judge(TilePart { tile, rect }, &mut marks);
         (marks, counts)
     });
     let mut all = Counts::default();
@@ -381,11 +390,11 @@ pub(crate) fn checks<const N: usize>(
     job: &Job<'_>,
     stages: [&'static str; N],
     pixel: (u32, u32),
-    judge: impl FnOnce((usize, Rect), &mut [Marks; N]) -> Counts,
+    judge: impl FnOnce(TilePart, &mut [Marks; N]) -> Counts,
 ) -> Result<Vec<Check>> {
     let Place { tile, rect } = Place::new(job, pixel)?;
     let mut marks = [(); N].map(|()| Marks::logging(rect));
-    judge((tile, rect), &mut marks);
+    judge(TilePart { tile, rect }, &mut marks);
     Ok(logged(&mut marks, &stages))
 }
 

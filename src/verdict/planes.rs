@@ -106,7 +106,8 @@ impl<'a> RecordPlanes<'a> {
     /// Checks every plane at a pixel, in one part of the report.
     pub(crate) fn check<T: Copy, P: Profile>(
         &self,
-        (part, fields): (usize, &[Field<T, Ball<P>>]),
+        part: usize,
+        fields: &[Field<T, Ball<P>>],
         at: (u32, u32),
         truth: &T,
         report: &mut Report<'_>,
@@ -143,7 +144,8 @@ impl<'a> RecordPlanes<'a> {
     /// planes that the scene has are read.
     pub(crate) fn read<T, P: Profile>(
         &self,
-        (fields, there): (&[Field<T, Ball<P>>], &Conditions),
+        fields: &[Field<T, Ball<P>>],
+        there: &Conditions,
         at: (u32, u32),
         record: &mut T,
     ) {
@@ -186,7 +188,8 @@ impl<'a> RecordPlanes<'a> {
     /// there.
     pub(crate) fn records<T: Copy, P: Profile>(
         &self,
-        (fields, there): (&[Field<T, Ball<P>>], &Conditions),
+        fields: &[Field<T, Ball<P>>],
+        there: &Conditions,
         size: [u32; 2],
         empty: T,
     ) -> Option<Plane<T>> {
@@ -194,7 +197,7 @@ impl<'a> RecordPlanes<'a> {
         wanted.all(|(place, _)| self.has(place)).then(|| {
             Plane::from_pixels(size, |x, y| {
                 let mut record = empty;
-                self.read((fields, there), (x, y), &mut record);
+                self.read(fields, there, (x, y), &mut record);
                 record
             })
         })

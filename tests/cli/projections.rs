@@ -129,8 +129,8 @@ fn changed(at: &Path, from: &str, to: &str, change: impl Fn(&mut Region)) {
         };
         frame.push(&name, samples).unwrap();
     }
-    let (file, text) = ((&frame, part.window), part.image.text.unwrap());
-    let pending = exr::pending_part(&at.join(to), file, &text, Default::default(), &exec);
+    let (window, text) = (part.window, part.image.text.unwrap());
+    let pending = exr::pending_part(&at.join(to), &frame, window, &text, Default::default(), &exec);
     pending.unwrap().put().unwrap();
 }
 

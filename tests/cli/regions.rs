@@ -130,8 +130,8 @@ fn parts_that_do_not_fit_are_named() {
     }
     let text = whole.image.text.unwrap();
     let exec = splatref::frame::Exec::sequential();
-    let file = (&frame, whole.window);
-    exr::pending_part(&at.path().join("other.exr"), file, &text, Default::default(), &exec)
+    let (place, window) = (at.path().join("other.exr"), whole.window);
+    exr::pending_part(&place, &frame, window, &text, Default::default(), &exec)
         .unwrap()
         .put()
         .unwrap();

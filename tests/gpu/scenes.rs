@@ -3,7 +3,7 @@
 use splatref::SceneFile;
 use splatref::composite::bins::Range;
 use splatref::method::single_pass::{DepthTest, Settings};
-use splatref::scene::{Camera, Projection, Scene};
+use splatref::scene::{Camera, Projection, Scene, Sphere};
 use splatref::source::Shape;
 use splatref::splat::SplatSettings;
 use splatref::splat::record::{SplatRecord, project_records};
@@ -113,7 +113,7 @@ impl Job {
 
     /// The power of two that brings depths to [0, 1].
     fn far_scale(&self) -> f32 {
-        let (center, radius) = self.scene.surfels.bounding_sphere();
+        let Sphere { center, radius } = self.scene.surfels.bounding_sphere();
         let farthest = (self.camera.eye() - center).length() + radius;
         0.5 / power_of_two(farthest as f32)
     }

@@ -271,9 +271,8 @@ fn cells_and_centers_have_three_outcomes() {
         let cell = pull::merge(&cells, &one, takes, first);
         assert!(merged.front.holds(cell.front) && merged.normal.x.holds(cell.normal.x));
 
-        let even = (true, false);
-        let many = push::offsets(&wide, even, Interval::from_f32(0.5));
-        let one = push::offsets(&cells, even, 0.5);
+        let many = push::offsets(&wide, true, false, Interval::from_f32(0.5));
+        let one = push::offsets(&cells, true, false, 0.5);
         let truths = pyramid::Cell::inside(&wide, &many);
         for (truth, inside) in truths.into_iter().zip(pyramid::Cell::inside(&cells, &one)) {
             outcomes.note("inside of a push", truth, inside);

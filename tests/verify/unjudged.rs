@@ -180,8 +180,8 @@ fn a_level_that_is_not_judged_is_in_the_lines_and_in_the_json() {
         let verdict = session.verify(&camera, &client, Verdict::BUDGET).unwrap();
         assert_eq!(verdict.outcome(), Outcome::Undecidable, "{method}");
         let replay = |_| String::new();
-        let found = (&client, &verdict, None);
-        let report = VerdictReport::new(&session, &camera, found, &replay).unwrap();
+        let report =
+            VerdictReport::new(&session, &camera, &client, &verdict, None, &replay).unwrap();
         let lines = report.lines();
         let line = lines.iter().find(|line| line.starts_with(after)).unwrap();
         assert!(line.contains("not judged") && line.contains("level 2"), "{line}");

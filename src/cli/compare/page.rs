@@ -100,7 +100,7 @@ fn tab(
         else {
             continue;
         };
-        mark((one, other), tolerance(&part.name), &mut errors, &mut wrong);
+        mark(one, other, tolerance(&part.name), &mut errors, &mut wrong);
     }
     let channels: Vec<String> = parts.iter().map(|part| part.name.clone()).collect();
     let is_index = first.channel(&channels[0]).or_else(|| second.channel(&channels[0]));
@@ -126,12 +126,13 @@ fn tab(
 
 /// Adds the differences of a channel to those of its plane.
 fn mark(
-    channels: (&Values, &Values),
+    first: &Values,
+    second: &Values,
     tolerance: Tolerance,
     errors: &mut [f32],
     wrong: &mut [bool],
 ) {
-    let pairs: Vec<(ChannelValue, ChannelValue)> = match channels {
+    let pairs: Vec<(ChannelValue, ChannelValue)> = match (first, second) {
         (Values::Float(a), Values::Float(b)) => {
             let pairs = a.iter().zip(b);
             pairs.map(|(&a, &b)| (ChannelValue::Float(a), ChannelValue::Float(b))).collect()

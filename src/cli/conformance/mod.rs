@@ -115,7 +115,7 @@ fn suite(args: &Args) -> Ended {
     let absolute = std::path::absolute(&folder).map_err(|source| Error::io(&folder, source))?;
     let mut program =
         Program { words, folder: absolute, timeout, promise: args.promise, exec: &exec };
-    let tried = try_all(args, rules, (&folder, &mut program), &exec)?;
+    let tried = try_all(args, rules, &folder, &mut program, &exec)?;
     finish(args, &folder, &tried)
 }
 
@@ -176,7 +176,8 @@ fn scenes(rules: &[Rule], folder: &Path, exec: &Exec) -> Ended {
 fn try_all(
     args: &Args,
     rules: Vec<Rule>,
-    (folder, program): (&Path, &mut Program<'_>),
+    folder: &Path,
+    program: &mut Program<'_>,
     exec: &Exec,
 ) -> Result<Tried> {
     let (width, count) = (Report::width(&rules), rules.len() as u64);
@@ -195,7 +196,7 @@ fn try_all(
         // A page that cannot be written is no failure of the renderer.
         let shown = match &judged {
             Ok((judged, client)) if args.report.is_some() => {
-                page::rule((&case, client, judged), &place, exec)?
+                page::rule(&case, client, judged, &place, exec)?
             }
             _ => Shown::default(),
         };

@@ -31,7 +31,9 @@ pub(super) struct Shown {
 
 /// Draws what the page shows of a rule, and writes the page of its verdict if it is not right.
 pub(super) fn rule(
-    (case, client, judged): (&Case, &Client, &Judged),
+    case: &Case,
+    client: &Client,
+    judged: &Judged,
     folder: &Path,
     exec: &Exec,
 ) -> Result<Shown> {
@@ -43,8 +45,7 @@ pub(super) fn rule(
         let [scene, planes] = command::files(folder);
         let replay = |(x, y)| format!("splatref explain {scene} {x} {y} --client {planes}");
         let likely = judged.likely.as_ref().map(|likely| likely.words.clone());
-        let found = (client, &judged.verdict, likely);
-        let page = VerdictReport::new(session, camera, found, &replay)?;
+        let page = VerdictReport::new(session, camera, client, &judged.verdict, likely, &replay)?;
         let page = page.page(session, camera, Number::F32, exec)?;
         page::pending(&folder.join(VERDICT), &page, exec)?.put()?;
     }

@@ -38,7 +38,7 @@ fn verdict(judged: &Judged) -> Value {
         "budget": verdict.budget,
         "first_wrong": verdict.first_wrong().map(|stage| stage.stage),
         "stages": verdict.stages.iter().map(JsonStage::new).collect::<Vec<_>>(),
-        "shifts": LIMITS.iter().zip(&verdict.shifts).map(JsonShift::new).collect::<Vec<_>>(),
+        "shifts": LIMITS.iter().zip(&verdict.shifts).map(|(limit, shift)| JsonShift::new(limit, shift)).collect::<Vec<_>>(),
     })
 }
 
@@ -88,11 +88,11 @@ impl Tried {
         let rules: Vec<Value> = rules.collect();
         let shifts = self.report.shifts();
         let shifts = shifts.iter().flat_map(|(rounding, shifts)| {
-            LIMITS.iter().zip(shifts).map(|pair| {
+            LIMITS.iter().zip(shifts).map(|(limit, shift)| {
                 json!({
                     "promise": rounding.word(),
-                    "alarms": pair.1.alarms(),
-                    "shift": JsonShift::new(pair),
+                    "alarms": shift.alarms(),
+                    "shift": JsonShift::new(limit, shift),
                 })
             })
         });

@@ -97,7 +97,7 @@ fn judge(args: &Args) -> Ended {
     session.set_region(args.region)?;
     let number = file.output.number;
     let client = progress::during("reading", || {
-        read((&described, args.promise), (number, camera), &session, &exec)
+        read(&described, args.promise, number, camera, &session, &exec)
     })?;
     let (verdict, likely) = progress::during("judging", || -> Result<_> {
         let verdict = session.verify(camera, &client, args.budget)?;
@@ -108,10 +108,10 @@ fn judge(args: &Args) -> Ended {
         Ok((verdict, likely))
     })?;
     let replay = |pixel| args.replay(pixel);
-    let report = VerdictReport::new(&session, camera, (&client, &verdict, likely), &replay)?;
+    let report = VerdictReport::new(&session, camera, &client, &verdict, likely, &replay)?;
     progress::during("writing", || {
         let page = || report.page(&session, camera, number, &exec);
-        write(args, &report, (|| errors(camera, &verdict), page), &exec)
+        write(args, &report, || errors(camera, &verdict), page, &exec)
     })?;
     report.lines().iter().for_each(say);
     Ok(Ending::from(verdict.outcome()).or_strict(args.strict))
@@ -121,7 +121,8 @@ fn judge(args: &Args) -> Ended {
 fn write(
     args: &Args,
     report: &VerdictReport<'_>,
-    (errors, page): (impl FnOnce() -> Result<Frame<f32>>, impl FnOnce() -> Result<Report>),
+    errors: impl FnOnce() -> Result<Frame<f32>>,
+    page: impl FnOnce() -> Result<Report>,
     exec: &Exec,
 ) -> Result<()> {
     let compression = OutputSettings::default().compression;
@@ -166,8 +167,10 @@ fn check(args: &Args, file: &SceneFile, described: &Description) -> Result<()> {
 /// Reads the planes of a client; `promise` replaces the promise in its description. A client that
 /// computes in f64 rounds what it stores once more.
 pub(super) fn read(
-    (described, promise): (&Description, Option<Rounding>),
-    (number, camera): (Number, &Camera),
+    described: &Description,
+    promise: Option<Rounding>,
+    number: Number,
+    camera: &Camera,
     session: &Session<'_>,
     exec: &Exec,
 ) -> Result<Client> {

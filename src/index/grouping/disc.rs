@@ -1,5 +1,6 @@
 //! A disc in space, and the dot product of this module.
 
+use crate::scene::Sphere;
 use glam::{DVec3, Vec3};
 
 /// A disc in space.
@@ -15,13 +16,13 @@ impl SpaceDisc {
     /// Whether two discs are near by a factor, see the [module](super).
     #[inline(always)]
     pub(super) fn is_near(&self, other: &Self, factor: f64) -> bool {
-        are_near(self.place(), other.place(), factor)
+        are_near(self.sphere(), other.sphere(), factor)
     }
 
-    /// The centre and the radius.
+    /// The sphere around it.
     #[inline(always)]
-    pub(super) fn place(&self) -> (DVec3, f64) {
-        (self.center.as_dvec3(), self.radius)
+    pub(super) fn sphere(&self) -> Sphere {
+        Sphere { center: self.center.as_dvec3(), radius: self.radius }
     }
 
     /// The cosine between the normals.
@@ -31,10 +32,10 @@ impl SpaceDisc {
     }
 }
 
-/// Whether two discs, by centre and radius, are near by a factor, see the [module](super).
+/// Whether two discs, by their spheres, are near by a factor, see the [module](super).
 #[inline(always)]
-pub(super) fn are_near((p, r): (DVec3, f64), (q, s): (DVec3, f64), factor: f64) -> bool {
-    let (d, reach) = (p - q, factor * (r + s));
+pub(super) fn are_near(a: Sphere, b: Sphere, factor: f64) -> bool {
+    let (d, reach) = (a.center - b.center, factor * (a.radius + b.radius));
     dot(d, d) < reach * reach
 }
 

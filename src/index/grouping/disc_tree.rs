@@ -12,7 +12,7 @@ use super::disc::{SpaceDisc, are_near};
 use super::samples::DiscSamples;
 use crate::frame::Exec;
 use crate::number::MapInline;
-use crate::scene::Surfels;
+use crate::scene::{Sphere, Surfels};
 use glam::{DVec3, Vec3};
 
 /// How many discs a block has. The compiler unrolls loops over fewer lanes before it can vectorize
@@ -108,7 +108,7 @@ impl DiscTree {
         mut visit: impl FnMut([u32; BYTE], usize) -> bool,
     ) {
         self.search(i / DISCS, factor, room);
-        let own = self.blocks[i / DISCS].disc(i % DISCS);
+        let own = self.blocks[i / DISCS].sphere(i % DISCS);
         for (at, boxes) in room.boxes.iter().enumerate() {
             let mut left = set_of(&boxes.near(own, factor));
             while left != 0 {
@@ -246,8 +246,8 @@ impl BoxLanes {
 
     /// 1 for each box that [may](Bounds::may_be_near) hold a disc near this disc, else 0.
     #[inline(always)]
-    fn near(&self, (p, r): (DVec3, f64), factor: f64) -> [u8; DISCS] {
-        let (one, mut near) = (Bounds { low: p, high: p, r }, [0; DISCS]);
+    fn near(&self, one: Sphere, factor: f64) -> [u8; DISCS] {
+        let (one, mut near) = (Bounds::of(one), [0; DISCS]);
         for (lane, near) in near.iter_mut().enumerate() {
             *near = u8::from(self.bounds(lane).may_be_near(&one, factor));
         }
@@ -283,36 +283,39 @@ impl DiscBlock {
         let [x, y, z, r] = [[f64::NAN; DISCS]; 4];
         let mut block = Self { x, y, z, r };
         for (lane, disc) in discs.enumerate() {
-            let (p, r) = disc.place();
-            (block.x[lane], block.y[lane], block.z[lane]) = (p.x, p.y, p.z);
-            block.r[lane] = r;
+            let Sphere { center, radius } = disc.sphere();
+            (block.x[lane], block.y[lane], block.z[lane]) = (center.x, center.y, center.z);
+            block.r[lane] = radius;
         }
         block
     }
 
-    /// The centre and the radius of the disc in a lane.
+    /// The sphere around the disc in a lane.
     #[inline(always)]
-    pub(super) fn disc(&self, lane: usize) -> (DVec3, f64) {
-        (DVec3::new(self.x[lane], self.y[lane], self.z[lane]), self.r[lane])
+    pub(super) fn sphere(&self, lane: usize) -> Sphere {
+        let center = DVec3::new(self.x[lane], self.y[lane], self.z[lane]);
+        Sphere { center, radius: self.r[lane] }
     }
 
     /// 1 for each disc that is near this disc, else 0.
     #[inline(always)]
-    fn near(&self, one: (DVec3, f64), factor: f64) -> [u8; DISCS] {
+    fn near(&self, one: Sphere, factor: f64) -> [u8; DISCS] {
         let mut near = [0; DISCS];
         for (lane, near) in near.iter_mut().enumerate() {
-            *near = u8::from(are_near(one, self.disc(lane), factor));
+            *near = u8::from(are_near(one, self.sphere(lane), factor));
         }
         near
     }
 }
 
 impl Bounds {
+    #[inline(always)]
+    fn of(Sphere { center, radius }: Sphere) -> Self {
+        Self { low: center, high: center, r: radius }
+    }
+
     fn around(block: &DiscBlock) -> Self {
-        let lane = |l: usize| {
-            let (p, r) = block.disc(l);
-            Self { low: p, high: p, r }
-        };
+        let lane = |l: usize| Self::of(block.sphere(l));
         let filled = (1..DISCS).take_while(|&l| !block.r[l].is_nan());
         filled.fold(lane(0), |all, l| all.and(&lane(l)))
     }

@@ -17,12 +17,17 @@ pub(super) struct Enlarged {
     pub(super) converged: bool,
 }
 
-/// Iterates eq. 9 for a group. `target` is A divided by pi, and `at_1` is the result of
-/// [`Scales::area`] at scale 1.
-pub(super) fn enlarged(group: &mut Scales<'_>, at_1: (f64, f64), target: f64) -> Result<Enlarged> {
+/// Iterates eq. 9 for a group. `target` is A divided by pi, and `area_at_1` and `sum_at_1` are the
+/// result of [`Scales::area`] at scale 1.
+pub(super) fn enlarged(
+    group: &mut Scales<'_>,
+    area_at_1: f64,
+    sum_at_1: f64,
+    target: f64,
+) -> Result<Enlarged> {
     let mut scale = 1.0;
     for step in 0..MAX_STEPS {
-        let (area, sum) = if step == 0 { at_1 } else { group.area(scale)? };
+        let (area, sum) = if step == 0 { (area_at_1, sum_at_1) } else { group.area(scale)? };
         let square = scale * scale;
         let next = ((target + square * (sum - area)) / sum).sqrt();
         // NaN fails this comparison.

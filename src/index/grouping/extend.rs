@@ -151,12 +151,12 @@ impl Work<'_> {
             let tree = DiscTree::new(self.surfels, own, self.exec);
             let mut scales = Scales::new(&tree, self.exec);
             // The search at scale 1 is used again by the larger scales.
-            let at_1 = if enlarge {
+            let (area_at_1, sum_at_1) = if enlarge {
                 scales.area(1.0)?
             } else {
                 area(&tree, &by_lower(&tree, 1.0, self.exec, &|_, _| ())?)
             };
-            let before = at_1.0 / target;
+            let before = area_at_1 / target;
             let mut coverage = GroupCoverage {
                 surfels: tree.surfel.len() as u64,
                 scale: 1.0,
@@ -167,7 +167,7 @@ impl Work<'_> {
             if enlarge && tree.surfel.is_empty() {
                 coverage.converged = false;
             } else if enlarge {
-                let enlarged = enlarge::enlarged(&mut scales, at_1, target)?;
+                let enlarged = enlarge::enlarged(&mut scales, area_at_1, sum_at_1, target)?;
                 (coverage.scale, coverage.converged) = (enlarged.scale, enlarged.converged);
                 let scale = f64::from(enlarged.scale);
                 coverage.after = scale * scale * scales.area(scale)?.0 / target;

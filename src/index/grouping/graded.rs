@@ -9,8 +9,7 @@ use crate::error::Result;
 use crate::frame::Exec;
 use crate::number::lanes::vectorized;
 use crate::progress::Progress;
-use crate::scene::Surfels;
-use glam::DVec3;
+use crate::scene::{Sphere, Surfels};
 use std::borrow::Cow;
 use std::ops::Range;
 
@@ -75,7 +74,7 @@ vectorized!(
         for (row, i) in places.enumerate() {
             for others in rows.row(row).all.chunks(DISCS) {
                 let block = DiscBlock::of(others.iter().map(|&j| &tree.discs[j as usize]));
-                let steps = steps_of(&block, tree.discs[i].place());
+                let steps = steps_of(&block, tree.discs[i].sphere());
                 for (lane, &j) in others.iter().enumerate() {
                     least.push(if away(i, j as usize) { NEVER } else { steps[lane] as u8 });
                 }
@@ -92,16 +91,16 @@ vectorized!(
 /// Rounding cannot move that border by half a multiple, so only the multiple closest to it is
 /// tested.
 #[inline(always)]
-fn steps_of(block: &DiscBlock, one: (DVec3, f64)) -> [u32; DISCS] {
+fn steps_of(block: &DiscBlock, one: Sphere) -> [u32; DISCS] {
     // Adding this to a number from 0 to 64 and subtracting it again leaves the closest whole
     // number, and the lower bits of the sum hold that number. (A conversion that saturates does not
     // vectorize.)
     const WHOLE: f64 = 1.5 * (1_u64 << 52) as f64;
     let mut least = [0; DISCS];
     for (lane, least) in least.iter_mut().enumerate() {
-        let other = block.disc(lane);
-        let d = one.0 - other.0;
-        let border = f64::from(STEPS) * (dot(d, d).sqrt() / (one.1 + other.1));
+        let other = block.sphere(lane);
+        let d = one.center - other.center;
+        let border = f64::from(STEPS) * (dot(d, d).sqrt() / (one.radius + other.radius));
         let border = if border < f64::from(STEPS) { border } else { f64::from(STEPS) };
         let closest = border + WHOLE;
         let is_near = are_near(one, other, (closest - WHOLE) / f64::from(STEPS));

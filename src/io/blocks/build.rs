@@ -15,7 +15,7 @@ use crate::io::{Reason, checksum};
 use crate::memory;
 use crate::number::{MapInline, Real};
 use crate::progress::Progress;
-use crate::scene::hash;
+use crate::scene::{Sphere, hash};
 use glam::Vec3;
 use sha2::Sha256;
 use std::fs::{self, File};
@@ -61,7 +61,7 @@ pub(in crate::io) fn build(
     let budget = (memory::left() / 2).clamp(LEAST, MOST);
     memory::ask(budget, || "sorting surfels".to_owned())?;
     let mut sorter = Sorter::new(folder, kind.size(), budget as usize).map_err(io)?;
-    let index = survey(input, whole, (&mut sorter, folder), exec, progress)?;
+    let index = survey(input, whole, &mut sorter, folder, exec, progress)?;
     let index = index.ok_or_else(|| {
         Error::Invalid("the scene changed while it was read; run the command again".into())
     })?;
@@ -112,7 +112,8 @@ fn measure(input: &mut Input, exec: &Exec, progress: Progress<'_>) -> Result<Who
 fn survey(
     input: &mut Input,
     whole: Whole,
-    (sorter, folder): (&mut Sorter, &Path),
+    sorter: &mut Sorter,
+    folder: &Path,
     exec: &Exec,
     progress: Progress<'_>,
 ) -> Result<Option<Index>> {
@@ -148,7 +149,7 @@ fn survey(
         kind,
         median_radius: median.found(),
         bounds: (low, high),
-        sphere: (middle, far),
+        sphere: Sphere { center: middle, radius: far },
         offset: input.offset(),
         hash,
         blocks: Vec::new(),

@@ -4,7 +4,7 @@ use super::SURFELS;
 use crate::io::hierarchy::bytes::{Reader, Writer};
 use crate::io::{Reason, checksum};
 use crate::number::Real;
-use crate::scene::{Cloud, Surfels};
+use crate::scene::{Cloud, Sphere, Surfels};
 use glam::{DVec3, Vec3};
 use sha2::Sha256;
 use sha2::digest::common::hazmat::{SerializableState, SerializedState};
@@ -38,7 +38,7 @@ pub(super) struct Index {
     pub(super) kind: Kind,
     pub(super) median_radius: f32,
     pub(super) bounds: (Vec3, Vec3),
-    pub(super) sphere: (DVec3, f64),
+    pub(super) sphere: Sphere,
     pub(super) offset: DVec3,
     pub(super) hash: Sha256,
     pub(super) blocks: Vec<Block>,
@@ -58,7 +58,7 @@ impl Index {
         to.float(self.median_radius);
         to.vector(self.bounds.0);
         to.vector(self.bounds.1);
-        let sphere = self.sphere.0.to_array().into_iter().chain([self.sphere.1]);
+        let sphere = self.sphere.center.to_array().into_iter().chain([self.sphere.radius]);
         sphere.chain(self.offset.to_array()).for_each(|number| to.double(number));
         to.bytes(&state);
         for Block { count, bounds: [low, high], reach } in &self.blocks {
@@ -88,7 +88,7 @@ impl Index {
         let kind = Kind { color: kind & 1 != 0, opacity: kind & 2 != 0, tangents: kind & 4 != 0 };
         let median_radius = from.float()?;
         let bounds = (from.vector()?, from.vector()?);
-        let sphere = (from.position()?, from.double()?);
+        let sphere = Sphere { center: from.position()?, radius: from.double()? };
         let offset = from.position()?;
         let (state, rest) = from.0.split_at_checked(state as usize).ok_or(DAMAGED)?;
         from = Reader(rest);
@@ -106,9 +106,9 @@ impl Index {
     fn check(&self, own: u64, length: u64) -> Reason<()> {
         let total: u64 = self.blocks.iter().map(|block| u64::from(block.count)).sum();
         let sound = |block: &Block| (1..=SURFELS as u32).contains(&block.count);
-        let numbers = [self.sphere.1, f64::from(self.median_radius)];
+        let numbers = [self.sphere.radius, f64::from(self.median_radius)];
         let finite = numbers.iter().all(|n| n.is_finite())
-            && self.sphere.0.is_finite()
+            && self.sphere.center.is_finite()
             && self.offset.is_finite()
             && self.bounds.0.is_finite()
             && self.bounds.1.is_finite();

@@ -97,28 +97,26 @@ impl Blocks {
 
     /// No surfels, of a scene with all surfels.
     pub(in crate::io) fn nothing(&self, exec: &Exec) -> Result<(Surfels, Excerpt)> {
-        self.excerpt((self.index.kind.arrays(0), Vec::new()), exec)
+        self.excerpt(self.index.kind.arrays(0), Vec::new(), exec)
     }
 
     /// The surfels that may touch a region of a camera's picture, and more; `skirt` is
     /// [`Method::skirt`](crate::method::Method::skirt).
     pub(in crate::io) fn near(
         &self,
-        (camera, region): (&Camera, Rect),
+        camera: &Camera,
+        region: Rect,
         skirt: f64,
         exec: &Exec,
     ) -> Result<(Surfels, Excerpt)> {
         let pieces = [(0, region)];
         let nearby = Nearby::new(Part { pieces: &pieces, spread: 1.0 }, camera, skirt);
-        self.excerpt(self.some(Some(&nearby))?, exec)
+        let (cloud, ids) = self.some(Some(&nearby))?;
+        self.excerpt(cloud, ids, exec)
     }
 
     /// The most surfels that [`Blocks::near`] reads, and the bytes that it needs for them.
-    pub(in crate::io) fn most_near(
-        &self,
-        (camera, region): (&Camera, Rect),
-        skirt: f64,
-    ) -> (u64, u64) {
+    pub(in crate::io) fn most_near(&self, camera: &Camera, region: Rect, skirt: f64) -> (u64, u64) {
         let pieces = [(0, region)];
         let nearby = Nearby::new(Part { pieces: &pieces, spread: 1.0 }, camera, skirt);
         let count = self.most(Some(&nearby));
@@ -137,7 +135,7 @@ impl Blocks {
     }
 
     /// The surfels with these indices, as a part of the whole.
-    fn excerpt(&self, (cloud, ids): (Cloud, Vec<u32>), exec: &Exec) -> Result<(Surfels, Excerpt)> {
+    fn excerpt(&self, cloud: Cloud, ids: Vec<u32>, exec: &Exec) -> Result<(Surfels, Excerpt)> {
         let Index { median_radius, sphere, bounds, hash, .. } = &self.index;
         let surfels = Surfels::part_of(cloud, *median_radius, *sphere, exec)?;
         let surfels = surfels.ok_or_else(|| {

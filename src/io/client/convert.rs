@@ -253,7 +253,7 @@ fn depths(keys: &PlaneKeys, numbers: Scaled) -> Reason<(Vec<Vec<f64>>, Storage)>
     let format = numbers.format;
     let storage = match meaning {
         Meaning::T => numbers.storage,
-        _ => depth_storage(meaning, (near, far), format),
+        _ => depth_storage(meaning, near, far, format),
     };
     let empty = match meaning {
         Meaning::T => f64::INFINITY,
@@ -275,7 +275,7 @@ fn depths(keys: &PlaneKeys, numbers: Scaled) -> Reason<(Vec<Vec<f64>>, Storage)>
 }
 
 /// How exactly depths are stored that mean something else than t.
-fn depth_storage(meaning: Meaning, (near, far): (f64, f64), format: Format) -> Storage {
+fn depth_storage(meaning: Meaning, near: f64, far: f64, format: Format) -> Storage {
     match (meaning, format.codes()) {
         (Meaning::T, _) => format.storage(1.0),
         (Meaning::Inverse, _) => inverse(1.0, format),
@@ -299,7 +299,7 @@ fn depth_storage(meaning: Meaning, (near, far): (f64, f64), format: Format) -> S
 pub(super) fn depth_test(format: Format, keys: DepthKeys) -> Reason<Storage> {
     let meaning = keys.meaning.unwrap_or_default();
     let refused = |what: String| format!("depth-test: {what}");
-    let ends = ends(&keys, meaning, "depth-test").map_err(refused)?;
+    let (near, far) = ends(&keys, meaning, "depth-test").map_err(refused)?;
     if format.codes().is_none() && !matches!(format, Format::F32 | Format::F16) {
         return Err(refused(format!("format is {}; give f32, f16 or unorm", format.word())));
     }
@@ -308,14 +308,14 @@ pub(super) fn depth_test(format: Format, keys: DepthKeys) -> Reason<Storage> {
         return Err(refused(what));
     }
     let (relative, step) = (DIVISION.relative, DIVISION.relative);
-    Ok(match depth_storage(meaning, ends, format) {
+    Ok(match depth_storage(meaning, near, far, format) {
         Storage::DepthBuffer { step: own, near, far } => {
             Storage::DepthBuffer { step: own + step, near, far }
         }
         Storage::Inverse { scale, relative: own, least } => {
             Storage::Inverse { scale, relative: own.at_least(relative), least }
         }
-        Storage::Steps(own) => Storage::Steps(own + step * ends.0.at_least(ends.1)),
+        Storage::Steps(own) => Storage::Steps(own + step * near.at_least(far)),
         other => other,
     })
 }

@@ -212,16 +212,16 @@ fn joined(mut planes: Vec<Read>) -> Result<Client> {
         let (changed, off) = match samples {
             Samples::Color(color) if wanted.keys.premultiplied == Some(true) => {
                 let name = component(&wanted.name, "A");
-                let alpha = other(&planes, wanted, ("premultiplied", &name))?;
+                let (alpha, alpha_storage) = other(&planes, wanted, "premultiplied", &name)?;
                 ask([color.width(), color.height()], 3).map_err(Error::Invalid)?;
-                let (values, off) = straight((color, *storage), alpha);
+                let (values, off) = straight(color, *storage, alpha, alpha_storage);
                 (Samples::Color(values), off)
             }
             Samples::Vector(pairs) if wanted.is_octahedral() => {
                 let (layer, _) = wanted.name.rsplit_once('.').unwrap_or_default();
-                let (depths, _) = other(&planes, wanted, ("octahedral", &component(layer, "Z")))?;
+                let (depths, _) = other(&planes, wanted, "octahedral", &component(layer, "Z"))?;
                 ask([pairs.width(), pairs.height()], 3).map_err(Error::Invalid)?;
-                let (values, off) = octahedral::decoded((pairs, *storage), depths);
+                let (values, off) = octahedral::decoded(pairs, *storage, depths);
                 (Samples::Vector(values), off)
             }
             _ => continue,
@@ -246,7 +246,8 @@ fn joined(mut planes: Vec<Read>) -> Result<Client> {
 fn other<'a>(
     planes: &'a [Read],
     wanted: &Wanted,
-    (key, name): (&str, &str),
+    key: &str,
+    name: &str,
 ) -> Result<(&'a Plane<f64>, Storage)> {
     let found = planes.iter().find_map(|plane| match &plane.samples {
         Samples::Scalar(found) if plane.wanted.name == name => Some((found, plane.storage)),

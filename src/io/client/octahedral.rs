@@ -30,7 +30,8 @@ const LENGTH: f64 = 16.0 * F32_STEP;
 /// Decodes a plane of (u, v, 0) into vectors, and how far off each vector may be. Empty pixels,
 /// with a depth of +inf, become the null vector, because the null vector has no code.
 pub(super) fn decoded(
-    (stored, storage): (&Plane<[f64; 3]>, Storage),
+    stored: &Plane<[f64; 3]>,
+    storage: Storage,
     depths: &Plane<f64>,
 ) -> (Plane<[f64; 3]>, Plane<[f64; 3]>) {
     let (width, height) = (stored.width(), stored.height());

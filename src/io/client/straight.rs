@@ -10,8 +10,10 @@ use crate::verdict::client::Storage;
 /// Where alpha is 0 the colour stays as it is. The error combines the errors of the product and of
 /// alpha. A product in `f32` was rounded once more than a plain colour.
 pub(super) fn straight(
-    (colors, storage): (&Plane<[f64; 3]>, Storage),
-    (alphas, alpha_storage): (&Plane<f64>, Storage),
+    colors: &Plane<[f64; 3]>,
+    storage: Storage,
+    alphas: &Plane<f64>,
+    alpha_storage: Storage,
 ) -> (Plane<[f64; 3]>, Plane<[f64; 3]>) {
     let (width, height) = (colors.width(), colors.height());
     let pixels = colors.values().iter().zip(alphas.values());

@@ -2,7 +2,7 @@
 
 use crate::error::{Error, Result};
 use crate::scene::camera::clip::to_clip;
-use crate::scene::{Camera, Convention, Gaussians, Light, Phong, Projection, Scene};
+use crate::scene::{Camera, Convention, Gaussians, Light, Phong, Projection, Scene, Sphere};
 use crate::setting::{Fields, Value};
 use crate::splat::record::shared_numbers;
 use crate::verdict::conformance::{Case, Rule};
@@ -93,7 +93,7 @@ fn material(material: &Phong) -> Json {
 
 /// Twice the depth of the farthest point of a scene, so that a far plane there cuts nothing.
 fn far(scene: &Scene, camera: &Camera) -> f64 {
-    let (center, radius) = scene.bounding_sphere();
+    let Sphere { center, radius } = scene.bounding_sphere();
     let depth = -camera.view_from_world.as_dmat4().transform_point3(center).z + radius;
     let near = f64::from(camera.near);
     2.0 * if depth > near { depth } else { near + 1.0 }

@@ -91,7 +91,7 @@ pub fn write(folder: &Path, rule: &Rule, case: &Case, exec: &Exec) -> Result<()>
     png::write_frame(&folder.join("reference.png"), &frame)?;
     text(
         &folder.join("README.md"),
-        &page::text(rule, (case, records.as_ref()), &case.planes_of(&frame)),
+        &page::text(rule, case, records.as_ref(), &case.planes_of(&frame)),
     )
 }
 

@@ -43,7 +43,8 @@ const REFERENCE: [&str; 2] =
 /// The text of `README.md`. `records` are those of the case, if it has any.
 pub(super) fn text(
     rule: &Rule,
-    (case, records): (&Case, Option<&Records>),
+    case: &Case,
+    records: Option<&Records>,
     planes: &[(&'static Stage, Vec<&'static PlaneRow>)],
 ) -> String {
     let mut page = format!("# {}: {}\n\n{}\n\n", case.method.name(), rule.name, rule.tests);

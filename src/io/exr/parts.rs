@@ -198,18 +198,18 @@ fn join(parts: &[Part<'_>], picture: Rect, exec: &Exec) -> Result<(Channels, Com
             }
             let differs = |before: &&Part<'_>| {
                 let shared = before.region.intersection(&part.region);
-                difference((own, &part.region), (whole, &picture), &shared).is_some()
+                difference(own, &part.region, whole, &picture, &shared).is_some()
             };
             if let Some(before) = parts[..index].iter().find(differs) {
                 let shared = before.region.intersection(&part.region);
-                let at = difference((own, &part.region), (whole, &picture), &shared);
+                let at = difference(own, &part.region, whole, &picture, &shared);
                 let (x, y) = at.unwrap_or_default();
                 let other = before.path.display();
                 let what =
                     format!("`{name}` at pixel {x} {y} differs from {other}; render both again");
                 return Err(Error::format(part.path, what));
             }
-            copy((own, &part.region), (whole, &picture));
+            copy(own, &part.region, whole, &picture);
         }
     }
     Ok((channels, compression.unwrap_or_default()))
@@ -231,8 +231,10 @@ fn row(large: &Rect, rect: &Rect, y: u32) -> std::ops::Range<usize> {
 
 /// The first pixel of `shared` at which two channels have other bits.
 fn difference(
-    (own, region): (&Values, &Rect),
-    (whole, picture): (&Values, &Rect),
+    own: &Values,
+    region: &Rect,
+    whole: &Values,
+    picture: &Rect,
     shared: &Rect,
 ) -> Option<(u32, u32)> {
     if shared.is_empty() {
@@ -255,7 +257,7 @@ fn difference(
 }
 
 /// Copies the values of a part to their place.
-fn copy((own, region): (&Values, &Rect), (whole, picture): (&mut Values, &Rect)) {
+fn copy(own: &Values, region: &Rect, whole: &mut Values, picture: &Rect) {
     for y in region.y0..region.y1 {
         let (here, there) = (row(region, region, y), row(picture, region, y));
         match (own, &mut *whole) {

@@ -268,7 +268,11 @@ fn decode_part(
                 }
                 Ok(())
             },
-            || exec.ordered(batch, |place| decode_block(bytes, meta, part, place)),
+            || {
+                exec.ordered(batch, |(index, location, offset)| {
+                    decode_block(bytes, meta, part, index, location, offset)
+                })
+            },
         );
         filled?;
         blocks = next;
@@ -284,7 +288,9 @@ fn decode_block(
     bytes: &[u8],
     meta: &MetaData,
     part: usize,
-    (index, location, offset): (usize, TileCoordinates, Option<[u8; 8]>),
+    index: usize,
+    location: TileCoordinates,
+    offset: Option<[u8; 8]>,
 ) -> Reason<Option<UncompressedBlock>> {
     let place = || format!("part {part}, block {index}");
     let offset = offset.ok_or_else(|| ends_early(&place()))?;

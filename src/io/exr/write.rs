@@ -49,7 +49,7 @@ pub fn pending(
     compression: Compression,
     exec: &Exec,
 ) -> Result<Pending> {
-    pending_part(path, (frame, Window::whole(frame)), text, compression, exec)
+    pending_part(path, frame, Window::whole(frame), text, compression, exec)
 }
 
 /// As [`pending()`], for a frame that holds a part of a picture: the part is the data window of the
@@ -60,7 +60,8 @@ pub fn pending(
 /// part is not inside the picture.
 pub fn pending_part(
     path: &Path,
-    (frame, window): (&Frame<f32>, Window),
+    frame: &Frame<f32>,
+    window: Window,
     text: &str,
     compression: Compression,
     exec: &Exec,
@@ -86,9 +87,11 @@ pub const BLOCK_LINES: u32 = 32;
 /// does not have the size of its rectangle.
 pub fn pending_bands(
     path: &Path,
-    (picture, rows): ([u32; 2], u32),
+    picture: [u32; 2],
+    rows: u32,
     text: &str,
-    (compression, exec): (Compression, &Exec),
+    compression: Compression,
+    exec: &Exec,
     draw: &mut dyn FnMut(Rect) -> Result<Frame<f32>>,
 ) -> Result<Pending> {
     let [width, height] = picture;
@@ -250,7 +253,7 @@ fn encode(
                 let is_last = batch.is_empty();
                 let (written, next) = exec.join(
                     || compressed.into_iter().try_for_each(|(i, c)| chunks.write_chunk(i, c)),
-                    || compress(batch, &meta, (channels, lines.start), exec),
+                    || compress(batch, &meta, channels, lines.start, exec),
                 );
                 written?;
                 compressed = next?;
@@ -266,7 +269,8 @@ fn encode(
 fn compress(
     batch: Vec<(usize, BlockIndex)>,
     meta: &MetaData,
-    (channels, first): (&[Channel<'_>], usize),
+    channels: &[Channel<'_>],
+    first: usize,
     exec: &Exec,
 ) -> exr::error::Result<Vec<(usize, Chunk)>> {
     let compressed = exec.ordered(batch, |(index, place)| {

@@ -44,7 +44,7 @@ pub(super) fn gather(
     let mut gather = Gather {
         hierarchy,
         bottom_up: traversal == Traversal::BottomUp,
-        pixel: pixel(side, (low, high)),
+        pixel: pixel(side, low, high),
         upper: geometry == NONE,
         all: Gathered::new(&hierarchy.numbers()),
         parts: BTreeMap::new(),

@@ -7,7 +7,7 @@ use crate::error::{Error, Result};
 use crate::scene;
 use crate::scene::Similarity;
 use crate::scene::objects::detail::prefix::Estimate;
-use crate::source::hierarchy::octree::{Branch, Item, around};
+use crate::source::hierarchy::octree::{Branch, Corners, Item, around};
 use crate::source::hierarchy::{BOUND, Settings, octree};
 use glam::Vec3;
 
@@ -76,7 +76,7 @@ impl Layout {
 /// An object that does not move, as an item of the tree; `root` is the root of its geometry.
 fn item(object: &scene::Object, root: Option<&Node>) -> Result<Item> {
     let (low, high) = root.map(|root| (root.low, root.high)).unwrap_or_default();
-    let (low, high) = placed((low, high), &object.motion.at(0));
+    let Corners { low, high } = placed(Corners { low, high }, &object.motion.at(0));
     if !(low.is_finite() && high.is_finite()) {
         let what = "leaves the range of f32; make its scale smaller, or move it closer";
         return Err(Error::Invalid(format!("{} {what}", object.name)));
@@ -108,12 +108,12 @@ fn node(branch: &Branch) -> Node {
 }
 
 /// The box around a box in its place, see the [module](super).
-fn placed((low, high): (Vec3, Vec3), place: &Similarity) -> (Vec3, Vec3) {
+fn placed(Corners { low, high }: Corners, place: &Similarity) -> Corners {
     let corner = |i: u32| {
         let of = |axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] };
         place.point(Vec3::new(of(0), of(1), of(2)))
     };
-    let points = (0..8).map(|i| (corner(i), corner(i)));
-    let (low, high) = points.reduce(around).unwrap_or_default();
-    (low.map(f32::next_down), high.map(f32::next_up))
+    let points = (0..8).map(|i| Corners { low: corner(i), high: corner(i) });
+    let Corners { low, high } = points.reduce(around).unwrap_or_default();
+    Corners { low: low.map(f32::next_down), high: high.map(f32::next_up) }
 }

@@ -195,7 +195,7 @@ pub(super) fn estimate(node: &Node) -> Estimate {
     let mut estimate = node.estimate;
     if estimate.distance == 0.0 {
         // A pixel of a picture with a side of two is half the diagonal.
-        estimate.distance = pixel(2, (node.low, node.high)) as f32;
+        estimate.distance = pixel(2, node.low, node.high) as f32;
     }
     estimate
 }

@@ -98,7 +98,7 @@ pub(super) fn header(
     let bytes = input::bytes(&path).map_err(|source| Error::io(&path, source))?;
     let Some((first, body)) = bytes.split_first_chunk() else { return Ok(None) };
     let size = size(further);
-    let header = parse(first, (bytes.len() as u64, size), hash).ok();
+    let header = parse(first, bytes.len() as u64, size, hash).ok();
     let whole = |_: &Header| blocks(body, size).all(|block| block.is_ok());
     Ok(header.filter(|header| header.node == node).filter(whole))
 }
@@ -108,7 +108,7 @@ fn blocks(body: &[u8], size: u64) -> impl Iterator<Item = Reason<&[u8]>> {
     body.chunks(body_size(BLOCK, size) as usize).map(checked)
 }
 
-fn parse(bytes: &[u8; HEADER as usize], (length, size): (u64, u64), hash: &Hash) -> Reason<Header> {
+fn parse(bytes: &[u8; HEADER as usize], length: u64, size: u64, hash: &Hash) -> Reason<Header> {
     check_magic(bytes, MAGIC, "a surfel file")?;
     let mut rest = Reader(checked(bytes)?);
     rest.take::<16>()?;
@@ -151,11 +151,11 @@ pub(super) fn read(
     }
     file.read_exact(&mut bytes).map_err(io)?;
     let size = size(numbers.properties.len());
-    let found = parse(&bytes, (length, size), hash).map_err(|what| Error::format(&path, what))?;
+    let found = parse(&bytes, length, size, hash).map_err(|what| Error::format(&path, what))?;
     if found != *expected {
         return Err(Error::format(&path, "the surfels belong to another index"));
     }
-    body(file, (found.count, range), numbers).map_err(|error| match error {
+    body(file, found.count, range, numbers).map_err(|error| match error {
         Error::Io { source, .. } => io(source),
         Error::Invalid(what) => Error::format(&path, what),
         other => other,
@@ -163,7 +163,7 @@ pub(super) fn read(
 }
 
 /// Reads a range of `total` surfels, in whole blocks.
-fn body(mut file: File, (total, range): (u32, Range<u32>), numbers: &Numbers) -> Result<Cloud> {
+fn body(mut file: File, total: u32, range: Range<u32>, numbers: &Numbers) -> Result<Cloud> {
     let further = numbers.properties.len();
     let end = total.min(range.end);
     let start = range.start.min(end);

@@ -149,7 +149,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<PlyHeader, String> {
             }
             ["element", name, count] => {
                 elements.push(parse_element(name, count, line)?);
-                unique(&mut names, (name.to_owned(), None), line)?;
+                unique(&mut names, name.to_owned(), None, line)?;
             }
             ["property", ref rest @ ..] => {
                 let property = parse_property(rest, &text, line)?;
@@ -157,7 +157,7 @@ pub(super) fn parse(bytes: &[u8]) -> Result<PlyHeader, String> {
                     let what = "a property before the first element; declare the element first";
                     return Err(format!("line {line}: {what}"));
                 };
-                unique(&mut names, (element.name.clone(), Some(property.name.clone())), line)?;
+                unique(&mut names, element.name.clone(), Some(property.name.clone()), line)?;
                 element.properties.push(property);
             }
             _ => return Err(unknown_line(&text, line)),
@@ -227,14 +227,15 @@ fn parse_property(words: &[&str], text: &str, line: u64) -> Result<Property, Str
 /// Notes the name of an element, or of a property with its element, and refuses it if it is known.
 fn unique(
     names: &mut BTreeSet<(String, Option<String>)>,
-    name: (String, Option<String>),
+    element: String,
+    property: Option<String>,
     line: u64,
 ) -> Result<(), String> {
-    let what = match &name.1 {
-        Some(property) => format!("property {} of element {}", quote(property), quote(&name.0)),
-        None => format!("element {}", quote(&name.0)),
+    let what = match &property {
+        Some(property) => format!("property {} of element {}", quote(property), quote(&element)),
+        None => format!("element {}", quote(&element)),
     };
-    if names.insert(name) {
+    if names.insert((element, property)) {
         return Ok(());
     }
     Err(format!("line {line}: {what} is declared twice; rename or remove one"))

@@ -5,7 +5,7 @@ use super::{SceneFile, Source, Views};
 use crate::error::{Error, Result};
 use crate::io::cameras::View;
 use crate::scene::camera::clip::from_clip;
-use crate::scene::{Camera, CameraMotion, Convention, Intrinsics, Lens, Pose, PoseMatrix};
+use crate::scene::{Camera, CameraMotion, Convention, Intrinsics, Lens, Pose, PoseMatrix, Sphere};
 use crate::scene::{Scene, Similarity, Stereo, Turntable};
 use crate::source::Shape;
 use glam::{DMat4, DVec3, DVec4};
@@ -244,7 +244,7 @@ impl SceneFile {
         if let Some(frames) = choice.turntable {
             let first = self.still_camera(scene)?;
             let target = choice.target.map(|target| target - scene.offset);
-            let center = target.unwrap_or_else(|| scene.bounding_sphere().0);
+            let center = target.unwrap_or_else(|| scene.bounding_sphere().center);
             let axis = choice.up.unwrap_or(DVec3::Y);
             return Ok(Some(CameraPath::Turntable(Turntable::new(first, center, axis, frames)?)));
         }
@@ -277,8 +277,8 @@ impl SceneFile {
         let camera = match choice.view {
             Some(view) => {
                 let place = Place::of_scene(scene);
-                let pose = (view, choice.offset, choice.other_eye);
-                place.camera(pose, [width, height], self.lens())?
+                let CameraChoice { offset, other_eye, .. } = *choice;
+                place.camera(view, offset, other_eye, [width, height], self.lens())?
             }
             None => self.posed(scene, [width, height])?,
         };
@@ -295,8 +295,8 @@ impl SceneFile {
             near: near.or(view.near),
             ..CameraChoice::default()
         };
-        let pose = (view.view, view.offset, view.other_eye);
-        let camera = place.camera(pose, choice.picture_size(), intrinsics.lens());
+        let (size, lens) = (choice.picture_size(), intrinsics.lens());
+        let camera = place.camera(view.view, view.offset, view.other_eye, size, lens);
         let camera = camera.and_then(|camera| choice.open(camera));
         camera.map_err(|error| Error::format(path, format!("view {}: {error}", view.name)))
     }
@@ -314,9 +314,15 @@ impl SceneFile {
         let pose = match shape {
             Some(shape) => shape.default_pose(),
             None => {
-                let (middle, radius) = scene.bounding_sphere();
+                let Sphere { center: middle, radius } = scene.bounding_sphere();
                 let target = target.unwrap_or(middle);
-                let framed = Camera::framing(width, height, (target, radius), DEFAULT_SIDE, lens)?;
+                let framed = Camera::framing(
+                    width,
+                    height,
+                    Sphere { center: target, radius },
+                    DEFAULT_SIDE,
+                    lens,
+                )?;
                 if eye.is_none() && up.is_none() {
                     return Ok(framed);
                 }
@@ -357,8 +363,8 @@ impl SceneFile {
 
 /// What a camera with a given view matrix must know about the scene.
 struct Place {
-    /// The middle and the radius of the scene.
-    sphere: (DVec3, f64),
+    /// The sphere around the scene.
+    sphere: Sphere,
     offset: DVec3,
 }
 
@@ -371,7 +377,9 @@ impl Place {
     /// [`SceneFile::camera`] states.
     fn camera(
         &self,
-        (mut view, offset, mut other_eye): (DMat4, DVec3, Option<f64>),
+        mut view: DMat4,
+        offset: DVec3,
+        mut other_eye: Option<f64>,
         [width, height]: [u32; 2],
         lens: Lens,
     ) -> Result<Camera> {
@@ -391,7 +399,7 @@ impl Place {
         let opened = Camera::new(width, height, pose, lens)?;
         let other_eye = other_eye.map(|x| x as f32);
         let mut camera = Camera { view_from_world: view.as_mat4(), other_eye, ..opened };
-        let (middle, radius) = self.sphere;
+        let Sphere { center: middle, radius } = self.sphere;
         let distance = (middle - camera.eye()).length();
         let scale = [distance, radius].into_iter().find(|&length| length > 0.0);
         camera.near = (scale.unwrap_or(1.0) / 1024.0) as f32;

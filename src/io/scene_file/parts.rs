@@ -156,7 +156,7 @@ impl Ready {
     #[must_use]
     pub fn most_of_part(&self, region: Rect) -> (u64, u64) {
         match (&self.loaded.blocks, self.method.skirt()) {
-            (Some(blocks), Some(skirt)) => blocks.most_near((&self.camera, region), skirt),
+            (Some(blocks), Some(skirt)) => blocks.most_near(&self.camera, region, skirt),
             _ => (0, 0),
         }
     }
@@ -173,7 +173,7 @@ impl Ready {
         };
         let region = region.unwrap_or(Rect::of_size(self.camera.size()));
         self.camera.check_region(&region)?;
-        let (surfels, excerpt) = blocks.near((&self.camera, region), skirt, exec)?;
+        let (surfels, excerpt) = blocks.near(&self.camera, region, skirt, exec)?;
         Ok(Some(Scene { surfels, excerpt: Some(excerpt), ..self.loaded.scene.clone() }))
     }
 }

@@ -12,7 +12,7 @@ use crate::method::Method;
 use crate::method::single_pass::{BinCount, DepthTest};
 use crate::method::{transparent, transparent_hq};
 use crate::scene::environment::{Environment, Map};
-use crate::scene::{Camera, CameraMotion, Cloud, Lens, Pose, Scene};
+use crate::scene::{Camera, CameraMotion, Cloud, Lens, Pose, Scene, Sphere};
 use crate::setting::Fields;
 use crate::shade::optics::{BendingLayers, Refraction};
 use crate::source::derive::Origin;
@@ -416,9 +416,10 @@ fn what_the_camera_leaves_open_shows_the_scene() {
     // A transformed shape is framed like any other model.
     file.models[0].transform.translation = DVec3::new(100.0, 0.0, 0.0);
     let scene = load(&file).scene;
-    let (middle, radius) = scene.surfels.bounding_sphere();
+    let Sphere { center: middle, radius } = scene.surfels.bounding_sphere();
     let lens = Lens::FieldOfView(DEFAULT_FIELD_OF_VIEW);
-    let framed = Camera::framing(40, 30, (middle, radius), DEFAULT_SIDE, lens).unwrap();
+    let framed =
+        Camera::framing(40, 30, Sphere { center: middle, radius }, DEFAULT_SIDE, lens).unwrap();
     assert_eq!(file.camera(&scene).unwrap(), framed);
 
     // The rest follows from the choices: the middle of the picture is the target.

@@ -151,7 +151,7 @@ impl<R: Exact> Squares<R> {
     /// The squares of every surfel that is drawn.
     pub(crate) fn new(job: &Job<'_>, cull: bool) -> Self {
         let projector = SquareProjector::new(job, cull);
-        Self::projected_by((job, &job.grid()), |range, squares| {
+        Self::projected_by(job, &job.grid(), |range, squares| {
             let mut tally = Tally::default();
             squares.extend(range.filter_map(|i| projector.drawn(i, &mut tally)));
             tally
@@ -160,7 +160,8 @@ impl<R: Exact> Squares<R> {
 
     /// As [`Squares::new`]; `project` makes the squares of a range of surfels.
     pub(crate) fn projected_by(
-        (job, grid): (&Job<'_>, &Grid),
+        job: &Job<'_>,
+        grid: &Grid,
         project: impl Fn(Range<usize>, &mut Vec<Square<R>>) -> Tally + Sync + Send,
     ) -> Self {
         let count = job.scene.surfels.len();

@@ -2,7 +2,7 @@ use super::*;
 use crate::frame::{Exec, Frame, NO_ID, Plane};
 use crate::method::single_pass::{BinCount, DepthTest};
 use crate::method::{Method, Session, ewa, peeling, single_pass};
-use crate::scene::{Cloud, Groups, Lens, Pose, Surfels};
+use crate::scene::{Cloud, Groups, Lens, Pose, Sphere, Surfels};
 use crate::source::Shape;
 use crate::splat::Epsilon;
 use glam::{DVec3, Vec3};
@@ -344,7 +344,7 @@ proptest! {
         let scene = discs(&heights, &vec![0.0; heights.len()]);
         // The bounding sphere of discs around the origin has a radius of at least 1, and the eye is
         // 4 away.
-        let (center, radius) = scene.bounding_sphere();
+        let Sphere { center, radius } = scene.bounding_sphere();
         let (near, far) = (4.0 - center.z - radius, 4.0 - center.z + radius);
         let far = if far > 2.0 * near { far } else { 2.0 * near };
         let code = |z: f32, count: f64| {

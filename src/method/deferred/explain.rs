@@ -101,7 +101,7 @@ pub fn explain<R: Exact>(
         }
     });
     let pass = |part: &Part, each: &dyn Fn(&mut Touch<R>, &Splat<R>)| {
-        touches(job, splats, (part, &whole), &place, each)
+        touches(job, splats, part, &whole, &place, each)
     };
     let nothing = |_: &mut Touch<R>, _: &Splat<R>| ();
     let end = depth.at(x, y).depth;
@@ -153,7 +153,8 @@ fn colors(job: &Job<'_>, whole: &Whole<'_>, part: &Part, names: &[&String]) -> V
 fn touches<R: Exact>(
     job: &Job<'_>,
     settings: &SplatSettings,
-    (part, whole): (&Part, &Whole<'_>),
+    part: &Part,
+    whole: &Whole<'_>,
     place: &Place,
     each: &dyn Fn(&mut Touch<R>, &Splat<R>),
 ) -> Vec<(String, Touch<R>)> {

@@ -57,7 +57,7 @@ pub(super) fn define<R: Exact>(
     clock.lap("attributes");
 
     let shown = shown(job, settings, &part, &depth);
-    let averages = normalization(job, (&shown, polygons.as_ref()), &sums);
+    let averages = normalization(job, &shown, polygons.as_ref(), &sums);
     let wanted = Wanted {
         normal: stages || !job.scene.lights.is_empty(),
         color: whole.has_colors(),
@@ -132,7 +132,7 @@ pub(super) fn stage<R: Exact>(
             let sums = given_attributes(given)?;
             let polygons = Polygons::draw(job, settings, &whole)?;
             let shown = shown(job, settings, &part, &depth);
-            let averages = normalization(job, (&shown, polygons.as_ref()), &sums);
+            let averages = normalization(job, &shown, polygons.as_ref(), &sums);
             let mut left = averages.planes(&SurfacePixel::PLANES, 0, &there);
             left.extend(planes::shown(job, &ids(&shown, &averages)));
             Ok(left)
@@ -256,7 +256,8 @@ fn ids<R: Exact>(shown: &Tiled<Nearest<R>>, averages: &Tiled<SurfacePixel<R>>) -
 /// Pass 5: normalization, with polygons where no splats are shown.
 fn normalization<R: Exact>(
     job: &Job<'_>,
-    (shown, polygons): (&Tiled<Nearest<R>>, Option<&Polygons<R>>),
+    shown: &Tiled<Nearest<R>>,
+    polygons: Option<&Polygons<R>>,
     sums: &Tiled<Sums<R>>,
 ) -> Tiled<SurfacePixel<R>> {
     let splats = shown.with(sums, |nearest, sums| {

@@ -38,7 +38,7 @@ pub(crate) fn attributes<R: Exact>(
     let surfels = &job.scene.surfels;
     Tiled::new(job, |tile, rect| {
         let splats = TileSplats::new(splats, tile, rect);
-        sums(&splats, (surfels, job.buffers), visible.tile(tile), |_, _| true)
+        sums(&splats, surfels, job.buffers, visible.tile(tile), |_, _| true)
     })
 }
 
@@ -48,7 +48,8 @@ pub(crate) fn attributes<R: Exact>(
 /// it.
 pub(crate) fn sums<R: Exact>(
     tile: &TileSplats<'_, R>,
-    (surfels, buffers): (&Surfels, Buffers),
+    surfels: &Surfels,
+    buffers: Buffers,
     nearest: &[Foremost<R>],
     candidate: impl Fn(usize, R) -> bool,
 ) -> Vec<Sums<R>> {
@@ -59,7 +60,7 @@ pub(crate) fn sums<R: Exact>(
         let limit = decide::limit(nearest[pixel].depth, epsilon);
         if candidate(pixel, w) && decide::visible(shared.depth(w), limit) {
             let sums = &mut pixels[pixel];
-            sums.add(surfels, (splat.surfel, splat.back), splat.footprint.weight(q));
+            sums.add(surfels, splat.surfel, splat.back, splat.footprint.weight(q));
             *sums = sums.stored(buffers);
         }
     });
@@ -91,20 +92,15 @@ impl<R: Real> Sums<R> {
     }
 
     /// Adds the attributes of a fragment; `back` says whether the back of its surfel is seen.
-    pub(crate) fn add(&mut self, surfels: &Surfels, (surfel, back): (u32, R::Truth), weight: R) {
+    pub(crate) fn add(&mut self, surfels: &Surfels, surfel: u32, back: R::Truth, weight: R) {
         let opacity = R::from_f32(surfels.opacity_of(surfel as usize));
         self.opacity = self.opacity + weight * opacity;
-        self.add_opaque(surfels, (surfel, back), weight);
+        self.add_opaque(surfels, surfel, back, weight);
     }
 
     /// As [`Sums::add`], without the opacity, because no pass reads the opacity of opaque splats.
     #[inline(always)]
-    pub(crate) fn add_opaque(
-        &mut self,
-        surfels: &Surfels,
-        (surfel, back): (u32, R::Truth),
-        weight: R,
-    ) {
+    pub(crate) fn add_opaque(&mut self, surfels: &Surfels, surfel: u32, back: R::Truth, weight: R) {
         let i = surfel as usize;
         // Not by `map`, which is not inlined.
         let numbers = |v: Vec3| [R::from_f32(v.x), R::from_f32(v.y), R::from_f32(v.z)];

@@ -72,7 +72,7 @@ pub(crate) fn two_passes<R: Exact>(
     let candidate =
         |_: usize, w: R| beyond.is_none_or(|limit| decide::beyond(shared.depth(w), limit));
     let nearest = foremost(tile, &DepthKey::WHOLE, candidate);
-    let sums = sums(tile, (surfels, Buffers::F32), &nearest, candidate)[0];
+    let sums = sums(tile, surfels, Buffers::F32, &nearest, candidate)[0];
     let nearest = nearest[0];
 
     let (mut touches, mut visible) = (Vec::new(), Vec::new());

@@ -43,7 +43,8 @@ pub(crate) fn project_into<P: Profile, S: Copy + Send>(
     let skirt = f64::from(kernel.cutoff) * f64::from(kernel.low_pass).sqrt();
     let nearby = part.map(|part| Nearby::new(part, job.camera, skirt));
     Prepared::new(
-        (job, &job.grid()),
+        job,
+        &job.grid(),
         settings,
         surfels.len(),
         |projector, range, splats| {
@@ -64,8 +65,7 @@ pub(crate) fn project_into<P: Profile, S: Copy + Send>(
                 };
                 range.clone().filter(near).collect::<Vec<_>>()
             });
-            let some = (range, list.as_deref());
-            each_of_range((projector, &common), surfels, some, each);
+            each_of_range(projector, &common, surfels, range, list.as_deref(), each);
             Tally::default()
         },
         &bounds,
@@ -75,15 +75,17 @@ pub(crate) fn project_into<P: Profile, S: Copy + Send>(
 /// [`each_possible`] for a range of surfels, or for those of a list in it, in ascending order. Affine
 /// outlines are computed in lanes, except for the surfels that the lanes cannot decide.
 pub(crate) fn each_of_range<P: Profile>(
-    (projector, common): (&Projector<Ball<P>>, &Projector<Ball<Common<P>>>),
+    projector: &Projector<Ball<P>>,
+    common: &Projector<Ball<Common<P>>>,
     surfels: &Surfels,
-    (range, list): (Range<usize>, Option<&[usize]>),
+    range: Range<usize>,
+    list: Option<&[usize]>,
     each: &mut dyn FnMut(Splat<Ball<P>>, bool),
 ) {
     let rest = range.start + batch::in_full_lanes(projector.outline, range.len());
     let parts = list.map(|list| list.split_at(list.partition_point(|i| *i < rest)));
-    let in_lanes = (range.start..rest, parts.map(|parts| parts.0));
-    enclosed::affine_surfels(common, surfels, in_lanes, &mut |i, splat| match splat {
+    let (in_lanes, listed) = (range.start..rest, parts.map(|parts| parts.0));
+    enclosed::affine_surfels(common, surfels, in_lanes, listed, &mut |i, splat| match splat {
         Some(splat) => each(splat, true),
         None => each_possible(projector, &batch::disc(surfels, i), i as u32, each),
     });

@@ -22,7 +22,8 @@ pub(super) fn prepare(job: &Job<'_>, settings: &SplatSettings) -> Prepared<f32, 
     let surfels = &job.scene.surfels;
     let colors = surfels.color();
     Prepared::new(
-        (job, &job.strips()),
+        job,
+        &job.strips(),
         settings,
         surfels.len(),
         |projector, range, records| {
@@ -44,7 +45,8 @@ pub(super) fn prepare(job: &Job<'_>, settings: &SplatSettings) -> Prepared<f32, 
 pub(super) fn draw<const N: usize>(
     job: &Job<'_>,
     target: &mut Framebuffer<f32>,
-    (clock, names): (&mut Clock, [&'static str; N]),
+    clock: &mut Clock,
+    names: [&'static str; N],
     gather: impl Fn(&mut Tile, usize, Rect, &mut Stopwatch<N>) + Sync + Send,
     stages: impl Fn(&mut Tile, &mut Stopwatch<N>) + Sync + Send,
 ) {

@@ -124,7 +124,7 @@ impl<'a, R: Exact> Peeling<'a, R> {
         if nearest.iter().all(|nearest| nearest.id == NO_ID) {
             return None;
         }
-        let sums = sums(splats, (self.surfels, self.buffers), &nearest, beyond);
+        let sums = sums(splats, self.surfels, self.buffers, &nearest, beyond);
         let found = pixels(splats.rect).zip(nearest.iter().zip(&sums));
         Some(found.map(|(at, (nearest, sums))| self.resolve(nearest, sums, at)).collect())
     }
@@ -142,8 +142,8 @@ impl<'a, R: Exact> Peeling<'a, R> {
         let surface = if self.surfels.color().is_some() { average.color } else { self.own };
         let [alpha, ..] = sum::average([sums.opacity; 3], sums.weight);
         let alpha = self.buffers.sum(alpha);
-        let form = (Vector3::new(nx, ny, nz), Vector3::ZERO);
-        let color = self.shader.pixel((x as usize, y as usize), nearest.depth, form, surface);
+        let (at, normal) = ((x as usize, y as usize), Vector3::new(nx, ny, nz));
+        let color = self.shader.pixel(at, nearest.depth, normal, Vector3::ZERO, surface);
         let color = self.buffers.color(color);
         PeeledLayer { depth: nearest.depth, id: nearest.id, count: sums.count, alpha, color }
     }

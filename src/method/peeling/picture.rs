@@ -33,7 +33,7 @@ pub(super) fn define<R: Exact>(
     let pixels = planes::pixels(&peeled.pixels);
     clock.lap("blending");
     let mut left = peeled.layer_planes(job);
-    left.extend(planes::shown((color, alpha)));
+    left.extend(planes::shown(color, alpha));
     left.extend(pixels);
     let (frame, timings) = (job.frame(left), clock.into_laps());
     Ok(Picture { frame, tally: peeling.splats.tally, timings, seen: None })
@@ -95,7 +95,10 @@ pub(super) fn stage<R: Exact>(
             let layer = next_layer(job, settings, given, before)?;
             Ok(layer.planes(&PeeledLayer::PLANES, before + 1, &job.there(Keep::Alone)))
         }
-        ("blending", _) => Ok(planes::shown(shown(job, &planes::given_blends(given)?)).into()),
+        ("blending", _) => {
+            let (color, alpha) = shown(job, &planes::given_blends(given)?);
+            Ok(planes::shown(color, alpha).into())
+        }
         _ => Err(unknown(stage)),
     }
 }

@@ -74,7 +74,7 @@ pub(super) fn pixel_planes<R: Exact>(
 }
 
 /// The planes of the picture.
-pub(super) fn shown<R: Exact>((color, alpha): (Plane<[R; 3]>, Plane<R>)) -> [NamedPlane<R>; 2] {
+pub(super) fn shown<R: Exact>(color: Plane<[R; 3]>, alpha: Plane<R>) -> [NamedPlane<R>; 2] {
     [SHADED.triple(0, color), ALPHA.scalar(0, alpha)]
 }
 

@@ -59,6 +59,6 @@ impl<R: Real> Projected<R> {
         let window = job.window;
         let at = |x, y| *self.samples.at(x - window.x0, y - window.y0);
         let there = job.there(Keep::Stages);
-        record::planes(&PixelSample::PLANES, 0, (window, &at), &there)
+        record::planes(&PixelSample::PLANES, 0, window, &at, &there)
     }
 }

@@ -124,16 +124,25 @@ fn triangle<R: Exact>(
     projector.clip.fan(p, |[a, b, c]| {
         let end = |corner: &Clipped<R, 3>| placed(projector, corner.position);
         let (ends, weights) = ([end(a), end(b), end(c)], [a.weights, b.weights, c.weights]);
-        if let Some(piece) = triangle_piece(projector, (id, index), ends, weights, p) {
+        if let Some(piece) = triangle_piece(projector, Primitive { id, index }, ends, weights, p) {
             draw(piece);
         }
     });
 }
 
+/// Which primitive a piece is of.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Primitive {
+    /// The id that a picture shows.
+    pub(crate) id: u32,
+    /// The index among the primitives of its kind.
+    pub(crate) index: usize,
+}
+
 /// The piece of a triangle whose corners are snapped, each with its m, if it may be seen.
 pub(crate) fn triangle_piece<R: Real>(
     projector: &SceneProjector<'_, R>,
-    (id, index): (u32, usize),
+    of: Primitive,
     ends: [([i64; 2], R); 3],
     weights: [[R; 3]; 3],
     p: [Vector3<R>; 3],
@@ -148,14 +157,15 @@ pub(crate) fn triangle_piece<R: Real>(
         return None;
     }
     let raster = Triangle::new(&projector.snap, places)?;
-    triangle_within(projector, (id, index), (raster, bounds), ends, weights, p)
+    triangle_within(projector, of, raster, bounds, ends, weights, p)
 }
 
 /// As [`triangle_piece`], drawn in some pixels only.
 pub(crate) fn triangle_within<R: Real>(
     projector: &SceneProjector<'_, R>,
-    (id, index): (u32, usize),
-    (raster, bounds): (Triangle, Rect),
+    Primitive { id, index }: Primitive,
+    raster: Triangle,
+    bounds: Rect,
     ends: [([i64; 2], R); 3],
     weights: [[R; 3]; 3],
     p: [Vector3<R>; 3],
@@ -180,14 +190,16 @@ fn line<R: Exact>(
     let Some([a, b]) = projector.clip.segment(p) else { return };
     let ends = [a, b].map_inline(|end| placed(projector, end.position));
     let weights = [a.weights, b.weights];
-    line_piece(projector, kind, (id, index), ends, weights, p).into_iter().for_each(draw);
+    line_piece(projector, kind, Primitive { id, index }, ends, weights, p)
+        .into_iter()
+        .for_each(draw);
 }
 
 /// The piece of a ribbon or a tube whose ends are snapped, each with its m, if it may be seen.
 pub(crate) fn line_piece<R: Real>(
     projector: &SceneProjector<'_, R>,
     kind: SampleKind,
-    (id, index): (u32, usize),
+    Primitive { id, index }: Primitive,
     [(from, from_m), (to, to_m)]: [([i64; 2], R); 2],
     weights: [[R; 2]; 2],
     p: [Vector3<R>; 2],

@@ -34,7 +34,7 @@ impl<R: Exact> DrawnItem<R> {
 /// # Errors
 /// [`Error::Invalid`] if there are more primitives than ids.
 pub(crate) fn project<R: Exact>(job: &Job<'_>, cull: bool, snap: Snap) -> Result<Projected<R>> {
-    from(job, (cull, snap), 0)
+    from(job, cull, snap, 0)
 }
 
 /// Projects everything beside the surfels; the ids are those of the whole scene.
@@ -42,11 +42,11 @@ pub(crate) fn project<R: Exact>(job: &Job<'_>, cull: bool, snap: Snap) -> Result
 /// # Errors
 /// As [`project`].
 pub(crate) fn beside<R: Exact>(job: &Job<'_>, cull: bool, snap: Snap) -> Result<Projected<R>> {
-    from(job, (cull, snap), job.scene.surfels.len())
+    from(job, cull, snap, job.scene.surfels.len())
 }
 
 /// Projects everything whose id is `first` or higher.
-fn from<R: Exact>(job: &Job<'_>, (cull, snap): (bool, Snap), first: usize) -> Result<Projected<R>> {
+fn from<R: Exact>(job: &Job<'_>, cull: bool, snap: Snap, first: usize) -> Result<Projected<R>> {
     let (Job { scene, camera, .. }, [width, height]) = (*job, job.size());
     let samples = Plane::filled(width, height, PixelSample::empty());
     let mut projected = Projected { samples, tally: Tally::default() };

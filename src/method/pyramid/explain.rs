@@ -109,8 +109,8 @@ fn four_of_push<R: Exact>(
     cells: [Cell<R>; 4],
     settings: &Settings,
 ) -> Four<R> {
-    let even = (x.is_multiple_of(2), y.is_multiple_of(2));
-    let offsets = push::offsets(&cells, even, side(level));
+    let (even_x, even_y) = (x.is_multiple_of(2), y.is_multiple_of(2));
+    let offsets = push::offsets(&cells, even_x, even_y, side(level));
     let (takes, first) = Cell::foremost(&cells, Cell::inside(&cells, &offsets));
     let weights =
         [0, 1, 2, 3].map_inline(|j| push::weight(&cells[j], offsets[j], settings.weights));

@@ -72,7 +72,7 @@ impl<R: Exact> GBuffer<R> {
         let Job { scene, camera, exec, .. } = *job;
         let shader = Shader::new(View::new(camera), &scene.lights, scene.material);
         let (normal, tangent) = (self.normal.as_ref(), self.tangent.as_ref());
-        shader.shade_over(&self.depth, normal, tangent, (&mut self.color, self.colored), exec);
+        shader.shade_over(&self.depth, normal, tangent, &mut self.color, self.colored, exec);
         let (color, alpha) = before_environment(job, self.color, self.alpha);
         Self { color, alpha, ..self }
     }

@@ -32,7 +32,7 @@ pub(super) fn define<R: Exact>(
         return Ok(projected.alone(job, clock));
     }
     clock.lap("projection");
-    Ok(reconstruct(job, settings, stages, (projected, clock)))
+    Ok(reconstruct(job, settings, stages, projected, clock))
 }
 
 /// The stages after the projection, on the planes of the projection.
@@ -46,7 +46,7 @@ pub(super) fn finish_joined(
     stages: bool,
 ) -> Result<Picture<f32>> {
     let projected = Projected { samples: given.projection()?, tally: Tally::default() };
-    Ok(reconstruct(job, settings, stages, (projected, Clock::default())))
+    Ok(reconstruct(job, settings, stages, projected, Clock::default()))
 }
 
 /// The stages after the projection.
@@ -54,7 +54,8 @@ fn reconstruct<R: Exact>(
     job: &Job<'_>,
     settings: &Settings,
     stages: bool,
-    (projected, mut clock): (Projected<R>, Clock),
+    projected: Projected<R>,
+    mut clock: Clock,
 ) -> Picture<R> {
     let (Job { scene, camera, exec, .. }, has) = (*job, job.has());
     let pulled = pull_all(&projected.samples, exec);

@@ -90,12 +90,7 @@ pub(super) fn write_level<R: Exact>(
 ) -> Vec<NamedPlane<R>> {
     let size = job.camera.size();
     let whole = pyramid::in_corner(cells, size, Cell::empty());
-    record::planes(
-        fields,
-        level,
-        (job.picture(), &|x, y| *whole.at(x, y)),
-        &job.there(Keep::Stages),
-    )
+    record::planes(fields, level, job.picture(), &|x, y| *whole.at(x, y), &job.there(Keep::Stages))
 }
 
 /// Makes the planes of the picture.

@@ -72,7 +72,7 @@ pub fn push<R: Exact>(
                 continue;
             }
             let coarser = four(coarse, x, y);
-            if let Some(found) = one(&coarser, (x % 2 == 0, y % 2 == 0), side, settings.weights) {
+            if let Some(found) = one(&coarser, x % 2 == 0, y % 2 == 0, side, settings.weights) {
                 *cell = found;
             }
         }
@@ -109,11 +109,12 @@ pub fn occluded<R: Real>(cell: &Cell<R>, parent: &Cell<R>, rule: Occlusion) -> R
 /// centre; see the module page.
 fn one<R: Exact>(
     coarser: &[Cell<R>; 4],
-    even: (bool, bool),
+    even_x: bool,
+    even_y: bool,
     side: R,
     weights: Weights,
 ) -> Option<Cell<R>> {
-    let offsets = offsets(coarser, even, side);
+    let offsets = offsets(coarser, even_x, even_y, side);
     let (takes, first) = Cell::foremost(coarser, Cell::inside(coarser, &offsets));
     takes[first].then(|| merge(coarser, &offsets, weights, takes, first))
 }
@@ -123,7 +124,8 @@ fn one<R: Exact>(
 /// cells.
 pub fn offsets<R: Real>(
     coarser: &[Cell<R>; 4],
-    (even_x, even_y): (bool, bool),
+    even_x: bool,
+    even_y: bool,
     side: R,
 ) -> [Vector2<R>; 4] {
     let shift = |neighbour: bool, even: bool| {

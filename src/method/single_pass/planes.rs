@@ -104,7 +104,7 @@ pub(crate) fn image_planes<R: Exact>(
             pixel.sample.normal = unsigned(pixel.sample.normal);
             pixel
         };
-        record::planes(fields, k, (job.window, &at), &there)
+        record::planes(fields, k, job.window, &at, &there)
     };
     images.iter().enumerate().flat_map(planes).collect()
 }
@@ -157,7 +157,7 @@ pub(super) fn sums<R: Exact>(
         WeightedFragment { normal: unsigned(sums.normal), ..sums }
     };
     let there = job.there(Keep::Stages);
-    let mut planes = record::planes(&WeightedFragment::SUMS, 0, (job.window, &at), &there);
+    let mut planes = record::planes(&WeightedFragment::SUMS, 0, job.window, &at, &there);
     // The count is at most MAX_GROUPS, which fits the count's type.
     planes.push(COUNT.count(0, composites.plane(|pixel| pixel.count as u8)));
     planes

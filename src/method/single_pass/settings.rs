@@ -4,7 +4,7 @@ use crate::composite::bins::{DepthBins, MAX_BINS, Range};
 use crate::error::{Error, Result};
 use crate::number::MapInline;
 use crate::number::Real;
-use crate::scene::{Camera, Scene, Surfels};
+use crate::scene::{Camera, Scene, Sphere, Surfels};
 use crate::setting::{Field, Fields, Slot, Visit, Words};
 use crate::splat::SplatSettings;
 
@@ -156,7 +156,7 @@ impl Settings {
 /// sight, or if the scene is less deep than the spacing of `f32` there.
 #[must_use]
 pub fn depth_range(surfels: &Surfels, camera: &Camera) -> (f32, f32) {
-    let (center, radius) = surfels.bounding_sphere();
+    let Sphere { center, radius } = surfels.bounding_sphere();
     let [m0, m1, m2, m3] = camera.view_from_world.row(2).to_array().map_inline(f64::from);
     let t = -(((m0 * center.x + m1 * center.y) + m2 * center.z) + m3);
     let (low, high) = ((t - radius) as f32, (t + radius) as f32);

@@ -103,7 +103,7 @@ pub(super) fn write_level<R: Exact>(
     let size = job.camera.size();
     let whole = pyramid::in_corner(cells, size, Center::empty());
     let there = job.there(Keep::Stages);
-    record::planes(&Center::PLANES, level, (job.picture(), &|x, y| *whole.at(x, y)), &there)
+    record::planes(&Center::PLANES, level, job.picture(), &|x, y| *whole.at(x, y), &there)
 }
 
 /// Makes the planes that the reconstruction leaves.
@@ -112,7 +112,7 @@ pub(super) fn write_gathered<R: Exact>(
     job: &Job<'_>,
 ) -> Vec<NamedPlane<R>> {
     let at = |x, y| *pixels.at(x, y);
-    record::planes(&Gathered::PLANES, 0, (job.picture(), &at), &job.there(Keep::Stages))
+    record::planes(&Gathered::PLANES, 0, job.picture(), &at, &job.there(Keep::Stages))
 }
 
 /// Reads the planes that the reconstruction left.

@@ -99,7 +99,8 @@ impl<R: Exact> Blending<R> {
             (job.index.back_to_front(job.camera)?, settings.bins(job, groups.len())?);
         let shader = Shader::new(View::new(job.camera), &scene.lights, scene.material);
         let prepared = Prepared::new(
-            (job, &job.grid()),
+            job,
+            &job.grid(),
             &settings.splats,
             items.len(),
             |projector, range, drawn| {

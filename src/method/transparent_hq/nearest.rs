@@ -77,9 +77,9 @@ impl<R: Exact> Shading<R> {
     pub(super) fn layer(&self, (x, y): (u32, u32), composite: &Composite<R>) -> FrontLayer<R> {
         let SurfacePixel { depth, id, weight, normal, color } = composite.surface();
         let [nx, ny, nz] = normal;
-        let form = (Vector3::new(nx, ny, nz), Vector3::ZERO);
+        let (at, n) = ((x as usize, y as usize), Vector3::new(nx, ny, nz));
         let surface = self.own.unwrap_or(color);
-        let color = self.shader.pixel((x as usize, y as usize), depth, form, surface);
+        let color = self.shader.pixel(at, depth, n, Vector3::ZERO, surface);
         let outcome = if composite.count > 0 { Outcome::Pass } else { Outcome::DepthFail };
         let (opacity, mask) = (composite.opacity(), MASK.update(0, outcome));
         FrontLayer { depth, id, weight, normal, color, opacity, mask }

@@ -352,7 +352,7 @@ impl<P: Profile> Real for Ball<P> {
         // The base is not negative, so an end below 0 is only an effect of the radius.
         let bases = ends.map_inline(|end| larger(end, 0.0));
         let spread =
-            powers::power(middle, (self.middle, self.radius * SLACK), bases, exponent.middle);
+            powers::power(middle, self.middle, self.radius * SLACK, bases, exponent.middle);
         Self::rounded(middle, spread, P::power(bases, exponent.middle), P::TINY)
     }
 

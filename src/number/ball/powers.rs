@@ -27,7 +27,7 @@ pub(super) fn exponential(middle: f64, reach: f64, high: f64) -> f64 {
 /// With x = m (1 + e), the bound from above is (1 + e)^y <= `e^(y e)`. The bound from below is
 /// Bernoulli's inequality if y >= 1, else the slope of the power at 1 - |e|.
 #[inline(always)]
-pub(super) fn power(middle: f64, (m, reach): (f64, f64), ends: [f64; 2], y: f64) -> f64 {
+pub(super) fn power(middle: f64, m: f64, reach: f64, ends: [f64; 2], y: f64) -> f64 {
     let part = reach / m;
     let z = y * part;
     // NaN fails these comparisons.
@@ -88,7 +88,7 @@ mod tests {
                     let (ends, reach) = about(m, m * part);
                     let powers = [ends[0], m, ends[1]].map(|x: f64| x.pow(y));
                     if powers[2] < 1e30 {
-                        let spread = power(powers[1], (m, reach), ends, y);
+                        let spread = power(powers[1], m, reach, ends, y);
                         hold(spread, powers, part < 0.05 && y * part < 0.05);
                     }
                 }

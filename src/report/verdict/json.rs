@@ -56,7 +56,7 @@ pub struct JsonShift {
 impl JsonShift {
     /// The sums at a threshold.
     #[must_use]
-    pub fn new((limit, shift): (&Doubt, &Shift)) -> Self {
+    pub fn new(limit: &Doubt, shift: &Shift) -> Self {
         let Shift { decisions, score, information, variance } = *shift;
         let (z, estimate) = (shift.z(), shift.estimate());
         Self { limit: limit.name().into(), decisions, score, information, variance, z, estimate }

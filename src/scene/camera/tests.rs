@@ -2,6 +2,7 @@
 
 use super::*;
 use crate::number::{elementary, random};
+use crate::scene::Sphere;
 
 type V = [f64; 3];
 
@@ -89,12 +90,12 @@ fn lens(i: u64) -> Lens {
     }
 }
 
-fn same(camera: &Camera, rows_and_near: ([[f32; 4]; 3], f32), scale: f32) {
+fn same(camera: &Camera, expected: [[f32; 4]; 3], near: f32, scale: f32) {
     // Compares bits, because -0 is not +0.
     let bits = |rows: [[f32; 4]; 3]| rows.map(|row| row.map(f32::to_bits));
-    assert_eq!(bits(rows(camera)), bits(rows_and_near.0));
+    assert_eq!(bits(rows(camera)), bits(expected));
     assert_eq!(camera.view_from_world.row(3).to_array(), [0.0, 0.0, 0.0, 1.0]);
-    assert_eq!((camera.near, camera.fx, camera.fy), (rows_and_near.1, scale, scale));
+    assert_eq!((camera.near, camera.fx, camera.fy), (near, scale, scale));
     let [width, height] = camera.size().map(|side| (f64::from(side) / 2.0) as f32);
     assert_eq!((camera.cx, camera.cy), (width, height));
     let found = camera.eye().to_array().map(f64::to_bits);
@@ -111,7 +112,8 @@ fn a_camera_has_the_bits_of_its_formulas() {
         let pose = Pose { eye: place.into(), target: target.into(), up: up.into() };
         // Some poses have an up along the view.
         let Ok(camera) = Camera::new(33, 24, pose, lens(i)) else { continue };
-        same(&camera, looking(place, target, up), scale(24.0, lens(i)));
+        let (expected, near) = looking(place, target, up);
+        same(&camera, expected, near, scale(24.0, lens(i)));
         cameras += 1;
     }
     assert!(cameras > 400, "{cameras}");
@@ -127,7 +129,7 @@ fn a_framing_camera_has_the_bits_of_its_formulas() {
         }
         let radius = if i % 5 == 0 { 0.0 } else { 3.0 * f64::from(random::unit(4, i)) };
         let (width, height) = if i % 2 == 0 { (33_u32, 24_u32) } else { (20, 31) };
-        let sphere = (DVec3::from(center), radius);
+        let sphere = Sphere { center: DVec3::from(center), radius };
         let camera = Camera::framing(width, height, sphere, from.into(), lens(i)).unwrap();
 
         let scale = scale(f64::from(height), lens(i));
@@ -141,6 +143,7 @@ fn a_framing_camera_has_the_bits_of_its_formulas() {
             if from[0] == 0.0 && from[2] == 0.0 { [-0.0, -0.0, -1.0] } else { [0.0, 1.0, 0.0] };
         let direction = unit(from);
         let place = [0, 1, 2].map(|c| center[c] + direction[c] * distance);
-        same(&camera, looking(place, center, up), scale);
+        let (expected, near) = looking(place, center, up);
+        same(&camera, expected, near, scale);
     }
 }

@@ -41,6 +41,7 @@ mod place;
 
 use super::{Boxes, Primitives, Similarity, Surfels};
 use crate::error::{Error, Result};
+use crate::scene::Sphere;
 pub use detail::Detail;
 use detail::DrawnPart;
 use detail::refine::{Forest, Refinement};
@@ -94,7 +95,7 @@ pub struct Objects {
     /// What is drawn of each object.
     shown: Arc<[DrawnPart]>,
     median_radius: f32,
-    bounding_sphere: (DVec3, f64),
+    bounding_sphere: Sphere,
     /// The hash of the files that geometries are read from, if the hash identifies them.
     source: Option<[u8; 32]>,
 }
@@ -134,7 +135,7 @@ impl Objects {
             forest: None,
             shown: Arc::new([]),
             median_radius: 0.0,
-            bounding_sphere: (DVec3::ZERO, 0.0),
+            bounding_sphere: Sphere::default(),
             source: None,
         };
         still.ids = Arc::new(still.ids_of_all()?);
@@ -256,10 +257,12 @@ impl Objects {
     /// the sphere of the geometry by the rule of [`super::Scene::bounding_sphere`]. Its middle is
     /// placed as a point is, its radius is scaled, and nothing is rounded to f32.
     #[must_use]
-    pub fn sphere(&self, object: u32) -> (DVec3, f64) {
+    pub fn sphere(&self, object: u32) -> Sphere {
         let place = &self.places[object as usize];
-        let (middle, radius) = self.extents[self.objects[object as usize].geometry].sphere;
-        (place.rotation * (middle * place.scale) + place.translation, radius * place.scale)
+        let Sphere { center: middle, radius } =
+            self.extents[self.objects[object as usize].geometry].sphere;
+        let center = place.rotation * (middle * place.scale) + place.translation;
+        Sphere { center, radius: radius * place.scale }
     }
 
     /// Whether some object has primitives.
@@ -271,21 +274,22 @@ impl Objects {
     /// A sphere around everything: the middle of the box around the objects' spheres, and the
     /// farthest distance that one of the spheres reaches from there; in f64.
     #[must_use]
-    pub fn bounding_sphere(&self) -> (DVec3, f64) {
+    pub fn bounding_sphere(&self) -> Sphere {
         self.bounding_sphere
     }
 
-    fn sphere_of_spheres(&self) -> (DVec3, f64) {
+    fn sphere_of_spheres(&self) -> Sphere {
         let spheres = (0..self.objects.len() as u32).map(|object| self.sphere(object));
         let spheres: Vec<_> = spheres.collect();
         let mut corners = [DVec3::INFINITY, DVec3::NEG_INFINITY];
-        for (middle, radius) in &spheres {
-            corners[0] = corners[0].min(*middle - *radius);
-            corners[1] = corners[1].max(*middle + *radius);
+        for sphere in &spheres {
+            corners[0] = corners[0].min(sphere.center - sphere.radius);
+            corners[1] = corners[1].max(sphere.center + sphere.radius);
         }
         let center = (corners[0] + corners[1]) / 2.0;
-        let far = spheres.iter().map(|(middle, radius)| (*middle - center).length() + radius);
-        (center, far.fold(0.0, |most, far| if far > most { far } else { most }))
+        let far = spheres.iter().map(|sphere| (sphere.center - center).length() + sphere.radius);
+        let radius = far.fold(0.0, |most, far| if far > most { far } else { most });
+        Sphere { center, radius }
     }
 
     fn median_of_medians(&self) -> f32 {

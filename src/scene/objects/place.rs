@@ -8,8 +8,8 @@ use crate::scene::cloud::half_axes;
 use crate::scene::degenerate::unit;
 use crate::scene::surfels::Arrays;
 use crate::scene::transform::Similarity;
-use crate::scene::{Boxes, Mipmap, Primitives, Surfels, bounds};
-use glam::{DVec3, Vec3};
+use crate::scene::{Boxes, Mipmap, Primitives, Sphere, Surfels, bounds};
+use glam::Vec3;
 use std::ops::Range;
 
 /// How many surfels one job places.
@@ -23,8 +23,8 @@ const LEAST: f64 = 1.0 / 1_267_650_600_228_229_401_496_703_205_376.0;
 #[derive(Clone, Debug)]
 pub(super) struct Extent {
     pub(super) boxes: Boxes,
-    /// The sphere around surfels and primitives: middle and radius.
-    pub(super) sphere: (DVec3, f64),
+    /// The sphere around surfels and primitives.
+    pub(super) sphere: Sphere,
     /// The least of all radii and half axes.
     pub(super) least: f64,
     /// How many surfels there are, whether they have been read or not.
@@ -69,7 +69,7 @@ impl Extent {
 
     /// Whether surfels stay valid in a place.
     pub(super) fn is_in_range(&self, place: &Similarity) -> bool {
-        let (middle, radius) = self.sphere;
+        let Sphere { center: middle, radius } = self.sphere;
         let far = (middle.length() + radius) * place.scale + place.translation.length();
         far <= 1.0 / LEAST && self.least * place.scale >= LEAST
     }

@@ -2,7 +2,7 @@ use super::*;
 use crate::frame::Exec;
 use crate::scene::merge::merge;
 use crate::scene::transform::rotation;
-use crate::scene::{Cloud, Mipmap, Scene};
+use crate::scene::{Cloud, Mipmap, Scene, Sphere};
 use crate::source::{Shape, flatten};
 
 fn place(degrees: f64, scale: f64, x: f64) -> Similarity {
@@ -120,11 +120,11 @@ fn the_median_radius_counts_every_surfel_once() {
 #[test]
 fn the_sphere_holds_every_object() {
     let objects = objects();
-    let (middle, radius) = objects.bounding_sphere();
+    let Sphere { center: middle, radius } = objects.bounding_sphere();
     let (placed, _) = objects.flattened(&Exec::sequential()).unwrap();
     let far = |p: &Vec3| (p.as_dvec3() - middle).length();
     assert!(placed.position().iter().all(|p| far(p) <= radius));
-    let (_, tight) = placed.bounding_sphere();
+    let tight = placed.bounding_sphere().radius;
     assert!(radius < 1.5 * tight, "{radius} {tight}");
 }
 

@@ -1,8 +1,8 @@
 //! Surfels under construction, which need no check.
 
 use super::Surfels;
-use crate::scene::Mipmap;
-use glam::{DVec3, Vec3};
+use crate::scene::{Mipmap, Sphere};
+use glam::Vec3;
 
 /// Surfels under construction, which need no check.
 pub(in crate::scene) struct Arrays {
@@ -55,11 +55,7 @@ impl Arrays {
 
     /// Finishes the surfels; the median radius and the sphere may belong to a whole of which these
     /// are a part.
-    pub(in crate::scene) fn into_surfels(
-        self,
-        median_radius: f32,
-        sphere: (DVec3, f64),
-    ) -> Surfels {
+    pub(in crate::scene) fn into_surfels(self, median_radius: f32, sphere: Sphere) -> Surfels {
         let Self { position, normal, radius, color, opacity, tangents, mipmap } = self;
         let (groups, bounding_sphere) = (None, sphere);
         Surfels {

@@ -1,4 +1,5 @@
 use super::*;
+use crate::scene::Sphere;
 
 fn cloud(position: Vec<Vec3>, normal: Vec<Vec3>, radius: Vec<f32>) -> Cloud {
     Cloud { position, normal: Some(normal), radius: Some(radius), ..Cloud::default() }
@@ -70,7 +71,7 @@ fn the_bounding_sphere_holds_every_disc() {
     let p = vec![Vec3::new(-1.0, 0.0, 0.0), Vec3::new(3.0, 0.0, 0.0), Vec3::X];
     let r = vec![0.5, 0.25, 4.0];
     let (surfels, _) = Surfels::new(cloud(p, vec![Vec3::Z; 3], r)).unwrap();
-    assert_eq!(surfels.bounding_sphere(), (DVec3::X, 4.0));
+    assert_eq!(surfels.bounding_sphere(), Sphere { center: DVec3::X, radius: 4.0 });
 }
 
 #[test]

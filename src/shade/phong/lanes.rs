@@ -40,9 +40,10 @@ vectorized!(
             plane.map_or(Vector3::ZERO, |p| Vector3::new(p[x][0], p[x][1], p[x][2]))
         };
         for (x, pixel) in (whole..).zip(rest) {
-            let form = (one(row.normal, x), one(row.tangent, x));
+            let (normal, tangent) = (one(row.normal, x), one(row.tangent, x));
             let surface = row.own.unwrap_or(*pixel);
-            *pixel = shader.pixel((row.at.0 + x, row.at.1), row.depth[x], form, surface);
+            let at = (row.at.0 + x, row.at.1);
+            *pixel = shader.pixel(at, row.depth[x], normal, tangent, surface);
         }
     }
 );

@@ -156,7 +156,8 @@ impl<R: Real> Shader<R> {
     fn lit_once(
         &self,
         p: Vector3<R>,
-        (direction, is_tube): (Vector3<R>, bool),
+        direction: Vector3<R>,
+        is_tube: bool,
         surface: [R; 3],
     ) -> [R; 3] {
         let towards =
@@ -174,7 +175,7 @@ impl<R: Real> Shader<R> {
         surface: [R; 3],
     ) -> [R; 3] {
         let normal = self.view.direction(normal);
-        self.lit_once(self.position(x, y, t), (normal, false), surface)
+        self.lit_once(self.position(x, y, t), normal, false, surface)
     }
 
     /// The same for a tube; its tangent, in world space, must not be the null vector.
@@ -186,7 +187,7 @@ impl<R: Real> Shader<R> {
         surface: [R; 3],
     ) -> [R; 3] {
         let tangent = self.view.direction(tangent).normalized();
-        self.lit_once(self.position(x, y, t), (tangent, true), surface)
+        self.lit_once(self.position(x, y, t), tangent, true, surface)
     }
 
     /// The colour of a surfel, shaded once at its centre. p is its position, and n its normal,
@@ -194,7 +195,7 @@ impl<R: Real> Shader<R> {
     #[must_use]
     pub fn surfel(&self, p: Vector3<R>, n: Vector3<R>, surface: [R; 3]) -> [R; 3] {
         let normal = self.view.direction(n);
-        self.lit_once(self.view.point(p), (normal, false), surface)
+        self.lit_once(self.view.point(p), normal, false, surface)
     }
 
     /// Converts the shader to another arithmetic, for the same view.
@@ -253,7 +254,7 @@ impl<R: Exact> Shader<R> {
         let (width, height) = (depth.width(), depth.height());
         let colored = color.is_some();
         let mut shaded = color.unwrap_or_else(|| Plane::filled(width, height, [R::ZERO; 3]));
-        self.shade_over(depth, normal, tangent, (&mut shaded, colored), exec);
+        self.shade_over(depth, normal, tangent, &mut shaded, colored, exec);
         shaded
     }
 
@@ -263,7 +264,8 @@ impl<R: Exact> Shader<R> {
         depth: &Plane<R>,
         normal: Option<&Plane<[R; 3]>>,
         tangent: Option<&Plane<[R; 3]>>,
-        (pixels, colored): (&mut Plane<[R; 3]>, bool),
+        pixels: &mut Plane<[R; 3]>,
+        colored: bool,
         exec: &Exec,
     ) {
         let own = (!colored).then(|| self.plain());
@@ -286,7 +288,8 @@ impl<R: Exact> Shader<R> {
         &self,
         (x, y): (usize, usize),
         t: R,
-        (normal, tangent): (Vector3<R>, Vector3<R>),
+        normal: Vector3<R>,
+        tangent: Vector3<R>,
         surface: [R; 3],
     ) -> [R; 3] {
         if !t.is_finite() {

@@ -75,8 +75,8 @@ fn lanes_are_the_definition<R: Exact>() {
             };
             let place = (i % width as usize, i / width as usize);
             let surface = color.as_ref().map_or(own, |plane| plane.values()[i]);
-            let form = (at(&normal), at(&tangent));
-            let expected = shader.pixel(place, depth.values()[i], form, surface);
+            let depth = depth.values()[i];
+            let expected = shader.pixel(place, depth, at(&normal), at(&tangent), surface);
             let bits = |color: [R; 3]| color.map(|v| v.to_f64().to_bits());
             let found = found.values()[i];
             assert_eq!(bits(found), bits(expected), "seed {seed}, pixel {i} of {width} x 3");

@@ -93,7 +93,7 @@ use crate::method::projection::{Foremost, PixelSample, SHARES, VisibleTriangles}
 use crate::number::{MapInline, Vector3};
 use crate::progress::Progress;
 use crate::scene::merge::join;
-use crate::scene::{Camera, Cloud, Lens, Primitives, Scene, Surfels};
+use crate::scene::{Camera, Cloud, Lens, Primitives, Scene, Sphere, Surfels};
 use glam::{DMat4, DVec3, DVec4, Vec3};
 use painted::Painting;
 use properties::Properties;
@@ -167,7 +167,7 @@ fn gather(
     let (low, high) = (low.as_dvec3(), high.as_dvec3());
     let half = (high - low) / 2.0;
     let radius = if half == DVec3::ZERO { 1.0 } else { half.length() };
-    let sphere = ((low + high) / 2.0, radius);
+    let sphere = Sphere { center: (low + high) / 2.0, radius };
     let directions = directions.around(half)?;
     let colored = mesh.painting.is_some() || mesh.scene.primitives.colored();
     let mut found = Candidates {

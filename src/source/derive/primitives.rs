@@ -47,7 +47,7 @@ pub fn polygons(
     }
     let radius = vec![0.0; cloud.position.len()];
     let triangles = std::mem::take(&mut cloud.triangles);
-    finish(before, cloud, (normal, normals), (radius, Origin::Zero), triangles)
+    finish(before, cloud, normal, normals, radius, Origin::Zero, triangles)
 }
 
 /// The triangles in a half space as polygons, and the rest of a mesh as surfels. Normals and radii
@@ -91,12 +91,12 @@ pub fn hybrid(
 /// each edge has an end that is degenerate.
 pub fn ribbons(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived)> {
     let before = cloud.edges.len();
-    let radius = radii(&mut cloud, options, "ribbons")?;
+    let (radius, radius_from) = radii(&mut cloud, options, "ribbons")?;
     let Some(normal) = cloud.take_normals() else {
         return Err(Error::Invalid("ribbons need normals; give nx, ny and nz".into()));
     };
     let edges = std::mem::take(&mut cloud.edges);
-    finish(before, bare(cloud), (normal, Origin::File), radius, edges)
+    finish(before, bare(cloud), normal, Origin::File, radius, radius_from, edges)
 }
 
 /// The edges of a cloud as tubes. Radii come from the file or from the options.
@@ -116,13 +116,13 @@ pub fn ribbons(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived
 /// has an end that is degenerate.
 pub fn tubes(mut cloud: Cloud, options: &Derive) -> Result<(Polylines, Derived)> {
     let before = cloud.edges.len();
-    let radius = radii(&mut cloud, options, "tubes")?;
-    let tangent = match cloud.tangent.take() {
+    let (radius, radius_from) = radii(&mut cloud, options, "tubes")?;
+    let (tangent, tangent_from) = match cloud.tangent.take() {
         Some(tangent) => (tangent, Origin::File),
         None => (tangents(&cloud.position, &cloud.edges), Origin::Edges),
     };
     let edges = std::mem::take(&mut cloud.edges);
-    finish(before, bare(cloud), tangent, radius, edges)
+    finish(before, bare(cloud), tangent, tangent_from, radius, radius_from, edges)
 }
 
 /// Refuses a cloud without triangles.
@@ -156,8 +156,10 @@ fn radii(cloud: &mut Cloud, options: &Derive, what: &str) -> Result<(Vec<f32>, O
 fn finish<const N: usize>(
     before: usize,
     cloud: Cloud,
-    (direction, normals): (Vec<Vec3>, Origin),
-    (radius, radii): (Vec<f32>, Origin),
+    direction: Vec<Vec3>,
+    direction_from: Origin,
+    radius: Vec<f32>,
+    radius_from: Origin,
     corners: Vec<[u32; N]>,
 ) -> Result<(Indexed<N>, Derived)> {
     let (indexed, _) = Indexed::new(vertices(cloud, direction, radius), corners)?;
@@ -168,6 +170,7 @@ fn finish<const N: usize>(
     }
     let dropped_primitives = (before - indexed.len()) as u64;
     let dropped = Dropped::default();
+    let (normals, radii) = (direction_from, radius_from);
     Ok((indexed, Derived { normals, radii, dropped, dropped_primitives }))
 }
 

@@ -156,7 +156,7 @@ impl Settings {
 
 /// The side of a pixel in world units, for pictures with this side of a box.
 #[must_use]
-pub fn pixel(side: u32, (low, high): (Vec3, Vec3)) -> f64 {
+pub fn pixel(side: u32, low: Vec3, high: Vec3) -> f64 {
     let half = (high.as_dvec3() - low.as_dvec3()).length() / 2.0;
     let radius = if half > 0.0 { half } else { 1.0 };
     2.0 * radius / f64::from(side)
@@ -260,8 +260,8 @@ mod tests {
         assert_eq!(sides, [16, 17, 52, 512, 1024, 1024]);
         let few = Settings { most: 7, side: 9, ..settings };
         assert_eq!((few.count(u64::MAX), few.side_of(7), few.side_of(200_000)), (7, 9, 9));
-        assert_eq!(pixel(9, (Vec3::ZERO, Vec3::new(2.0, 3.0, 6.0))), 7.0 / 9.0);
-        assert_eq!(pixel(9, (Vec3::ONE, Vec3::ONE)), 2.0 / 9.0);
+        assert_eq!(pixel(9, Vec3::ZERO, Vec3::new(2.0, 3.0, 6.0)), 7.0 / 9.0);
+        assert_eq!(pixel(9, Vec3::ONE, Vec3::ONE), 2.0 / 9.0);
     }
 
     #[test]

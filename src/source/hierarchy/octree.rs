@@ -150,11 +150,11 @@ impl Octree {
             let node = &mut self.nodes[number];
             for &item in &self.order[node.own.start as usize..node.own.end as usize] {
                 let Item { low, high, weight } = items[item as usize];
-                node.add((low, high), weight, 1);
+                node.add(low, high, weight, 1);
             }
             let Branch { parent, low, high, weight, items, .. } = *node;
             if parent != NO_NODE {
-                self.nodes[parent as usize].add((low, high), weight, items);
+                self.nodes[parent as usize].add(low, high, weight, items);
             }
         }
     }
@@ -168,19 +168,32 @@ impl Octree {
 }
 
 impl Branch {
-    fn add(&mut self, (low, high): (Vec3, Vec3), weight: u64, items: u32) {
-        (self.low, self.high) = around((self.low, self.high), (low, high));
+    fn add(&mut self, low: Vec3, high: Vec3, weight: u64, items: u32) {
+        let own = Corners { low: self.low, high: self.high };
+        Corners { low: self.low, high: self.high } = around(own, Corners { low, high });
         self.weight += weight;
         self.items += items;
     }
 }
 
+/// An axis-parallel box: its corners with the least and with the greatest coordinates.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Corners {
+    /// The least coordinates.
+    pub low: Vec3,
+    /// The greatest coordinates.
+    pub high: Vec3,
+}
+
 /// The box around two boxes, with 0 in place of -0.
 #[must_use]
-pub fn around(a: (Vec3, Vec3), b: (Vec3, Vec3)) -> (Vec3, Vec3) {
-    let least = |i: usize| if b.0[i] < a.0[i] { b.0[i] } else { a.0[i] } + 0.0;
-    let most = |i: usize| if b.1[i] > a.1[i] { b.1[i] } else { a.1[i] } + 0.0;
-    (Vec3::new(least(0), least(1), least(2)), Vec3::new(most(0), most(1), most(2)))
+pub fn around(a: Corners, b: Corners) -> Corners {
+    let least = |i: usize| if b.low[i] < a.low[i] { b.low[i] } else { a.low[i] } + 0.0;
+    let most = |i: usize| if b.high[i] > a.high[i] { b.high[i] } else { a.high[i] } + 0.0;
+    Corners {
+        low: Vec3::new(least(0), least(1), least(2)),
+        high: Vec3::new(most(0), most(1), most(2)),
+    }
 }
 
 /// Divides items into the items that stay in a node, and the items of each child.
@@ -211,8 +224,8 @@ fn divide(
 }
 
 fn places(items: &[Item]) -> Vec<Place> {
-    let boxes = items.iter().map(|item| (item.low, item.high));
-    let (low, high) = boxes.reduce(around).unwrap_or_default();
+    let boxes = items.iter().map(|item| Corners { low: item.low, high: item.high });
+    let Corners { low, high } = boxes.reduce(around).unwrap_or_default();
     let low = low.as_dvec3();
     let side = power_of_two((high.as_dvec3() - low).max_element());
     let cells = 1_u32 << DEPTH;

@@ -91,6 +91,13 @@ pub struct Clipped<R, const N: usize> {
     pub weights: [R; N],
 }
 
+/// A vertex, and its distance to a plane.
+#[derive(Clone, Copy)]
+struct Measured<R, const N: usize> {
+    vertex: Clipped<R, N>,
+    distance: R,
+}
+
 impl<R: Real> ClipPlane<R> {
     fn distance(&self, p: &Vector3<R>) -> R {
         let coordinate = match self.axis {
@@ -168,9 +175,12 @@ impl<R: Real> Clip<R> {
     /// on which side of a plane a corner is.
     fn polygon(&self, mut polygon: Vec<Clipped<R, 3>>) -> Option<Vec<Clipped<R, 3>>> {
         for plane in &self.planes {
-            let measured = |v: &Clipped<R, 3>| (*v, plane.distance(&v.position));
-            let certain = |(_, distance): &(_, R)| {
-                let inside = distance.ge(R::ZERO);
+            let measured = |vertex: &Clipped<R, 3>| Measured {
+                vertex: *vertex,
+                distance: plane.distance(&vertex.position),
+            };
+            let certain = |measured: &Measured<R, 3>| {
+                let inside = measured.distance.ge(R::ZERO);
                 (inside.certainly() == inside.possibly()).then_some(inside.certainly())
             };
             let mut before = measured(polygon.last()?);
@@ -179,9 +189,9 @@ impl<R: Real> Clip<R> {
                 // Each edge adds its crossing with the plane, if it has one, and then its end, if
                 // that is inside.
                 match [certain(&before)?, certain(&here)?] {
-                    [true, true] => kept.push(here.0),
+                    [true, true] => kept.push(here.vertex),
                     [true, false] => kept.push(self.cut(plane, before, here)?),
-                    [false, true] => kept.extend([self.cut(plane, here, before)?, here.0]),
+                    [false, true] => kept.extend([self.cut(plane, here, before)?, here.vertex]),
                     [false, false] => {}
                 }
                 before = here;
@@ -196,8 +206,8 @@ impl<R: Real> Clip<R> {
     fn cut<const N: usize>(
         &self,
         plane: &ClipPlane<R>,
-        (inside, d): (Clipped<R, N>, R),
-        (outside, e): (Clipped<R, N>, R),
+        Measured { vertex: inside, distance: d }: Measured<R, N>,
+        Measured { vertex: outside, distance: e }: Measured<R, N>,
     ) -> Option<Clipped<R, N>> {
         let (f, g) = (-e / (d - e), d / (d - e));
         let mut position = inside.position * f + outside.position * g;
@@ -253,8 +263,11 @@ impl<R: Exact> Clip<R> {
             return Some(ends);
         }
         for plane in &self.planes {
-            let [a, b] = [0, 1].map_inline(|i| (ends[i], plane.distance(&ends[i].position)));
-            match [a, b].map_inline(|(_, distance)| distance >= R::ZERO) {
+            let [a, b] = [0, 1].map_inline(|i| Measured {
+                vertex: ends[i],
+                distance: plane.distance(&ends[i].position),
+            });
+            match [a, b].map_inline(|end| end.distance >= R::ZERO) {
                 [true, true] => {}
                 [true, false] => ends[1] = self.cut(plane, a, b)?,
                 [false, true] => ends[0] = self.cut(plane, b, a)?,

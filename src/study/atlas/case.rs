@@ -87,7 +87,7 @@ impl Case {
 
     /// The true picture of these surfaces, from the same camera.
     pub(super) fn truth(&self, surfaces: &[Surface], exec: &Exec) -> Result<Frame<f32>> {
-        Ok(of_surfaces(surfaces, &self.scene, false, (&self.camera, &[]), exec, &quiet)?.frame)
+        Ok(of_surfaces(surfaces, &self.scene, false, &self.camera, &[], exec, &quiet)?.frame)
     }
 }
 

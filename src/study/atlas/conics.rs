@@ -36,7 +36,7 @@
 //! `Decided:` both formulas are taken from work that quotes them; a test holds both boxes to a sampled rim.
 
 use super::case::both;
-use super::numbers::{ahead, outside, shown, tilted, visible};
+use super::numbers::{Facing, ahead, outside, shown, tilted, visible};
 use super::{Failure, Found};
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Plane};
@@ -279,7 +279,7 @@ fn askew() -> DVec3 {
 
 /// The disc of [`tilted`]; its first half axis comes nearest to the eye.
 fn crossing(distance: f64) -> Mapping<f64> {
-    let (center, normal) = tilted(distance, askew());
+    let Facing { center, normal } = tilted(distance, askew());
     let three = |v: DVec3| Vector3::new(v.x, v.y, -v.z);
     let level = DVec3::Z.cross(askew());
     Mapping { u: three(level.cross(normal)), v: three(level), p: three(center) }

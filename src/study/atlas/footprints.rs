@@ -155,7 +155,7 @@ fn minify(pixels: f64, exec: &Exec) -> Result<[Found; 2]> {
     let side = pixels * 4.0 / f64::from(camera.fy);
     let surfels = checked(Shape::Sphere.surfels(100_000, 0)?, side)?;
     let scene = Scene::unlit("checks", surfels);
-    let truth = of_points(&scene, (&camera, &[]), exec, &quiet)?.frame;
+    let truth = of_points(&scene, &camera, &[], exec, &quiet)?.frame;
     let method = splatting(Outline::Affine, 0.0);
     let cure = splatting(Outline::Affine, Kernel::DEFAULT.low_pass);
     Case { scene, camera, method, grouping: None }.and_cured(cure, &truth, "rmse", exec)

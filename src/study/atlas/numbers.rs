@@ -77,7 +77,7 @@ fn edge_on(radius: f64, cured: bool) -> Result<Found> {
     let camera = Camera::new(SIDE, SIDE, pose, Lens::Orthographic(side))?;
     // A disc of radius r has variance r^2, as in the textbook.
     let kernel = Kernel { cutoff: 1.0, ..Kernel::DEFAULT };
-    let splat = splat::<f32>(&camera, &kernel, (DVec3::ZERO, normal, radius))?.footprint;
+    let splat = splat::<f32>(&camera, &kernel, DVec3::ZERO, normal, radius)?.footprint;
     let low_pass = f64::from(kernel.low_pass);
     let [longer, shorter] = [radius, radius * THIN * long].map(|r| (r * r + low_pass).sqrt());
     // q at a point of the ellipse's axes, in f32 and in f64, at the same point in f32.
@@ -131,7 +131,9 @@ const SIDE: u32 = 512;
 fn splat<R: Exact>(
     camera: &Camera,
     kernel: &Kernel,
-    (position, normal, radius): (DVec3, DVec3, f64),
+    position: DVec3,
+    normal: DVec3,
+    radius: f64,
 ) -> Result<Splat<R>> {
     let three = |v: DVec3| Vector3::from_glam(v.as_vec3());
     let disc = Disc {
@@ -152,7 +154,7 @@ fn bounds(distance: f64, _: &Exec) -> Result<[Found; 2]> {
     // The disc fills about half the picture, wherever it is.
     let focal = 0.25 * f64::from(SIDE) * distance;
     let camera = ahead(SIDE, focal.at_most(0.25 * f64::from(SIDE) * 4.0))?;
-    Ok(beyond_the_square(&camera, (distance, tilted(distance, DVec3::X))))
+    Ok(beyond_the_square(&camera, distance, tilted(distance, DVec3::X)))
 }
 
 /// A disc at a depth of four radii that faces the eye, at an angle to the axis, in the middle of the picture.
@@ -164,15 +166,14 @@ fn bounds_off_axis(degrees: f64, _: &Exec) -> Result<[Found; 2]> {
     let center = DVec3::new(DISTANCE * tan(away), 0.0, -DISTANCE);
     let normal = DVec3::new(-sin(away), 0.0, cos(away));
     let camera = Camera { cx, ..camera };
-    Ok(beyond_the_square(&camera, (DISTANCE, (center, normal))))
+    Ok(beyond_the_square(&camera, DISTANCE, Facing { center, normal }))
 }
 
 /// The pixels of a disc of radius 1 at a depth that lie outside the square, and with the cure
 /// outside the bounds, per mille.
-fn beyond_the_square(camera: &Camera, (distance, disc): (f64, (DVec3, DVec3))) -> [Found; 2] {
+fn beyond_the_square(camera: &Camera, distance: f64, disc: Facing) -> [Found; 2] {
     let focal = f64::from(camera.fx);
-    let (center, _) = disc;
-    let middle = DVec3::new(center.x, center.y, 0.0) * focal / distance;
+    let middle = DVec3::new(disc.center.x, disc.center.y, 0.0) * focal / distance;
     let reach = focal / distance;
     let rect = visible(camera, disc);
     let square = |x, y| {
@@ -197,24 +198,34 @@ pub(super) fn ahead(side: u32, focal: f64) -> Result<Camera> {
     Camera::new(side, side, pose, Lens::Focal(focal))
 }
 
+/// A disc of radius 1: its centre, and the way it faces.
+#[derive(Clone, Copy)]
+pub(super) struct Facing {
+    pub(super) center: DVec3,
+    pub(super) normal: DVec3,
+}
+
 /// The centre and the normal of a disc of radius 1 in front of [`ahead`], tilted by 45 degrees and
 /// 20 degrees off the axis; both point away from the axis in the same direction.
-pub(super) fn tilted(distance: f64, side: DVec3) -> (DVec3, DVec3) {
+pub(super) fn tilted(distance: f64, side: DVec3) -> Facing {
     let (away, tilt) = (20_f64.to_radians(), 45_f64.to_radians());
-    (side * (distance * tan(away)) - DVec3::Z * distance, side * sin(tilt) + DVec3::Z * cos(tilt))
+    Facing {
+        center: side * (distance * tan(away)) - DVec3::Z * distance,
+        normal: side * sin(tilt) + DVec3::Z * cos(tilt),
+    }
 }
 
 /// The crate's bounds of a disc of radius 1; `None` if it is not drawn.
-pub(super) fn visible(camera: &Camera, (center, normal): (DVec3, DVec3)) -> Option<Rect> {
+pub(super) fn visible(camera: &Camera, Facing { center, normal }: Facing) -> Option<Rect> {
     let kernel = Kernel { outline: Outline::RayCast, low_pass: 0.0, cutoff: 1.0 };
-    splat::<f32>(camera, &kernel, (center, normal, 1.0)).ok().map(|splat| splat.bounds)
+    splat::<f32>(camera, &kernel, center, normal, 1.0).ok().map(|splat| splat.bounds)
 }
 
 /// How much of a disc of radius 1 is outside, per mille of its pixels in a picture, with a picture
 /// of which.
 pub(super) fn outside(
     camera: &Camera,
-    (center, normal): (DVec3, DVec3),
+    Facing { center, normal }: Facing,
     held: impl Fn(u32, u32) -> bool,
 ) -> Found {
     let (side, focal) = (camera.width, f64::from(camera.fx));

@@ -58,7 +58,7 @@ pub fn density(ascending: &[f64]) -> Vec<[f64; 2]> {
 
 /// Draws a violin around x, at most `half` px to each side: a surface, a line from the least to the
 /// largest value, a box between the quartiles, and the median as a white line.
-pub fn draw(out: &mut Drawing, ascending: &[f64], (y, x, half): (&Axis, f64, f64), color: Rgb) {
+pub fn draw(out: &mut Drawing, ascending: &[f64], y: &Axis, x: f64, half: f64, color: Rgb) {
     let (Some(&least), Some(&greatest)) = (ascending.first(), ascending.last()) else { return };
     let edge = Stroke::solid(color, 1.25);
     let density = density(ascending);

@@ -50,7 +50,7 @@ pub fn chart(frames: &[FrameTimes], wanted: f64) -> Drawing {
         let mut times: Vec<f64> = frames.iter().map(|one| of(one)[i]).collect();
         times.sort_by(f64::total_cmp);
         let x = left + slot * (i as f64 + 0.5);
-        violin::draw(&mut out, &times, (&axis, x, slot / 3.0), color);
+        violin::draw(&mut out, &times, &axis, x, slot / 3.0, color);
         out.text([x, DOWN[1] + 18.0], &Label::new(name, Anchor::Middle));
     }
     let y = axis.at(wanted);

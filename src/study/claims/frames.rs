@@ -119,7 +119,7 @@ const TURN: f64 = 32.0;
 
 /// Moves the camera as if the scene were turned about +y around its middle.
 fn turned(subject: &Subject<'_>, degrees: f64) -> Camera {
-    let (middle, _) = subject.scene.surfels.bounding_sphere();
+    let middle = subject.scene.surfels.bounding_sphere().center;
     let turn = DMat4::from_mat3(rotation(DVec3::Y, degrees));
     let around = DMat4::from_translation(middle) * turn * DMat4::from_translation(-middle);
     let view = subject.camera.view_from_world.as_dmat4() * around;
@@ -173,7 +173,7 @@ const DENSE: usize = 60_000;
 
 /// The subject with more surfels and with checks of a pixel, and optionally with mipmaps.
 fn dense<'e>(subject: &Subject<'e>, smooth: bool) -> Result<Subject<'e>> {
-    let (middle, _) = subject.scene.surfels.bounding_sphere();
+    let middle = subject.scene.surfels.bounding_sphere().center;
     let distance = -subject.camera.view_from_world.as_dmat4().transform_point3(middle).z;
     let pixel = distance / f64::from(subject.camera.fy);
     let surfels = checked(subject.of_count(DENSE)?.scene.surfels, pixel)?;

@@ -132,7 +132,8 @@ pub fn claims() -> Vec<&'static Claim> {
 /// scenes.
 pub fn verdicts(
     claims: &[&'static Claim],
-    (scans, formats): (&[SceneFile], &[(&str, Formats)]),
+    scans: &[SceneFile],
+    formats: &[(&str, Formats)],
     exec: &Exec,
     progress: Progress<'_>,
 ) -> Result<Vec<Verdict>> {

@@ -164,8 +164,7 @@ impl<'e> Subject<'e> {
         let truth = match &self.case.of {
             &Drawn::Shape(shape, _) => {
                 let surface = Surface::Shape { shape, place: Similarity::IDENTITY, color: None };
-                let view = (&self.camera, &[][..]);
-                of_surfaces(&[surface], &self.scene, false, view, self.exec, &quiet)?
+                of_surfaces(&[surface], &self.scene, false, &self.camera, &[], self.exec, &quiet)?
             }
             Drawn::Scan(file) => {
                 let known = Known::about(file, &self.scene, self.exec, &quiet)?;

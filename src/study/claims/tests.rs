@@ -50,9 +50,9 @@ fn the_page_is_what_is_measured() {
     if scans.is_none() {
         println!("skipped: scans, as the models are not there");
     }
-    let of = (scans.as_deref().unwrap_or_default(), &FORMATS[..]);
-    let measured = verdicts(&of_errors(), of, &exec, &|_, _, _| ()).unwrap();
-    let names: Vec<&str> = of.0.iter().map(|scan| scan.name.as_str()).collect();
+    let shown = scans.as_deref().unwrap_or_default();
+    let measured = verdicts(&of_errors(), shown, &FORMATS, &exec, &|_, _, _| ()).unwrap();
+    let names: Vec<&str> = shown.iter().map(|scan| scan.name.as_str()).collect();
     let (now, then) = (lasting(&page(&measured, &names).text), kept());
     let then = if scans.is_some() { then.trim_end() } else { of_shapes(&then) };
     assert_eq!(

@@ -92,14 +92,16 @@ impl Known {
     /// As [`truth::of_surfaces`] and [`truth::of_points`].
     fn picture(
         &self,
-        looks: (&Camera, &[[u32; 2]]),
+        camera: &Camera,
+        shifts: &[[u32; 2]],
         exec: &Exec,
         progress: Progress<'_>,
     ) -> Result<Truth> {
         if self.unknown.is_some() {
-            return truth::of_points(&self.scene, looks, exec, progress);
+            return truth::of_points(&self.scene, camera, shifts, exec, progress);
         }
-        truth::of_surfaces(&self.surfaces, &self.scene, self.cull, looks, exec, progress)
+        let (surfaces, scene) = (&self.surfaces, &self.scene);
+        truth::of_surfaces(surfaces, scene, self.cull, camera, shifts, exec, progress)
     }
 
     /// The true picture from a camera.
@@ -107,7 +109,7 @@ impl Known {
     /// # Errors
     /// As [`truth::of_surfaces`] and [`truth::of_points`].
     pub fn still(&self, camera: &Camera, exec: &Exec, progress: Progress<'_>) -> Result<Truth> {
-        self.picture((camera, &[]), exec, progress)
+        self.picture(camera, &[], exec, progress)
     }
 
     /// The true pictures of a study from a camera. Scenes of points have none along the path,
@@ -116,13 +118,13 @@ impl Known {
     /// # Errors
     /// As [`truth::of_surfaces`] and [`truth::of_points`].
     pub fn pictures(&self, camera: &Camera, exec: &Exec, progress: Progress<'_>) -> Result<Truths> {
-        let still = self.picture((camera, &cameras::shifts()), exec, progress)?;
+        let still = self.picture(camera, &cameras::shifts(), exec, progress)?;
         let mut path = Vec::new();
         if self.unknown.is_none() {
             path.push(still.frame.color("")?.clone());
             for (i, camera) in cameras::path(camera).iter().enumerate().skip(1) {
                 progress("rendering the truth along a path", i as u64, cameras::FRAMES.into());
-                let truth = self.picture((camera, &[]), exec, &|_, _, _| ())?;
+                let truth = self.picture(camera, &[], exec, &|_, _, _| ())?;
                 path.push(truth.frame.color("")?.clone());
             }
         }

@@ -131,7 +131,7 @@ fn violins(out: &mut Drawing, panels: &[Panel<'_>]) {
         for (i, (spread, color)) in at.spreads.iter().zip(COLORS).enumerate() {
             let x = left + slot * (i as f64 + 0.5);
             let relative: Vec<f64> = spread.nearest.iter().map(|d| d / at.unit).collect();
-            violin::draw(out, &relative, (&axis, x, HALF), color);
+            violin::draw(out, &relative, &axis, x, HALF, color);
             let (side, y, r) = (x + BESIDE, axis.at(spread.covering / at.unit), 5.0);
             let diamond = [[side, y - r], [side + r, y], [side, y + r], [side - r, y]];
             out.surface(diamond, [255; 3], Some(Stroke::solid(color, 1.75)));

@@ -19,7 +19,8 @@ pub fn of_surfaces(
     surfaces: &[Surface],
     scene: &Scene,
     cull: bool,
-    (camera, shifts): (&Camera, &[[u32; 2]]),
+    camera: &Camera,
+    shifts: &[[u32; 2]],
     exec: &Exec,
     progress: Progress<'_>,
 ) -> Result<Truth> {

@@ -30,13 +30,16 @@ pub(super) struct Caster<'a> {
 /// A surface, prepared for rays.
 pub(super) enum Solid<'a> {
     Shape(Turned),
-    Triangles {
-        triangles: &'a Triangles,
-        /// The numbers of those that may be seen, ascending.
-        listed: Vec<u32>,
-        /// The tiles in which they may be seen.
-        bins: Bins,
-    },
+    Triangles(Binned<'a>),
+}
+
+/// Triangles, by the tiles in which they may be seen.
+pub(super) struct Binned<'a> {
+    pub(super) triangles: &'a Triangles,
+    /// The numbers of those that may be seen, ascending.
+    pub(super) listed: Vec<u32>,
+    /// The tiles in which they may be seen.
+    pub(super) bins: Bins,
 }
 
 /// A shape at its place.
@@ -103,7 +106,7 @@ impl<'a> Caster<'a> {
         let (listed, rects): (Vec<u32>, Vec<Rect>) = found.into_iter().flatten().unzip();
         let grid = exec.grid(self.camera.width, self.camera.height);
         let bins = Bins::new(&grid, rects.len(), |i| rects[i]);
-        Ok(Solid::Triangles { triangles, listed, bins })
+        Ok(Solid::Triangles(Binned { triangles, listed, bins }))
     }
 
     /// The pixels that may see a triangle, with or without a shift; `None` if no pixel may.

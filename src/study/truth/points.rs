@@ -22,7 +22,8 @@ use std::borrow::Cow;
 /// As [`Session::define`], and [`crate::Error::Invalid`] if the memory limit is too low.
 pub fn of_points(
     scene: &Scene,
-    (camera, shifts): (&Camera, &[[u32; 2]]),
+    camera: &Camera,
+    shifts: &[[u32; 2]],
     exec: &Exec,
     progress: Progress<'_>,
 ) -> Result<Truth> {

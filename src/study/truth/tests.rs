@@ -25,7 +25,7 @@ fn shape(name: &str) -> Surface {
 
 fn see(surfaces: &[Surface], scene: &Scene, cull: bool, camera: &Camera) -> Truth {
     let exec = Exec::new(2, 16).unwrap();
-    of_surfaces(surfaces, scene, cull, (camera, &[]), &exec, &|_, _, _| ()).unwrap()
+    of_surfaces(surfaces, scene, cull, camera, &[], &exec, &|_, _, _| ()).unwrap()
 }
 
 /// White triangles at these positions, each with its own normal.
@@ -267,15 +267,9 @@ fn threads_tiles_and_order_change_no_bit() {
     let expected = see(&surfaces, &scene, true, &camera);
     for (threads, tile) in [(1, 8), (2, 64), (3, 32)] {
         let exec = Exec::new(threads, tile).unwrap();
-        let found = of_surfaces(
-            &surfaces,
-            &scene,
-            true,
-            (&camera, &[[0, 0], [3, 5]]),
-            &exec,
-            &|_, _, _| (),
-        )
-        .unwrap();
+        let found =
+            of_surfaces(&surfaces, &scene, true, &camera, &[[0, 0], [3, 5]], &exec, &|_, _, _| ())
+                .unwrap();
         assert_eq!(found.frame, expected.frame);
         assert_eq!(&found.shifted[0], expected.frame.color("").unwrap());
     }
@@ -289,7 +283,7 @@ fn a_shift_is_a_camera_that_is_shifted() {
     let shifts = [[1, 3], [7, 0], [4, 4]];
     let surfaces = [shape("torus"), globe(5)];
     let truth =
-        of_surfaces(&surfaces, &scene, true, (&camera, &shifts), &exec, &|_, _, _| ()).unwrap();
+        of_surfaces(&surfaces, &scene, true, &camera, &shifts, &exec, &|_, _, _| ()).unwrap();
     for (found, [kx, ky]) in truth.shifted.iter().zip(shifts) {
         let moved =
             Camera { cx: camera.cx + kx as f32 / 8.0, cy: camera.cy + ky as f32 / 8.0, ..camera };
@@ -306,7 +300,7 @@ fn points_come_to_what_their_splats_cover() {
     let scene = Scene::lit("sphere", shape.surfels(4000, 0).unwrap());
     let camera = camera([64, 48], 4.0, Lens::FieldOfView(40.0));
     let exec = Exec::new(2, 32).unwrap();
-    let found = of_points(&scene, (&camera, &[[0, 0], [4, 2]]), &exec, &|_, _, _| ()).unwrap();
+    let found = of_points(&scene, &camera, &[[0, 0], [4, 2]], &exec, &|_, _, _| ()).unwrap();
     assert_eq!(found.how, How::Points);
     assert_eq!(&found.shifted[0], found.frame.color("").unwrap());
     let exact = see(
@@ -318,7 +312,7 @@ fn points_come_to_what_their_splats_cover() {
     // The splats reach 1/20 of the radius beyond the outline, and are smooth inside.
     assert!(rmse(&colors(&found), &colors(&exact)) < 0.06);
     let moved = Camera { cx: camera.cx + 0.5, cy: camera.cy + 0.25, ..camera };
-    let moved = of_points(&scene, (&moved, &[]), &exec, &|_, _, _| ()).unwrap();
+    let moved = of_points(&scene, &moved, &[], &exec, &|_, _, _| ()).unwrap();
     let flat =
         |plane: &Plane<[f32; 3]>| plane.values().iter().flatten().copied().collect::<Vec<_>>();
     assert!(rmse(&flat(&found.shifted[1]), &colors(&moved)) < 1e-6);

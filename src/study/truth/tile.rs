@@ -1,10 +1,10 @@
 //! The surfaces that the rays of a tile see.
 
-use super::caster::{Caster, Solid, Turned};
+use super::caster::{Binned, Caster, Solid, Turned};
 use super::rays::Rays;
 use super::triangles::{Placed, mixed};
 use super::{SAMPLES, mean};
-use crate::frame::{Bins, Rect};
+use crate::frame::Rect;
 use crate::number::Vector3;
 use crate::number::lanes::{LANES, Lanes, components, put_vector, vectorized};
 use crate::scene::Triangles;
@@ -67,9 +67,7 @@ impl Caster<'_> {
         for (surface, solid) in (0..).zip(&self.solids) {
             match solid {
                 Solid::Shape(shape) => self.trace(shape, surface, rays, &mut nearest),
-                Solid::Triangles { triangles, listed, bins } => {
-                    draw(self, triangles, listed, bins, (tile, surface), rays, &mut nearest);
-                }
+                Solid::Triangles(all) => draw(self, all, tile, surface, rays, &mut nearest),
             }
         }
         nearest
@@ -174,7 +172,7 @@ impl Caster<'_> {
         let what = nearest.what[i];
         let triangles = match self.solids.get(what[0] as usize)? {
             Solid::Shape(_) => return nearest.hits.get(what[1] as usize).copied(),
-            Solid::Triangles { triangles, .. } => triangles,
+            Solid::Triangles(Binned { triangles, .. }) => triangles,
         };
         if last.as_ref().is_none_or(|(of, _)| *of != what) {
             *last = Some((what, self.facet(triangles, what[1])));
@@ -222,10 +220,9 @@ vectorized!(
     /// Keeps the nearest of the triangles of a tile and the surfaces so far.
     fn draw(
         caster: &Caster<'_>,
-        triangles: &Triangles,
-        listed: &[u32],
-        bins: &Bins,
-        (tile, surface): (usize, u32),
+        Binned { triangles, listed, bins }: &Binned<'_>,
+        tile: usize,
+        surface: u32,
         rays: &Rays,
         nearest: &mut Nearest,
     ) {

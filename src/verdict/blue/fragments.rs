@@ -13,7 +13,7 @@ use crate::scene::Scene;
 use crate::splat::View;
 use crate::verdict::checks::Surface;
 use crate::verdict::client::Storage;
-use crate::verdict::marks::counted;
+use crate::verdict::marks::{TilePart, counted};
 use crate::verdict::projection::AllPolygons;
 use crate::verdict::shift::{CUT_OFF, OpenDecision};
 use std::ops::Range;
@@ -87,22 +87,23 @@ impl<'a, P: Profile> Fragments<'a, P> {
     /// client's id.
     pub(super) fn of_tile(
         &self,
-        (tile, rect): (usize, &Rect),
+        part: TilePart,
         depth_test: Storage,
         keeps: impl Fn((u32, u32)) -> u32,
     ) -> Vec<Vec<PossibleFragment<P>>> {
-        let mut found: Vec<Vec<PossibleFragment<P>>> = counted(*rect).map(|_| Vec::new()).collect();
+        let TilePart { tile, rect } = part;
+        let mut found: Vec<Vec<PossibleFragment<P>>> = counted(rect).map(|_| Vec::new()).collect();
         for (possible, bins) in &self.surfels {
             bins.for_each(tile, |i| {
                 let one = &possible[i as usize];
-                for (_, (x, y)) in counted_in(one.bounds.intersection(rect)) {
+                for (_, (x, y)) in counted_in(one.bounds.intersection(&rect)) {
                     let pixel = (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize;
                     found[pixel].extend(self.fragment(one, (x, y)));
                 }
             });
         }
         if let Some(triangles) = &self.triangles {
-            for (own, found) in triangles.fragments((tile, rect)).iter().zip(&mut found) {
+            for (own, found) in triangles.fragments(part).iter().zip(&mut found) {
                 found.extend(own.iter().map(|one| PossibleFragment {
                     id: self.scene.surfels.len() as u32 + one.index,
                     depth: one.depth,
@@ -121,7 +122,7 @@ impl<'a, P: Profile> Fragments<'a, P> {
                 }));
             }
         }
-        for ((_, at), found) in counted(*rect).zip(&mut found) {
+        for ((_, at), found) in counted(rect).zip(&mut found) {
             let most = |may: &PossibleFragment<P>| may.depth.middle + may.depth.radius;
             let lying = found.iter().filter(|may| may.lies);
             let front = lying.copied().reduce(|a, b| if most(&b) < most(&a) { b } else { a });

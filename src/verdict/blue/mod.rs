@@ -43,7 +43,7 @@ mod tests;
 
 use crate::composite::decide;
 use crate::error::Result;
-use crate::frame::{NO_ID, Rect};
+use crate::frame::NO_ID;
 use crate::method::Job;
 use crate::method::blue::Settings;
 use crate::method::projection::Has;
@@ -52,7 +52,7 @@ use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
 use crate::verdict::checks::{Report, Shading, least_wrong};
 use crate::verdict::client::Client;
-use crate::verdict::marks::{self, Counts, Marks, PixelMarks, counted};
+use crate::verdict::marks::{self, Counts, Marks, PixelMarks, TilePart, counted};
 use crate::verdict::shift::ShiftSums;
 use crate::verdict::{Check, Doubt, Fault, Verdict};
 use fragments::{Fragments, PossibleFragment};
@@ -117,13 +117,14 @@ impl<'a, P: Profile> Judge<'a, P> {
     }
 
     /// Marks the wrong pixels of a rectangle in a tile.
-    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
+    fn judge(&self, part: TilePart, marks: &mut [Marks; 2]) -> Counts {
+        let rect = part.rect;
         let mut counts = Counts::default();
         let all = self
             .fragments
-            .of_tile((tile, &rect), self.client_planes.depth_test, |at| self.client_planes.id(at));
+            .of_tile(part, self.client_planes.depth_test, |at| self.client_planes.id(at));
         for ((pixel, at), own) in counted(rect).zip(&all) {
-            let doubts = self.judge_pixel((pixel, at), own, marks);
+            let doubts = self.judge_pixel(pixel, at, own, marks);
             counts.covered += u64::from(!own.is_empty());
             counts.undecided += u64::from(doubts & Doubt::OF_SUMS != 0);
             if self.client_planes.id.is_some() {
@@ -136,7 +137,8 @@ impl<'a, P: Profile> Judge<'a, P> {
     /// Judges one pixel, and returns its doubts.
     fn judge_pixel(
         &self,
-        (pixel, at): (usize, (u32, u32)),
+        pixel: usize,
+        at: (u32, u32),
         all: &[PossibleFragment<P>],
         marks: &mut [Marks; 2],
     ) -> u8 {

@@ -138,7 +138,7 @@ pub(super) fn confirmed(
     let is_coarse = |change: &_| matches!(change, Change::Supposed(Supposed::CoarseExp(_)));
     found.retain(|one| !is_coarse(&one.change) || whole.is_one_in(2));
     if let Some((client, all)) = spread(whole)? {
-        found = explained(whole, (&client, all), found)?;
+        found = explained(whole, &client, all, found)?;
         let best = found.iter().map(|one| one.left.all).min().unwrap_or(0);
         found.retain(|one| 100 * (one.left.all - best) <= NEAR_PERCENT * all.all);
         // One mistake is named without its share, and so needs no exact counts.
@@ -146,13 +146,14 @@ pub(super) fn confirmed(
             return Ok(found);
         }
     }
-    explained(whole, (whole.client, whole.all), found)
+    explained(whole, whole.client, whole.all, found)
 }
 
 /// Those explanations that explain what is wrong in a client, with what they leave there.
 fn explained(
     case: &Case<'_, '_>,
-    (client, all): (&Client, Wrong),
+    client: &Client,
+    all: Wrong,
     some: Vec<Explanation>,
 ) -> Result<Vec<Explanation>> {
     let mut found = Vec::new();

@@ -256,7 +256,7 @@ pub(super) fn best(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
         return Ok(best);
     }
     for number in numbers(case) {
-        let Some((value, left)) = found(case, &number)? else { continue };
+        let Some(Tried { value, left }) = found(case, &number)? else { continue };
         let least = best.as_ref().is_none_or(|best| left.all < best.left.all);
         if case.explains(left, MOST_LEFT) && least {
             let Some(change) = (number.change)(value) else { continue };
@@ -270,60 +270,68 @@ pub(super) fn best(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
     Ok(best)
 }
 
+/// A value of a number, and the pixels that stay wrong with it.
+#[derive(Clone, Copy)]
+struct Tried {
+    value: f64,
+    left: Wrong,
+}
+
 /// The value of a number that explains most, and the pixels that stay wrong.
-fn found(case: &Case<'_, '_>, number: &Number<'_>) -> Result<Option<(f64, Wrong)>> {
+fn found(case: &Case<'_, '_>, number: &Number<'_>) -> Result<Option<Tried>> {
     let Number { right, step, .. } = *number;
     let judge = |value: f64, client| match (number.change)(value) {
         Some(change) => case.judge_client(&change, client),
         None => Ok(None),
     };
-    let in_part = || search(right, step, (case.all, false), |value| judge(value, case.client));
+    let in_part = || search(right, step, case.all, false, |value| judge(value, case.client));
     // Another camera moves splats so far that a few pixels show no way to it.
     let pilot = case.pilot.filter(|_| !number.is_of_camera);
     let Some((pilot, all)) = pilot else { return in_part() };
-    let found = search(right, step, (all, true), |value| judge(value, pilot))?;
-    let found = found.filter(|(_, left)| !left.is_hopeless(all));
-    let Some((value, _)) = found else { return Ok(None) };
+    let found = search(right, step, all, true, |value| judge(value, pilot))?;
+    let found = found.filter(|found| !found.left.is_hopeless(all));
+    let Some(Tried { value, .. }) = found else { return Ok(None) };
     let Some(left) = judge(value, case.client)? else { return Ok(None) };
     if left.all == 0 {
-        return Ok(Some((value, left)));
+        return Ok(Some(Tried { value, left }));
     }
     // The few pixels tell about where the best value is.
     let range = (0.2 * (value - right).abs()).at_least(step.abs());
-    let ends = [value - range, value + range];
+    let (ends, tried) = ([value - range, value + range], Tried { value, left });
     let wrong = |value| judge(value, case.client);
-    let found = narrowed((right, ends), (value, left), (left, false), wrong)?;
+    let found = narrowed(right, ends, tried, left, false, wrong)?;
     // Where errors grow only close to the best value, it lies between others.
-    if case.explains(found.1, MOST_LEFT) { Ok(Some(found)) } else { in_part() }
+    if case.explains(found.left, MOST_LEFT) { Ok(Some(found)) } else { in_part() }
 }
 
 /// The size of the errors with a value. Keeps the value if it is the best one.
 fn size(
     value: f64,
-    best: &mut (f64, Wrong),
+    best: &mut Tried,
     wrong: &mut impl FnMut(f64) -> Result<Option<Wrong>>,
 ) -> Result<f64> {
     let Some(left) = wrong(value)? else { return Ok(f64::INFINITY) };
-    if (left.size, left.all) < (best.1.size, best.1.all) {
-        *best = (value, left);
+    if (left.size, left.all) < (best.left.size, best.left.all) {
+        *best = Tried { value, left };
     }
     Ok(left.size)
 }
 
 /// The value that leaves the smallest errors, and the wrong pixels. None if no value near the right
-/// one leaves smaller errors. `all` has the wrong pixels, and whether to leave early where the errors
-/// hardly become smaller.
+/// one leaves smaller errors. `all` has the wrong pixels. With `leaves` the search ends early where the
+/// errors hardly become smaller.
 fn search(
     right: f64,
     step: f64,
-    all: (Wrong, bool),
+    all: Wrong,
+    leaves: bool,
     mut wrong: impl FnMut(f64) -> Result<Option<Wrong>>,
-) -> Result<Option<(f64, Wrong)>> {
-    let mut best = (right, all.0);
+) -> Result<Option<Tried>> {
+    let mut best = Tried { value: right, left: all };
     let mut size = |value, best: &mut _| size(value, best, &mut wrong);
     let [up, down] = [size(right + step, &mut best)?, size(right - step, &mut best)?];
     let (sign, mut least) = if up <= down { (step, up) } else { (-step, down) };
-    if !(least < all.0.size * (1.0 - LEAST_GAIN)) {
+    if !(least < all.size * (1.0 - LEAST_GAIN)) {
         return Ok(None);
     }
     let (mut before, mut at, mut next) = (right, right + sign, right + 3.0 * sign);
@@ -335,25 +343,27 @@ fn search(
         (before, at, least) = (at, next, own);
         next = at + sign * f64::from(1_u32 << (turn + 1));
     }
-    narrowed((right, [before, next]), best, all, wrong).map(Some)
+    narrowed(right, [before, next], best, all, leaves, wrong).map(Some)
 }
 
 /// The best value between two ends, with the fewest digits.
 fn narrowed(
-    (right, [mut low, mut high]): (f64, [f64; 2]),
-    mut best: (f64, Wrong),
-    (all, leaves): (Wrong, bool),
+    right: f64,
+    [mut low, mut high]: [f64; 2],
+    mut best: Tried,
+    all: Wrong,
+    leaves: bool,
     mut wrong: impl FnMut(f64) -> Result<Option<Wrong>>,
-) -> Result<(f64, Wrong)> {
+) -> Result<Tried> {
     let mut size = |value, best: &mut _| size(value, best, &mut wrong);
     let inner = |low: f64, high: f64| [high - GOLDEN * (high - low), low + GOLDEN * (high - low)];
     let [mut a, mut b] = inner(low, high);
     let [mut at_a, mut at_b] = [size(a, &mut best)?, size(b, &mut best)?];
     for turn in 0..TURNS {
-        if best.1.all == 0 {
+        if best.left.all == 0 {
             break;
         }
-        if leaves && turn == LEAST_TURNS && best.1.size > LEAST_LEFT * all.size {
+        if leaves && turn == LEAST_TURNS && best.left.size > LEAST_LEFT * all.size {
             return Ok(best);
         }
         if at_a <= at_b {
@@ -372,19 +382,20 @@ fn narrowed(
 /// The best value, or a shorter one beside it that leaves nothing wrong: people choose short numbers.
 fn rounded(
     right: f64,
-    mut best: (f64, Wrong),
+    mut best: Tried,
     range: f64,
-    mut size: impl FnMut(f64, &mut (f64, Wrong)) -> Result<f64>,
-) -> Result<(f64, Wrong)> {
+    mut size: impl FnMut(f64, &mut Tried) -> Result<f64>,
+) -> Result<Tried> {
     let range = range.at_least(0.01 * right.abs());
     for by in [1.0, 10.0, 100.0, 1000.0] {
-        let value = (best.0 * by).round() / by;
-        if (value - best.0).abs() > range || value == right {
+        let value = (best.value * by).round() / by;
+        if (value - best.value).abs() > range || value == right {
             continue;
         }
-        let mut own = (value, Wrong { near: u64::MAX, all: u64::MAX, size: f64::INFINITY });
+        let left = Wrong { near: u64::MAX, all: u64::MAX, size: f64::INFINITY };
+        let mut own = Tried { value, left };
         size(value, &mut own)?;
-        if own.1.all == 0 || own.1.size < best.1.size {
+        if own.left.all == 0 || own.left.size < best.left.size {
             best = own;
             break;
         }
@@ -411,17 +422,17 @@ mod tests {
             (0.0, -26.57, 0.1),
         ] {
             let mut asked = 0;
-            let found = search(right, step, (off(right, best), false), |value| {
+            let found = search(right, step, off(right, best), false, |value| {
                 asked += 1;
                 Ok(Some(off(value, best)))
             });
-            let (found, left) = found.unwrap().unwrap();
+            let Tried { value: found, left } = found.unwrap().unwrap();
             assert!((found - best).abs() < 0.01 * step.abs(), "{found}, {left:?}, not {best}");
             assert!(asked < 50, "{asked}");
         }
         let same = off(1.0, 2.0);
         assert!(
-            search(2.0, 0.1, (same, true), |_| Ok(Some(same))).unwrap().is_none(),
+            search(2.0, 0.1, same, true, |_| Ok(Some(same))).unwrap().is_none(),
             "another mistake"
         );
     }

@@ -112,7 +112,7 @@ use crate::verdict::ewa::client_planes::ClientPlanes;
 use crate::verdict::ewa::pixel::PixelJudge;
 use crate::verdict::ewa::sums::{self, Continuations};
 use crate::verdict::ewa::swift::{self, SwiftSplats};
-use crate::verdict::marks::{Counts, Marks, MethodMarks, StageMarks, Watch, counted};
+use crate::verdict::marks::{Counts, Marks, MethodMarks, StageMarks, TilePart, Watch, counted};
 use crate::verdict::projection::{AllPossible, SamplePlanes};
 use crate::verdict::shift::ShiftSums;
 use crate::verdict::{Check, Doubt, Verdict};
@@ -252,24 +252,30 @@ impl<'a, P: Profile> Scenery<'a, P> {
         watch: Watch,
     ) -> (Tiled<Nearest<P>>, Marks) {
         let (job, splats) = (self.job, self.splats(flagged));
-        let judge = |(tile, rect): (usize, Rect), mut marks: Marks| {
-            let given = (client_planes, self.surfels());
-            let others = beside(self.ground, (tile, &rect)).others;
-            let found =
-                certificate::judge_among(&splats, &others, given, (tile, &rect), &mut marks);
+        let judge = |part: TilePart, mut marks: Marks| {
+            let surfels = self.surfels();
+            let others = beside(self.ground, part).others;
+            let found = certificate::judge_among(
+                &splats,
+                &others,
+                client_planes,
+                surfels,
+                part,
+                &mut marks,
+            );
             (found, marks)
         };
         let grid = job.grid();
-        let found = job
-            .exec
-            .ordered(Watch::All.parts(&grid), |(tile, rect)| judge((tile, rect), Marks::new(rect)));
+        let found = job.exec.ordered(Watch::All.parts(&grid), |(tile, rect)| {
+            judge(TilePart { tile, rect }, Marks::new(rect))
+        });
         let (tiles, all): (Vec<_>, Vec<_>) = found.into_iter().unzip();
         let mut marks = watch.picture(job);
         match watch {
             Watch::All => all.into_iter().for_each(|part| marks.put(part)),
             Watch::One(_) => {
                 for (tile, rect) in watch.parts(&grid) {
-                    marks.put(judge((tile, rect), watch.marks(rect)).1);
+                    marks.put(judge(TilePart { tile, rect }, watch.marks(rect)).1);
                 }
             }
         }
@@ -289,7 +295,7 @@ impl<'a, P: Profile> Scenery<'a, P> {
         let planes = SamplePlanes::of_nearest(client, job.scene, [depth, id]);
         let everything = |_| true;
         let points =
-            AllPossible::<P>::drawn_where(&job, (cull, Snap::default()), Some(limits), everything);
+            AllPossible::<P>::drawn_where(&job, cull, Snap::default(), Some(limits), everything);
         let names = planes.names();
         let marks = match names.is_empty() {
             true => watch.picture(&job),
@@ -305,8 +311,8 @@ impl<'a, P: Profile> Scenery<'a, P> {
 }
 
 /// The polygons that may lie in a tile.
-fn beside<P: Profile>(ground: Option<&Polygons<'_, P>>, tile: (usize, &Rect)) -> PolygonTile<P> {
-    ground.map_or(PolygonTile::NOTHING, |ground| ground.beside(tile))
+fn beside<P: Profile>(ground: Option<&Polygons<'_, P>>, part: TilePart) -> PolygonTile<P> {
+    ground.map_or(PolygonTile::NOTHING, |ground| ground.beside(part))
 }
 
 /// The parts that the tiles share in the passes after the selection.
@@ -338,7 +344,7 @@ impl<P: Profile> LaterPasses<'_, P> {
     ) -> (Vec<[Marks; 4]>, Counts) {
         let found = exec.ordered(parts, |(tile, rect)| {
             let mut marks = [(); 4].map(|()| watch.marks(rect));
-            let counts = self.judge((tile, rect), &mut marks);
+            let counts = self.judge(TilePart { tile, rect }, &mut marks);
             (marks, counts)
         });
         let (mut tiles, mut all) = (Vec::new(), Counts::default());
@@ -350,27 +356,27 @@ impl<P: Profile> LaterPasses<'_, P> {
     }
 
     /// Marks the wrong pixels of a rectangle in a tile, stage by stage.
-    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 4]) -> Counts {
+    fn judge(&self, part: TilePart, marks: &mut [Marks; 4]) -> Counts {
+        let TilePart { tile, rect } = part;
         let [first, rest @ ..] = marks;
-        let beside = beside(self.ground, (tile, &rect));
-        let nearest = self.nearest((tile, &rect), &beside, first);
+        let beside = beside(self.ground, part);
+        let nearest = self.nearest(part, &beside, first);
         let (depth_test, epsilon) = (self.client_planes.depth_test, self.chosen.epsilon);
         let limits: Vec<_> =
             nearest.iter().map(|nearest| nearest.tested(depth_test, epsilon)).collect();
-        let sums =
-            sums::continuations(&self.chosen, self.surfels, &limits, (tile, &rect), &mut rest[0]);
+        let sums = sums::continuations(&self.chosen, self.surfels, &limits, part, &mut rest[0]);
         let (mut covered, mut shifts) = (0, ShiftSums::default());
         for (pixel, at) in counted(rect) {
             let sums = sums.continuations(pixel);
             let others = beside.others(pixel);
-            let shown = self.shown((tile, at), nearest[pixel], others, &mut rest[1]);
+            let shown = self.shown(tile, at, nearest[pixel], others, &mut rest[1]);
             let certain = matches!(sums, Continuations::One(_));
             covered += u64::from(shown.depth.middle.is_finite() || !certain);
             if !others.is_empty() {
-                self.judge_beside((pixel, at), &beside, &shown, &sums, rest);
+                self.judge_beside(pixel, at, &beside, &shown, &sums, rest);
                 continue;
             }
-            let taken = self.pixels.judge((pixel, at), &shown, &sums, rest);
+            let taken = self.pixels.judge(pixel, at, &shown, &sums, rest);
             if let (Continuations::Several(_, open), Some(taken)) = (&sums, taken) {
                 shifts.take_all(open, taken);
             }
@@ -381,15 +387,17 @@ impl<P: Profile> LaterPasses<'_, P> {
     /// The nearest fragments that pass 3 has left.
     fn nearest(
         &self,
-        (tile, rect): (usize, &Rect),
+        part: TilePart,
         beside: &PolygonTile<P>,
         marks: &mut Marks,
     ) -> Vec<Nearest<P>> {
+        let rect = part.rect;
         if self.picture.is_some() && self.client_planes.nothing() {
-            return counted(*rect).map(|(_, (x, y))| *self.visible.at(x, y)).collect();
+            return counted(rect).map(|(_, (x, y))| *self.visible.at(x, y)).collect();
         }
-        let given = (self.client_planes, self.surfels);
-        certificate::judge_among(&self.drawn, &beside.others, given, (tile, rect), marks)
+        let (client_planes, surfels) = (self.client_planes, self.surfels);
+        let others = &beside.others;
+        certificate::judge_among(&self.drawn, others, client_planes, surfels, part, marks)
     }
 
     /// The fragment that the picture shows where it has weight. Where no earlier pass has left
@@ -397,7 +405,8 @@ impl<P: Profile> LaterPasses<'_, P> {
     /// nearer of that polygon and B(i).
     fn shown(
         &self,
-        (tile, at): (usize, (u32, u32)),
+        tile: usize,
+        at: (u32, u32),
         nearest: Nearest<P>,
         others: &[Other<P>],
         marks: &mut Marks,
@@ -407,9 +416,9 @@ impl<P: Profile> LaterPasses<'_, P> {
         let among = |others: Vec<Other<P>>, marks: &mut Marks| {
             let pixel = Rect::pixel(at);
             let mut own = marks.beside(pixel);
-            let (others, given) = ([others], (picture, self.surfels));
-            let found =
-                certificate::judge_among(&self.chosen, &others, given, (tile, &pixel), &mut own);
+            let (splats, others, surfels) = (&self.chosen, [others], self.surfels);
+            let part = TilePart { tile, rect: pixel };
+            let found = certificate::judge_among(splats, &others, picture, surfels, part, &mut own);
             marks.put(own);
             found.into_iter().next().unwrap_or(nearest)
         };

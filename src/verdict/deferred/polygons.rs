@@ -4,7 +4,7 @@
 use super::LaterPasses;
 use crate::composite::decide;
 use crate::error::Result;
-use crate::frame::{NO_ID, Rect};
+use crate::frame::NO_ID;
 use crate::method::Job;
 use crate::method::deferred::part::Whole;
 use crate::method::deferred::polygons::alone;
@@ -19,7 +19,7 @@ use crate::verdict::checks::{Report, Surface, least_wrong};
 use crate::verdict::ewa::certificate::{Nearest, Other};
 use crate::verdict::ewa::pixel::all;
 use crate::verdict::ewa::sums::Continuations;
-use crate::verdict::marks::Marks;
+use crate::verdict::marks::{Marks, TilePart};
 use crate::verdict::projection::{AllPolygons, PossibleFragment};
 
 /// The polygons of a scene as a scene of their own, and one colour for polygons without colours.
@@ -63,9 +63,9 @@ impl<'a, P: Profile> Polygons<'a, P> {
     }
 
     /// The polygons that may lie in the pixels of a tile.
-    pub(super) fn beside(&self, tile: (usize, &Rect)) -> PolygonTile<P> {
+    pub(super) fn beside(&self, part: TilePart) -> PolygonTile<P> {
         let mut found = PolygonTile { surfaces: Vec::new(), others: Vec::new() };
-        for fragments in self.all.fragments(tile) {
+        for fragments in self.all.fragments(part) {
             let drawn: Vec<_> = fragments.iter().map(|fragment| self.surface(fragment)).collect();
             let other = |(fragment, surface): (&PossibleFragment<P>, &Surface<P>)| Other {
                 depth: surface.depth,
@@ -111,13 +111,14 @@ impl<P: Profile> LaterPasses<'_, P> {
     /// may show.
     pub(super) fn judge_beside(
         &self,
-        (pixel, at): (usize, (u32, u32)),
+        pixel: usize,
+        at: (u32, u32),
         beside: &PolygonTile<P>,
         nearest: &Nearest<P>,
         sums: &Continuations<P>,
         marks: &mut [Marks; 3],
     ) {
-        let shown = self.may_show((pixel, at), beside, nearest, sums);
+        let shown = self.may_show(pixel, at, beside, nearest, sums);
         let several = shown.iter().any(|one| matches!(one, Shown::Splats(_)))
             && shown.iter().any(|one| matches!(one, Shown::Polygon(..)));
         marks[1].at(pixel).doubt(Doubt::Nearer, several);
@@ -140,7 +141,8 @@ impl<P: Profile> LaterPasses<'_, P> {
 
     fn may_show<'s>(
         &self,
-        (pixel, at): (usize, (u32, u32)),
+        pixel: usize,
+        at: (u32, u32),
         beside: &PolygonTile<P>,
         nearest: &Nearest<P>,
         sums: &'s Continuations<P>,

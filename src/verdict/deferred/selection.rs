@@ -4,7 +4,7 @@
 use crate::frame::Plane;
 use crate::method::Job;
 use crate::number::ball::Profile;
-use crate::verdict::marks::Watch;
+use crate::verdict::marks::{TilePart, Watch};
 use crate::verdict::projection::{AllPossible, SamplePlanes};
 
 /// The surfels that a plane of ids lists, out of `total`. All of them are certain.
@@ -24,7 +24,8 @@ pub(super) fn possible<P: Profile>(
     total: u64,
 ) -> Vec<(u32, bool)> {
     let tiles = Watch::All.parts(&job.grid());
-    let found = job.exec.ordered(tiles, |part| points.kept(planes, part));
+    let found =
+        job.exec.ordered(tiles, |(tile, rect)| points.kept(planes, TilePart { tile, rect }));
     // A surfel that may lie in several pixels may be selected in each of them.
     let mut all: Vec<Option<bool>> = vec![None; total as usize];
     for (rank, sure) in found.into_iter().flatten() {

@@ -22,11 +22,7 @@ pub(super) struct Bands<'a, P: Profile> {
 }
 
 impl<'a, P: Profile> Bands<'a, P> {
-    pub(super) fn new(
-        job: &Job<'a>,
-        (band, depth_test): (Band, Storage),
-        epsilon: Ball<P>,
-    ) -> Self {
+    pub(super) fn new(job: &Job<'a>, band: Band, depth_test: Storage, epsilon: Ball<P>) -> Self {
         // Under an orthographic camera nearness is -t, and all rays are parallel.
         let flat = job.camera.projection == Projection::Orthographic;
         let same = flat && matches!(band, Band::OfNearness(_) | Band::AlongRay);

@@ -4,7 +4,7 @@
 use super::client_planes::ClientPlanes;
 use super::swift::{Fragment, SwiftSplat, SwiftSplats, each_fragment, least_nearness};
 use crate::composite::decide;
-use crate::frame::{NO_ID, Rect};
+use crate::frame::NO_ID;
 use crate::method::ewa::possible::PossibleSplat;
 use crate::method::fragment::each_pixel;
 use crate::method::tiled::pixels;
@@ -13,7 +13,7 @@ use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
 use crate::splat::{Shared, Splat, fragment};
 use crate::verdict::client::{Storage, Ties};
-use crate::verdict::marks::{Marks, PixelMarks};
+use crate::verdict::marks::{Marks, PixelMarks, TilePart};
 use crate::verdict::{Doubt, Fault};
 
 /// The nearest fragment of a pixel, according to the client.
@@ -69,16 +69,17 @@ struct Claim<P: Profile> {
 pub(crate) fn judge_among<P: Profile>(
     splats: &SwiftSplats<P>,
     others: &[Vec<Other<P>>],
-    given: (&ClientPlanes<'_>, &Surfels),
-    tile: (usize, &Rect),
+    client_planes: &ClientPlanes<'_>,
+    surfels: &Surfels,
+    part: TilePart,
     marks: &mut Marks,
 ) -> Vec<Nearest<P>> {
-    let certificate = Certificate::new(splats, others, given, tile);
+    let certificate = Certificate::new(splats, others, client_planes, surfels, part);
     each_fragment(
         splats,
-        tile,
+        part,
         |pixel| certificate.least(pixel),
-        |fragment, pixel| certificate.meet((pixel, fragment), fragment.depth(), marks),
+        |fragment, pixel| certificate.meet(pixel, fragment, fragment.depth(), marks),
     );
     certificate.end(marks);
     certificate.nearest()
@@ -103,11 +104,12 @@ impl<'a, P: Profile> Certificate<'a, P> {
     pub(super) fn new(
         splats: &SwiftSplats<P>,
         others: &'a [Vec<Other<P>>],
-        (client_planes, surfels): (&'a ClientPlanes<'a>, &'a Surfels),
-        tile: (usize, &Rect),
+        client_planes: &'a ClientPlanes<'a>,
+        surfels: &'a Surfels,
+        part: TilePart,
     ) -> Self {
-        let mut claims = claims(splats, others, client_planes, tile);
-        bound_open(splats, &mut claims, tile);
+        let mut claims = claims(splats, others, client_planes, part);
+        bound_open(splats, &mut claims, part);
         let depth_test = client_planes.depth_test;
         let tested: Vec<_> =
             claims.iter().map(|claim| depth_test.tested(claim.nearest.depth)).collect();
@@ -134,7 +136,8 @@ impl<'a, P: Profile> Certificate<'a, P> {
     #[inline(always)]
     pub(super) fn meet(
         &self,
-        (pixel, fragment): (usize, &Fragment<'_, P>),
+        pixel: usize,
+        fragment: &Fragment<'_, P>,
         t: Ball<P>,
         marks: &mut Marks,
     ) {
@@ -144,7 +147,7 @@ impl<'a, P: Profile> Certificate<'a, P> {
         if !(claim.open || farther || fragment.is_of(claim.nearest.id)) {
             let (against, mut marks) = (Rival { fragment, t }, marks.at(pixel));
             against.judge(self.tested[pixel], &mut marks);
-            against.judge_tie(claim, (self.client_planes.ties, self.surfels), &mut marks);
+            against.judge_tie(claim, self.client_planes.ties, self.surfels, &mut marks);
         }
     }
 
@@ -160,13 +163,13 @@ impl<'a, P: Profile> Certificate<'a, P> {
 }
 
 /// Finds the depths that may be the nearest where the client says nothing.
-fn bound_open<P: Profile>(splats: &SwiftSplats<P>, claims: &mut [Claim<P>], tile: (usize, &Rect)) {
+fn bound_open<P: Profile>(splats: &SwiftSplats<P>, claims: &mut [Claim<P>], part: TilePart) {
     let open: Vec<bool> = claims.iter().map(|claim| claim.open).collect();
     if !open.contains(&true) {
         return;
     }
     let least = |pixel: usize| if open[pixel] { f64::NAN } else { f64::INFINITY };
-    each_fragment(splats, tile, least, |fragment, pixel| {
+    each_fragment(splats, part, least, |fragment, pixel| {
         Rival { fragment, t: fragment.depth() }.bound(&mut claims[pixel].range);
     });
     for claim in claims.iter_mut().filter(|claim| claim.open) {
@@ -179,9 +182,9 @@ fn claims<P: Profile>(
     splats: &SwiftSplats<P>,
     others: &[Vec<Other<P>>],
     client_planes: &ClientPlanes<'_>,
-    (tile, rect): (usize, &Rect),
+    TilePart { tile, rect }: TilePart,
 ) -> Vec<Claim<P>> {
-    let mut claims: Vec<Claim<P>> = pixels(*rect)
+    let mut claims: Vec<Claim<P>> = pixels(rect)
         .enumerate()
         .map(|(pixel, at)| {
             let id = client_planes.id.map(|ids| *ids.plane.at(at.0, at.1));
@@ -209,7 +212,7 @@ fn claims<P: Profile>(
     if let Some(ids) = client_planes.id {
         // Each surfel is shown in few of the pixels in its bounds, so only these are visited.
         let shown =
-            pixels(*rect).enumerate().map(|(pixel, at)| (*ids.plane.at(at.0, at.1), pixel, at));
+            pixels(rect).enumerate().map(|(pixel, at)| (*ids.plane.at(at.0, at.1), pixel, at));
         let mut shown: Vec<_> = shown.filter(|(id, ..)| *id != NO_ID).collect();
         shown.sort_unstable();
         splats.for_each(tile, |SwiftSplat { possible: PossibleSplat { splat, .. }, .. }| {
@@ -222,7 +225,7 @@ fn claims<P: Profile>(
         });
     } else if has_depth {
         splats.for_each(tile, |SwiftSplat { possible: PossibleSplat { splat, .. }, .. }| {
-            each_pixel(splat, rect, |pixel, at| meet(splat, pixel, at));
+            each_pixel(splat, &rect, |pixel, at| meet(splat, pixel, at));
         });
     }
     claims
@@ -361,7 +364,8 @@ impl<P: Profile> Rival<'_, P> {
     fn judge_tie(
         &self,
         claim: &Claim<P>,
-        (ties, surfels): (Ties, &Surfels),
+        ties: Ties,
+        surfels: &Surfels,
         pixel: &mut PixelMarks<'_>,
     ) {
         let Some(id) = claim.nearest.id else { return };

@@ -63,7 +63,7 @@ use crate::number::ball::Profile;
 use crate::number::lanes::LANES;
 use crate::scene::Surfels;
 use crate::verdict::client::Client;
-use crate::verdict::marks::{self, Counts, Marks, counted};
+use crate::verdict::marks::{self, Counts, Marks, TilePart, counted};
 use crate::verdict::shift::ShiftSums;
 use crate::verdict::{Check, Doubt, Verdict};
 use band::Bands;
@@ -83,12 +83,12 @@ pub(super) fn verify<P: Profile>(
     budget: f64,
 ) -> Verdict {
     let client_planes = ClientPlanes::new(client);
-    let judge = Judge::<P>::new(job, settings, (client, &client_planes));
+    let judge = Judge::<P>::new(job, settings, client, &client_planes);
     let verdict =
         marks::verdict(job, client_planes.stages(), budget, |tile, marks| judge.judge(tile, marks));
     match &client.records {
         Some(records) => {
-            verdict.after(records::judge::<P>(job, settings, (records, client.supposed)))
+            verdict.after(records::judge::<P>(job, settings, records, client.supposed))
         }
         None => verdict,
     }
@@ -102,7 +102,7 @@ pub(super) fn checks<P: Profile>(
     pixel: (u32, u32),
 ) -> Result<Vec<Check>> {
     let client_planes = ClientPlanes::new(client);
-    let judge = Judge::<P>::new(job, settings, (client, &client_planes));
+    let judge = Judge::<P>::new(job, settings, client, &client_planes);
     let stages = client_planes.stages().map(|(stage, _)| stage);
     marks::checks(job, stages, pixel, |tile, marks| judge.judge(tile, marks))
 }
@@ -121,7 +121,8 @@ impl<'a, P: Profile> Judge<'a, P> {
     fn new(
         job: &Job<'a>,
         settings: &Settings,
-        (client, client_planes): (&Client, &'a ClientPlanes<'a>),
+        client: &Client,
+        client_planes: &'a ClientPlanes<'a>,
     ) -> Self {
         let splats = match client_planes.records {
             Some(records) => records::project(job, settings, records),
@@ -132,22 +133,23 @@ impl<'a, P: Profile> Judge<'a, P> {
                 splats
             }
         };
-        let bands = Bands::new(job, (client_planes.band, client_planes.depth_test), splats.epsilon);
+        let bands = Bands::new(job, client_planes.band, client_planes.depth_test, splats.epsilon);
         let pixels = PixelJudge::new(job, client_planes);
         let right = RightPixels::new(job, client_planes);
         Self { surfels: &job.scene.surfels, client_planes, splats, bands, pixels, right }
     }
 
     /// Marks the wrong pixels of a rectangle in a tile, stage by stage.
-    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 4]) -> Counts {
+    fn judge(&self, part: TilePart, marks: &mut [Marks; 4]) -> Counts {
+        let rect = part.rect;
         let Self { surfels, client_planes, splats, bands, pixels, .. } = self;
         let [first, rest @ ..] = marks;
-        let certificate = Certificate::new(splats, &[], (client_planes, surfels), (tile, &rect));
+        let certificate = Certificate::new(splats, &[], client_planes, surfels, part);
         let nearest = certificate.nearest();
         let limits = bands.moved(&nearest, &rect);
         let beside = Some((&certificate, &mut *first));
-        let rule = (client_planes.supposed, &*limits);
-        let added = sums::add(splats, surfels, rule, (tile, &rect), beside, &mut rest[0]);
+        let supposed = client_planes.supposed;
+        let added = sums::add(splats, surfels, supposed, &limits, part, beside, &mut rest[0]);
         certificate.end(first);
         let right = self.right(rect, &nearest, &added.sums, &rest[0]);
         let sums = added.followed(|pixel| right[pixel].is_none());
@@ -162,7 +164,7 @@ impl<'a, P: Profile> Judge<'a, P> {
                 continue;
             }
             let sums = sums.continuations(pixel);
-            let taken = pixels.judge((pixel, at), &nearest[pixel], &sums, rest);
+            let taken = pixels.judge(pixel, at, &nearest[pixel], &sums, rest);
             if let (Continuations::Several(_, open), Some(taken)) = (&sums, taken) {
                 shifts.take_all(open, taken);
             }

@@ -75,7 +75,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     /// continuation that fits, if one fits and others do not.
     pub(crate) fn judge(
         &self,
-        (pixel, at): (usize, (u32, u32)),
+        pixel: usize,
+        at: (u32, u32),
         nearest: &Nearest<P>,
         sums: &Continuations<P>,
         marks: &mut [Marks; 3],
@@ -190,7 +191,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             self.check_sums(at, sums, report);
         }
         let averages = self.averages(at, sums);
-        self.check_averages(at, (&averages, sums), report);
+        self.check_averages(at, &averages, sums, report);
         self.check_copies(at, nearest, sums, report);
         let client_planes = self.client_planes;
         if let Some(plane) = &client_planes.shaded {
@@ -306,7 +307,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     fn check_averages(
         &self,
         at: (u32, u32),
-        (averages, sums): (&Averages<P>, Option<&Sums<Ball<P>>>),
+        averages: &Averages<P>,
+        sums: Option<&Sums<Ball<P>>>,
         report: &mut Report<'_>,
     ) {
         let client_planes = self.client_planes;

@@ -29,7 +29,8 @@ pub(super) fn project<P: Profile>(
     let surfels = &job.scene.surfels;
     let picture = job.picture();
     Prepared::new(
-        (job, &job.grid()),
+        job,
+        &job.grid(),
         settings,
         records.len(),
         |projector, range, splats| {
@@ -65,7 +66,8 @@ fn disc<P: Profile>(
 pub(super) fn judge<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
-    (records, supposed): (&[SplatRecord], Supposed),
+    records: &[SplatRecord],
+    supposed: Supposed,
 ) -> StageVerdict {
     let surfels = &job.scene.surfels;
     let projector =
@@ -80,7 +82,7 @@ pub(super) fn judge<P: Profile>(
                 supposed.splat(possible, &settings.kernel, &job.picture())
             };
             let record = at.ok().map(|at| &records[at]);
-            judge_surfel((&projector, &other), surfels, i as u32, record)
+            judge_surfel(&projector, &other, surfels, i as u32, record)
         };
         range.filter_map(of_surfel).collect::<Vec<_>>()
     });
@@ -148,7 +150,8 @@ type Other<'o, P> = &'o dyn Fn(Splat<Ball<P>>, bool) -> PossibleSplat<P>;
 
 /// The worst error in the record of a surfel; none if the surfel has no record and needs none.
 fn judge_surfel<P: Profile>(
-    (projector, other): (&Projector<Ball<P>>, Other<'_, P>),
+    projector: &Projector<Ball<P>>,
+    other: Other<'_, P>,
     surfels: &Surfels,
     surfel: u32,
     record: Option<&SplatRecord>,

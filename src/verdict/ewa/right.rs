@@ -89,7 +89,7 @@ impl<'a, P: Profile> RightPixels<'a, P> {
     ) -> [Option<Errors>; LANES] {
         let mut lanes = Pixels::<P>::new();
         for (i, &(pixel, at)) in some.iter().enumerate() {
-            lanes.put(i, (pixel, at), nearest[pixel].depth, sums);
+            lanes.put(i, pixel, at, nearest[pixel].depth, sums);
         }
         let found = judge(self, &lanes);
         std::array::from_fn(|i| {
@@ -127,13 +127,7 @@ impl<P: Profile> Pixels<P> {
         }
     }
 
-    fn put(
-        &mut self,
-        i: usize,
-        (pixel, at): (usize, (u32, u32)),
-        depth: Ball<P>,
-        sums: &AllSums<P>,
-    ) {
+    fn put(&mut self, i: usize, pixel: usize, at: (u32, u32), depth: Ball<P>, sums: &AllSums<P>) {
         self.at[i] = at;
         self.depth.put(i, depth.rounding_as());
         self.weighted.put(i, &sums.weighted[pixel]);
@@ -352,22 +346,22 @@ mod tests {
     use crate::number::ball::{Gpu, Ieee};
     use crate::verdict::client::Client;
     use crate::verdict::ewa::tests::each_scene;
-    use crate::verdict::marks::{self, Marks};
+    use crate::verdict::marks::{self, Marks, TilePart};
 
     /// Compares the findings with lanes and without. Returns how many pixels are right in lanes,
     /// and how many are wrong.
     fn compare<P: Profile>(job: &Job<'_>, settings: &Settings, client: &Client) -> [u64; 2] {
         let client_planes = ClientPlanes::new(client);
-        let mut judge = Judge::<P>::new(job, settings, (client, &client_planes));
+        let mut judge = Judge::<P>::new(job, settings, client, &client_planes);
         let mut found = [0; 2];
         for (tile, rect) in job.grid().rects().into_iter().enumerate() {
-            let given = (&client_planes, judge.surfels);
+            let part = TilePart { tile, rect };
+            let (splats, surfels) = (&judge.splats, judge.surfels);
             let mut marks = Marks::new(rect);
             let nearest =
-                certificate::judge_among(&judge.splats, &[], given, (tile, &rect), &mut marks);
-            let (surfels, at) = (judge.surfels, (tile, &rect));
-            let rule = (Supposed::Nothing, &*nearest);
-            let added = sums::add(&judge.splats, surfels, rule, at, None, &mut marks);
+                certificate::judge_among(splats, &[], &client_planes, surfels, part, &mut marks);
+            let added =
+                sums::add(splats, surfels, Supposed::Nothing, &nearest, part, None, &mut marks);
             let right = judge.right(rect, &nearest, &added.sums, &marks);
             found[0] += right.iter().flatten().count() as u64;
         }

@@ -4,7 +4,6 @@
 use super::certificate::{Certificate, Nearest};
 use super::swift::{Fragment, SwiftSplats, each_fragment, least_nearness};
 use crate::composite::decide;
-use crate::frame::Rect;
 use crate::frame::stencil::{Outcome, Stencil};
 use crate::method::ewa::attributes::Sums;
 use crate::method::fragment::facing;
@@ -12,7 +11,7 @@ use crate::number::ball::{Common, Profile, Three, Totals};
 use crate::number::{Ball, MapInline, Real, Truth};
 use crate::scene::Surfels;
 use crate::verdict::Doubt;
-use crate::verdict::marks::{Marks, PixelMarks};
+use crate::verdict::marks::{Marks, PixelMarks, TilePart};
 use crate::verdict::shift::{CUT_OFF, EPSILON, OpenDecision};
 use crate::verdict::supposed::Supposed;
 
@@ -49,11 +48,10 @@ pub(crate) fn continuations<'a, P: Profile>(
     splats: &SwiftSplats<P>,
     surfels: &'a Surfels,
     nearest: &[Nearest<P>],
-    tile: (usize, &Rect),
+    tile: TilePart,
     marks: &mut Marks,
 ) -> TileSums<'a, P> {
-    let rule = (Supposed::Nothing, nearest);
-    add(splats, surfels, rule, tile, None, marks).followed(|_| true)
+    add(splats, surfels, Supposed::Nothing, nearest, tile, None, marks).followed(|_| true)
 }
 
 /// Adds the fragments that certainly are in the sums of each pixel of a tile, by the supposed rules
@@ -62,12 +60,13 @@ pub(crate) fn continuations<'a, P: Profile>(
 pub(super) fn add<'s, 'a, P: Profile>(
     splats: &'s SwiftSplats<P>,
     surfels: &'a Surfels,
-    (supposed, nearest): (Supposed, &'s [Nearest<P>]),
-    tile: (usize, &'s Rect),
+    supposed: Supposed,
+    nearest: &'s [Nearest<P>],
+    tile: TilePart,
     mut certificate: Option<(&Certificate<'_, P>, &mut Marks)>,
     marks: &mut Marks,
 ) -> Accumulation<'s, 'a, P> {
-    let mut sums = AllSums::new(surfels, tile.1.pixels());
+    let mut sums = AllSums::new(surfels, tile.rect.pixels());
     let limits = limits(splats, nearest);
     let least = |pixel: usize| {
         let own = limits[pixel].least;
@@ -76,11 +75,11 @@ pub(super) fn add<'s, 'a, P: Profile>(
     let least: Vec<f64> = (0..limits.len()).map(least).collect();
     each_part(
         splats,
-        (supposed, nearest, &limits, &least),
+        Limited { supposed, nearest, limits: &limits, least: &least },
         tile,
         |pixel, fragment, depth| {
             if let Some((certificate, marks)) = &mut certificate {
-                certificate.meet((pixel, fragment), depth, marks);
+                certificate.meet(pixel, fragment, depth, marks);
             }
         },
         |pixel, part, asked| {
@@ -108,7 +107,7 @@ pub(super) struct Accumulation<'s, 'a, P: Profile> {
     supposed: Supposed,
     nearest: &'s [Nearest<P>],
     limits: Vec<Limit<P>>,
-    tile: (usize, &'s Rect),
+    tile: TilePart,
     pub(super) sums: AllSums<P>,
 }
 
@@ -123,7 +122,7 @@ impl<'a, P: Profile> Accumulation<'_, 'a, P> {
                     n => n <= MOST,
                 }
         };
-        let parts = parts(splats, (supposed, nearest, &limits), tile, followed);
+        let parts = parts(splats, supposed, nearest, &limits, tile, followed);
         TileSums { surfels, sums, parts }
     }
 }
@@ -252,17 +251,25 @@ fn limits<P: Profile>(splats: &SwiftSplats<P>, nearest: &[Nearest<P>]) -> Vec<Li
     nearest.iter().map(of_pixel).collect()
 }
 
-/// The supposed rules, and for each pixel the nearest fragment, its limit, and the least nearness that
-/// is asked for.
-type Limited<'l, P> = (Supposed, &'l [Nearest<P>], &'l [Limit<P>], &'l [f64]);
+/// What decides which fragments are in the sums of the pixels.
+#[derive(Clone, Copy)]
+struct Limited<'l, P: Profile> {
+    supposed: Supposed,
+    /// The nearest fragment of each pixel.
+    nearest: &'l [Nearest<P>],
+    /// The limit of each pixel.
+    limits: &'l [Limit<P>],
+    /// The least nearness that is asked for at each pixel.
+    least: &'l [f64],
+}
 
 /// Runs `take` for every fragment that is or may be in the sums, in ascending surfel index. Runs
 /// `meet` for all fragments other than the nearest whose nearness is not certainly below `least`.
 #[inline(always)]
 fn each_part<P: Profile>(
     splats: &SwiftSplats<P>,
-    (supposed, nearest, limits, least): Limited<'_, P>,
-    tile: (usize, &Rect),
+    Limited { supposed, nearest, limits, least }: Limited<'_, P>,
+    tile: TilePart,
     mut meet: impl FnMut(usize, &Fragment<'_, P>, Ball<P>),
     mut take: impl FnMut(usize, Part<P>, &FragmentDecisions),
 ) {
@@ -305,8 +312,10 @@ fn each_part<P: Profile>(
 /// All fragments of the pixels that are followed.
 fn parts<P: Profile>(
     splats: &SwiftSplats<P>,
-    (supposed, nearest, limits): (Supposed, &[Nearest<P>], &[Limit<P>]),
-    tile: (usize, &Rect),
+    supposed: Supposed,
+    nearest: &[Nearest<P>],
+    limits: &[Limit<P>],
+    tile: TilePart,
     followed: impl Fn(usize) -> bool,
 ) -> Fragments<P> {
     let least = |pixel: usize| if followed(pixel) { limits[pixel].least } else { f64::INFINITY };
@@ -315,7 +324,7 @@ fn parts<P: Profile>(
     if least.iter().any(|least| *least != f64::INFINITY) {
         each_part(
             splats,
-            (supposed, nearest, limits, &least),
+            Limited { supposed, nearest, limits, least: &least },
             tile,
             |_, _, _| (),
             |pixel, part, _| parts.push((pixel, part)),
@@ -351,7 +360,7 @@ fn chosen<P: Profile>(surfels: &Surfels, parts: &[(usize, Part<P>)], choice: u32
         let taken = part.open.is_none() || choice >> bit & 1 == 1;
         bit += u32::from(part.open.is_some());
         if taken {
-            sums.add_opaque(surfels, (part.surfel, part.back), part.weight);
+            sums.add_opaque(surfels, part.surfel, part.back, part.weight);
         }
     }
     sums
@@ -377,10 +386,10 @@ mod tests {
             let at_3 = Nearest { depth: Ball::exact(3.0), id: None };
             let nearest = vec![at_3; rect.pixels()];
             let mut marks = Marks::new(rect);
-            let sums = continuations(&splats, surfels, &nearest, (tile, &rect), &mut marks);
+            let tile = TilePart { tile, rect };
+            let sums = continuations(&splats, surfels, &nearest, tile, &mut marks);
             let limits = limits(&splats, &nearest);
-            let rule = (Supposed::Nothing, &*nearest, &*limits);
-            let all = parts(&splats, rule, (tile, &rect), |_| true);
+            let all = parts(&splats, Supposed::Nothing, &nearest, &limits, tile, |_| true);
             for pixel in 0..rect.pixels() {
                 let Continuations::One(own) = sums.continuations(pixel) else { continue };
                 let plain = chosen(surfels, of_one(&all, pixel), 0);

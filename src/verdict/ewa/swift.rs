@@ -15,6 +15,7 @@ use crate::method::prepare::Prepared;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, MapInline, Real, Truth};
 use crate::splat::{Footprint, Shared, Splat};
+use crate::verdict::marks::TilePart;
 use crate::verdict::supposed::Supposed;
 
 /// More than the rounding of the few operations that the bounds do not include.
@@ -127,7 +128,7 @@ impl<P: Profile> Fragment<'_, P> {
 #[inline(always)]
 pub(super) fn each_fragment<P: Profile>(
     splats: &SwiftSplats<P>,
-    (tile, rect): (usize, &Rect),
+    TilePart { tile, rect }: TilePart,
     least: impl Fn(usize) -> f64,
     mut visit: impl FnMut(&Fragment<'_, P>, usize),
 ) {
@@ -137,7 +138,7 @@ pub(super) fn each_fragment<P: Profile>(
     splats.for_each(tile, |SwiftSplat { possible, swift }| {
         let PossibleSplat { splat, certain } = possible;
         asked.clear();
-        each_pixel(splat, rect, |pixel, at| {
+        each_pixel(splat, &rect, |pixel, at| {
             let least = least(pixel);
             // Written so that a NaN does not fail: both comparisons are false.
             let fails = |swift: &Swift| {
@@ -154,7 +155,7 @@ pub(super) fn each_fragment<P: Profile>(
         // Compute once everything that fragments of a column or a row share.
         let f = &splat.footprint;
         let offset = |at: u32, center: Ball<P>| Ball::from_f32(at as f32 + 0.5) - center;
-        let Rect { x0, x1, .. } = splat.bounds.intersection(rect);
+        let Rect { x0, x1, .. } = splat.bounds.intersection(&rect);
         columns.clear();
         columns.extend((x0..x1).map(|x| f.column(offset(x, f.center.x))));
         for in_row in asked.chunk_by(|a, b| a.1.1 == b.1.1) {

@@ -67,9 +67,11 @@ fn compare_projections<P: Profile>(session: &Session<'_>, camera: &Camera, all: 
         let common = Projector::new(View::new(camera), &settings.kernel, cull);
         let mut in_lanes = Vec::new();
         possible::each_of_range(
-            (&projector, &common),
+            &projector,
+            &common,
             surfels,
-            (0..surfels.len(), None),
+            0..surfels.len(),
+            None,
             &mut |splat, certain| {
                 in_lanes.push((splat.surfel, format!("{splat:?} {certain}")));
             },

@@ -76,7 +76,7 @@ use crate::scene::Environment;
 use crate::scene::gaussians::Encoding;
 use crate::verdict::checks::{Report, input, inputs, number, triple, widened};
 use crate::verdict::client::{Client, Storage, StoredPlane};
-use crate::verdict::marks::{self, Counts, Marks, PixelMarks, counted};
+use crate::verdict::marks::{self, Counts, Marks, PixelMarks, TilePart, counted};
 use crate::verdict::planes::RecordPlanes;
 use crate::verdict::supposed::Supposed;
 use crate::verdict::{Check, StageVerdict, Verdict};
@@ -141,8 +141,9 @@ impl<'a, P: Profile> Judge<'a, P> {
         let own = PossibleSplats::found(job, &source, client.supposed);
         let (splats, projection) = match &client.gaussian_records {
             Some(records) => {
-                let rules = (&source, client.supposed, client.depth_test);
-                let (splats, projection) = records::judge(job, rules, records, own);
+                let (supposed, depth_test) = (client.supposed, client.depth_test);
+                let (splats, projection) =
+                    records::judge(job, &source, supposed, depth_test, records, own);
                 (splats, Some(projection))
             }
             None => (own, None),
@@ -176,11 +177,12 @@ impl<'a, P: Profile> Judge<'a, P> {
     }
 
     /// Marks the wrong pixels of a rectangle in a tile.
-    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
+    fn judge(&self, part: TilePart, marks: &mut [Marks; 2]) -> Counts {
+        let rect = part.rect;
         let [blending, display] = marks;
         let mut counts = Counts::default();
-        let rules = (&self.source, self.supposed, self.depth_test);
-        let mut walker = Walker::new(rules, &self.splats, (tile, rect));
+        let Self { source, supposed, depth_test, splats, .. } = self;
+        let mut walker = Walker::new(source, *supposed, *depth_test, splats, part);
         for y in rect.y0..rect.y1 {
             for (column, at) in counted(Rect { y0: y, y1: y + 1, ..rect }) {
                 let pixel = (y - rect.y0) as usize * rect.columns() + column;
@@ -212,7 +214,7 @@ impl<'a, P: Profile> Judge<'a, P> {
             truth
         };
         let check = |numbers, report: &mut Report<'_>| {
-            self.planes.check((0, &GaussianPixel::PLANES), at, &truth(numbers), report);
+            self.planes.check(0, &GaussianPixel::PLANES, at, &truth(numbers), report);
         };
         let closest = walked.closest(|numbers| worst(|report| check(numbers, report)));
         check(closest, &mut |_, error, fault| pixel.found(error, fault));

@@ -12,7 +12,7 @@ use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Truth};
 use crate::verdict::client::{Storage, known};
 use crate::verdict::ewa::WrongField;
-use crate::verdict::marks::Marks;
+use crate::verdict::marks::{Marks, TilePart};
 use crate::verdict::supposed::Supposed;
 use crate::verdict::{Fault, StageVerdict};
 
@@ -29,15 +29,16 @@ const SIZE: usize = 1024;
 /// of its centre: then the projection is at fault, and not what follows.
 pub(super) fn judge<P: Profile>(
     job: &Job<'_>,
-    rules: (&Source<'_, Ball<P>>, Supposed, Storage),
+    source: &Source<'_, Ball<P>>,
+    supposed: Supposed,
+    depth_test: Storage,
     records: &[GaussianRecord],
     own: Vec<PossibleSplat<P>>,
 ) -> (Vec<PossibleSplat<P>>, StageVerdict) {
-    let (source, supposed, _) = rules;
     let keys = Keys::new(source, &own);
     let chunks = records.chunks(SIZE).collect();
     let found = job.exec.ordered(chunks, |chunk: &[GaussianRecord]| {
-        chunk.iter().map(|record| one(job, (source, supposed), record, &keys)).collect::<Vec<_>>()
+        chunk.iter().map(|record| one(job, source, supposed, record, &keys)).collect::<Vec<_>>()
     });
     let mut marks = Marks::picture(job);
     let mut all = Vec::with_capacity(records.len());
@@ -46,7 +47,8 @@ pub(super) fn judge<P: Profile>(
         all.extend(splat);
     }
     let none = PossibleSplats::new(job, Vec::new(), supposed);
-    let walker = Walker::new(rules, &none, (0, Rect::default()));
+    let part = TilePart { tile: 0, rect: Rect::default() };
+    let walker = Walker::new(source, supposed, depth_test, &none, part);
     let has_record = |splat: &PossibleSplat<P>| {
         records.binary_search_by_key(&splat.splat.index, |record| record.index).is_ok()
     };
@@ -82,7 +84,8 @@ impl<P: Profile> Keys<P> {
 /// The splat of a record, if it may touch a pixel, and the worst error in the record.
 fn one<P: Profile>(
     job: &Job<'_>,
-    (source, supposed): (&Source<'_, Ball<P>>, Supposed),
+    source: &Source<'_, Ball<P>>,
+    supposed: Supposed,
     record: &GaussianRecord,
     keys: &Keys<P>,
 ) -> (Option<PossibleSplat<P>>, Worst) {
@@ -97,7 +100,7 @@ fn one<P: Profile>(
     } else {
         not_drawn
     };
-    (recorded((job, source), (record, worst.error > 1.0), &own), worst)
+    (recorded(job, source, record, worst.error > 1.0, &own), worst)
 }
 
 /// The record of an item in balls.
@@ -136,12 +139,17 @@ impl Worst {
         let Some(Number { at, found, truth, radius }) = self.what else {
             return Fault::Projected { surfel };
         };
-        Fault::Value { channel: format!("{} of surfel {surfel}", name(at)), found, truth, radius }
+        Fault::Value {
+            channel: format!("{} of surfel {surfel}", name(at.0, at.1)),
+            found,
+            truth,
+            radius,
+        }
     }
 }
 
 /// The name of a number of a record.
-fn name((field, i): (usize, usize)) -> String {
+fn name(field: usize, i: usize) -> String {
     GaussianRecord::<f32>::TABLE[field].component(i)
 }
 
@@ -219,7 +227,7 @@ pub(crate) fn wrong_fields<P: Profile>(
     let of_a_number = times.chunk_by(|a, b| a.0 == b.0);
     let field = |all: &[WrongNumber]| {
         let ((_, at), _) = all[0];
-        WrongField::new(name(at), all.iter().map(|(_, times)| *times).collect())
+        WrongField::new(name(at.0, at.1), all.iter().map(|(_, times)| *times).collect())
     };
     of_a_number.map(field).collect()
 }

@@ -14,6 +14,7 @@ use crate::number::{Ball, MapInline, Real, Truth, Vector2, Vector3};
 use crate::splat::gaussian::ProjectedGaussian;
 use crate::verdict::checks::widened;
 use crate::verdict::client::known;
+use crate::verdict::marks::TilePart;
 use crate::verdict::supposed::Supposed;
 use std::cmp::Ordering;
 
@@ -84,7 +85,7 @@ impl<P: Profile> PossibleSplats<P> {
         let firsts: Vec<usize> = (0..source.len()).step_by(SIZE).collect();
         let batches = job.exec.ordered(firsts, |first| {
             let range = (first..source.len().min(first + SIZE)).filter(near);
-            range.filter_map(|i| possible((job, part), source, supposed, i)).collect::<Vec<_>>()
+            range.filter_map(|i| possible(job, part, source, supposed, i)).collect::<Vec<_>>()
         });
         let mut all: Vec<_> = batches.into_iter().flatten().collect();
         if source.settings.order == Order::Steps {
@@ -108,7 +109,7 @@ impl<P: Profile> PossibleSplats<P> {
     }
 
     /// The places of the splats that may touch some pixels of a tile, ascending.
-    pub(super) fn places(&self, (tile, rect): (usize, Rect)) -> Vec<usize> {
+    pub(super) fn places(&self, TilePart { tile, rect }: TilePart) -> Vec<usize> {
         let mut places = Vec::new();
         self.bins.for_each(tile, |i| {
             if !self.all[i as usize].splat.bounds.intersection(&rect).is_empty() {
@@ -157,7 +158,8 @@ fn beside<P: Profile>(
 
 /// An item, if it may be drawn.
 fn possible<P: Profile>(
-    (job, part): (&Job<'_>, Option<Part<'_>>),
+    job: &Job<'_>,
+    part: Option<Part<'_>>,
     source: &Source<'_, Ball<P>>,
     supposed: Supposed,
     i: usize,
@@ -197,8 +199,10 @@ fn possible<P: Profile>(
 /// bounds leave open as much as those of the item itself. In a wrong record the conic may be of another
 /// ellipse, which has bounds of its own.
 pub(super) fn recorded<P: Profile>(
-    (job, source): (&Job<'_>, &Source<'_, Ball<P>>),
-    (record, is_wrong): (&GaussianRecord, bool),
+    job: &Job<'_>,
+    source: &Source<'_, Ball<P>>,
+    record: &GaussianRecord,
+    is_wrong: bool,
     own: &Projected<Ball<P>>,
 ) -> Option<PossibleSplat<P>> {
     let exact = |number: f32| known::<P>(number.into(), 0.0);

@@ -19,6 +19,7 @@ use crate::splat::gaussian::{GaussianKernel, ProjectedGaussian};
 use crate::splat::ray_disc::DiscRule;
 use crate::verdict::causes::likely_cause;
 use crate::verdict::client::{Client, Rounding};
+use crate::verdict::marks::TilePart;
 use crate::verdict::supposed::Supposed;
 use crate::verdict::{Doubt, Outcome, Verdict};
 use glam::{DVec3, Vec3};
@@ -96,7 +97,8 @@ fn left_out(scene: &Scene, camera: &Camera) -> [usize; 2] {
             let part = Some(Part { pieces: &piece, spread: 1.0 });
             let some = possible_splats(&Job { part, ..whole }, &source);
             let near = |splats: &PossibleSplats<Gpu>| -> Vec<u32> {
-                let places = splats.places(piece[0]).into_iter();
+                let (tile, rect) = piece[0];
+                let places = splats.places(TilePart { tile, rect }).into_iter();
                 places.map(|place| splats.all[place].splat.index).collect()
             };
             assert_eq!(near(&some), near(&all), "{name}: tile {tile}");

@@ -14,6 +14,7 @@ use crate::splat::ray_disc::RayFragment;
 use crate::verdict::Doubt;
 use crate::verdict::checks::widened;
 use crate::verdict::client::Storage;
+use crate::verdict::marks::TilePart;
 use crate::verdict::supposed::Supposed;
 
 /// A fragment that may be drawn.
@@ -48,9 +49,11 @@ pub(super) struct Walker<'a, P: Profile> {
 
 impl<'a, P: Profile> Walker<'a, P> {
     pub(super) fn new(
-        (source, supposed, depth_test): (&'a Source<'a, Ball<P>>, Supposed, Storage),
+        source: &'a Source<'a, Ball<P>>,
+        supposed: Supposed,
+        depth_test: Storage,
         splats: &'a PossibleSplats<P>,
-        part: (usize, Rect),
+        part: TilePart,
     ) -> Self {
         let (rules, places) = (Rules::new(source.settings), splats.places(part));
         Self { source, splats, supposed, depth_test, rules, places }

@@ -10,7 +10,8 @@ use crate::verdict::marks::PixelMarks;
 
 /// Marks a wrong picture at a pixel. Returns whether the picture is judged, or there is none.
 pub(super) fn judge<P: Profile>(
-    (client_planes, backdrop): (&PeelingPlanes<'_>, &Backdrop<'_, P>),
+    client_planes: &PeelingPlanes<'_>,
+    backdrop: &Backdrop<'_, P>,
     at: (u32, u32),
     pixel: &mut PixelMarks<'_>,
 ) -> bool {

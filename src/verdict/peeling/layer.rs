@@ -99,7 +99,7 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
             limit = client_planes.depth_test.tested(band_end(stored, self.epsilon));
             let all = match nothing {
                 true => Some(vec![Sums::NONE]),
-                false => self.sums(&beyond, (t, limit), id, pixel),
+                false => self.sums(&beyond, t, limit, id, pixel),
             };
             found.undecided |= all.as_ref().is_none_or(|all| all.len() > 1);
             self.check_layer(at, planes, stored, &all.unwrap_or_default(), pixel);
@@ -110,7 +110,7 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
         if let Some(plane) =
             client_planes.number.filter(|_| client_planes.known() == client_planes.layers.len())
         {
-            self.check_number(at, &plane, (layers, &beyond(fragments, limit, None)), pixel);
+            self.check_number(at, &plane, layers, &beyond(fragments, limit, None), pixel);
         }
         found
     }
@@ -121,7 +121,8 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
         &self,
         at: (u32, u32),
         plane: &StoredPlane<'_, u8>,
-        (layers, beyond): (u32, &[Beyond<'_, P>]),
+        layers: u32,
+        beyond: &[Beyond<'_, P>],
         pixel: &mut PixelMarks<'_>,
     ) {
         let all = layers as usize == self.client_planes.layers.len();
@@ -145,7 +146,8 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
     fn sums(
         &self,
         beyond: &[Beyond<'_, P>],
-        (t, limit): (Ball<P>, Ball<P>),
+        t: Ball<P>,
+        limit: Ball<P>,
         id: Option<u32>,
         pixel: &mut PixelMarks<'_>,
     ) -> Option<Vec<Sums<Ball<P>>>> {
@@ -183,7 +185,7 @@ impl<'a, P: Profile> LayerJudge<'a, P> {
                 let taken = *certain || outcome >> bit & 1 == 1;
                 bit += u32::from(!certain);
                 if taken {
-                    sums.add(self.surfels, (fragment.surfel, fragment.back), fragment.weight);
+                    sums.add(self.surfels, fragment.surfel, fragment.back, fragment.weight);
                 }
             }
             sums

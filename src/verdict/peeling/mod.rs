@@ -49,7 +49,7 @@ use crate::number::ball::Profile;
 use crate::verdict::checks::Backdrop;
 use crate::verdict::client::Client;
 use crate::verdict::gaps::missing;
-use crate::verdict::marks::{self, Counts, Marks, counted};
+use crate::verdict::marks::{self, Counts, Marks, TilePart, counted};
 use crate::verdict::single_pass::fragments::GroupFragments;
 use crate::verdict::{Check, Verdict};
 use layer::LayerJudge;
@@ -68,7 +68,7 @@ pub(super) fn verify<P: Profile>(
     let mut verdict = marks::verdict(job, stages, budget, |tile, marks| judge.judge(tile, marks));
     let (rows, there) = (rows(&PeeledLayer::<f32>::PLANES), job.there(Keep::Stages));
     let layers = 1..client_planes.layers.len() + 1;
-    verdict.stages[0].missing = missing(client, ("layer", &rows), layers, &there);
+    verdict.stages[0].missing = missing(client, "layer", &rows, layers, &there);
     verdict.stages[0].unjudged = client_planes.unjudged();
     verdict
 }
@@ -102,7 +102,7 @@ impl<'a, P: Profile> Judge<'a, P> {
     }
 
     /// Marks the wrong pixels of a rectangle in a tile.
-    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
+    fn judge(&self, TilePart { tile, rect }: TilePart, marks: &mut [Marks; 2]) -> Counts {
         let [layers, blending] = marks;
         let mut counts = Counts::default();
         for y in rect.y0..rect.y1 {
@@ -114,7 +114,8 @@ impl<'a, P: Profile> Judge<'a, P> {
                 let own: Vec<_> = fragments.at(column).in_group(0).copied().collect();
                 let found = self.layers.judge(at, &own, &mut layers.at(pixel));
                 let blends = blending::judge::<P>(
-                    (self.client_planes, &self.backdrop),
+                    self.client_planes,
+                    &self.backdrop,
                     at,
                     &mut blending.at(pixel),
                 );

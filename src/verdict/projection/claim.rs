@@ -130,7 +130,8 @@ impl<P: Profile> Claim<P> {
     pub(super) fn judge_tie(
         &self,
         one: &Candidate<'_, P>,
-        (ties, surfels): (Ties, &Surfels),
+        ties: Ties,
+        surfels: &Surfels,
         pixel: &mut PixelMarks<'_>,
     ) {
         let (PixelContent::Id(found), Some((_, sample)), Candidate::Surfel(surfel, _)) =

@@ -29,12 +29,12 @@ impl Intervals {
         let middle = places.map_inline(|at| at.map_inline(|[a, b]| 0.5 * (a + b) as f64));
         let deviation = places.map_inline(|at| at.map_inline(|[a, b]| 0.5 * (b - a) as f64));
         let mut all = Self { middle, deviation, scale: f64::from(snap.scale()), cross: [0.0; 2] };
-        all.cross = all.edge(0, 1, (middle[2], deviation[2]));
+        all.cross = all.edge(0, 1, middle[2], deviation[2]);
         all
     }
 
     /// The edge function from corner i to corner k at a point: midpoint and deviation.
-    fn edge(&self, i: usize, k: usize, (p, off): ([f64; 2], [f64; 2])) -> [f64; 2] {
+    fn edge(&self, i: usize, k: usize, p: [f64; 2], off: [f64; 2]) -> [f64; 2] {
         let part = |a: usize, b: usize| {
             let along = self.middle[k][a] - self.middle[i][a];
             let along_off = self.deviation[k][a] + self.deviation[i][a];
@@ -72,7 +72,7 @@ impl Intervals {
     fn edges(&self, (x, y): (u32, u32), sense: f64) -> [[f64; 2]; 3] {
         let center = [x, y].map_inline(|i| (f64::from(i) + 0.5) * self.scale);
         [[1, 2], [2, 0], [0, 1]].map_inline(|[i, k]| {
-            let [middle, deviation] = self.edge(i, k, (center, [0.0; 2]));
+            let [middle, deviation] = self.edge(i, k, center, [0.0; 2]);
             [sense * middle, deviation]
         })
     }

@@ -54,7 +54,7 @@ use crate::method::tiled::Tiled;
 use crate::number::ball::{Profile, Three};
 use crate::number::{Ball, MapInline, Real, Truth};
 use crate::verdict::Doubt;
-use crate::verdict::marks::{Marks, StageMarks, Watch, counted};
+use crate::verdict::marks::{Marks, StageMarks, TilePart, Watch, counted};
 use candidate::{Candidate, Possible};
 use claim::Claim;
 use planes::PixelContent;
@@ -97,13 +97,14 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         snap: Snap,
         limits: Option<&'a Tiled<Ball<P>>>,
     ) -> Self {
-        Self::drawn_where(job, (cull, snap), limits, |_| true)
+        Self::drawn_where(job, cull, snap, limits, |_| true)
     }
 
     /// Only those surfels whose indices `draws` accepts.
     pub(crate) fn drawn_where(
         job: &Job<'a>,
-        (cull, snap): (bool, Snap),
+        cull: bool,
+        snap: Snap,
         limits: Option<&'a Tiled<Ball<P>>>,
         draws: impl Fn(usize) -> bool + Sync + Send,
     ) -> Self {
@@ -134,7 +135,7 @@ impl<'a, P: Profile> AllPossible<'a, P> {
     ) -> Marks {
         let mut marks = watch.picture(job);
         let found = job.exec.ordered(watch.parts(&job.grid()), |(tile, rect)| {
-            self.judge(planes, (tile, rect), watch.marks(rect))
+            self.judge(planes, TilePart { tile, rect }, watch.marks(rect))
         });
         found.into_iter().for_each(|part| marks.put(part));
         marks
@@ -144,14 +145,10 @@ impl<'a, P: Profile> AllPossible<'a, P> {
     /// comes with whether the client certainly has it. That is certain if it is the only candidate,
     /// and if the client says that the pixel is covered, or if the candidate certainly lies there
     /// and is in front.
-    pub(crate) fn kept(
-        &self,
-        planes: &SamplePlanes<'_>,
-        (tile, rect): (usize, Rect),
-    ) -> Vec<(u32, bool)> {
-        let claims = self.claims(planes, (tile, rect));
+    pub(crate) fn kept(&self, planes: &SamplePlanes<'_>, part: TilePart) -> Vec<(u32, bool)> {
+        let claims = self.claims(planes, part);
         let (mut found, mut counts) = (Vec::new(), vec![0_u32; claims.len()]);
-        self.each((tile, &rect), |pixel, one| {
+        self.each(part, |pixel, one| {
             let claim = &claims[pixel];
             if claim.may_have(&one) {
                 counts[pixel] += 1;
@@ -164,13 +161,14 @@ impl<'a, P: Profile> AllPossible<'a, P> {
 
     /// Calls `visit` for every candidate that may lie in a pixel of a tile, with the number of the
     /// pixel in the tile.
-    fn each(&self, (tile, rect): (usize, &Rect), mut visit: impl FnMut(usize, Candidate<'_, P>)) {
+    fn each(&self, part: TilePart, mut visit: impl FnMut(usize, Candidate<'_, P>)) {
+        let TilePart { tile, rect } = part;
         let count =
             |x: u32, y: u32| (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize;
         for (possible, bins) in &self.surfels {
             bins.for_each(tile, |i| {
                 let one = &possible[i as usize];
-                let Rect { x0, y0, x1, y1 } = one.bounds.intersection(rect);
+                let Rect { x0, y0, x1, y1 } = one.bounds.intersection(&rect);
                 for (x, y) in (y0..y1).flat_map(|y| (x0..x1).map(move |x| (x, y))) {
                     let passes = self.passes(one, (x, y));
                     if passes.possibly() {
@@ -181,9 +179,9 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         }
         self.bins.for_each(tile, |i| {
             let one = &self.pieces.all[i as usize];
-            one.piece.for_each(rect, |at| visit(count(at.x, at.y), Candidate::Piece(one, at)));
+            one.piece.for_each(&rect, |at| visit(count(at.x, at.y), Candidate::Piece(one, at)));
         });
-        self.cut.each((tile, rect), |(x, y), _, sample, lies| {
+        self.cut.each(part, |(x, y), _, sample, lies| {
             visit(count(x, y), Candidate::Cut(Box::new(sample), lies));
         });
     }
@@ -221,10 +219,11 @@ impl<'a, P: Profile> AllPossible<'a, P> {
     }
 
     /// The client's claim about each pixel, and the candidate that lies there.
-    fn claims(&self, planes: &SamplePlanes<'_>, (tile, rect): (usize, Rect)) -> Vec<Claim<P>> {
+    fn claims(&self, planes: &SamplePlanes<'_>, part: TilePart) -> Vec<Claim<P>> {
+        let rect = part.rect;
         let claim = |(_, at)| Claim::new(planes, at, &self.pieces.unclear);
         let mut claims: Vec<Claim<P>> = counted(rect).map(claim).collect();
-        self.each((tile, &rect), |pixel, one| {
+        self.each(part, |pixel, one| {
             if one.lies() {
                 claims[pixel].meet(one.id(), one.depth());
             }
@@ -232,15 +231,11 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         claims
     }
 
-    fn judge(
-        &self,
-        planes: &SamplePlanes<'_>,
-        (tile, rect): (usize, Rect),
-        mut marks: Marks,
-    ) -> Marks {
-        let mut claims = self.claims(planes, (tile, rect));
+    fn judge(&self, planes: &SamplePlanes<'_>, part: TilePart, mut marks: Marks) -> Marks {
+        let rect = part.rect;
+        let mut claims = self.claims(planes, part);
         let columns = rect.columns();
-        self.each((tile, &rect), |pixel, one| {
+        self.each(part, |pixel, one| {
             let at = (rect.x0 + (pixel % columns) as u32, rect.y0 + (pixel / columns) as u32);
             if claims[pixel].may_mean(&one) {
                 self.each_sample(&one, |sample| claims[pixel].consider(planes, at, sample));
@@ -258,9 +253,9 @@ impl<'a, P: Profile> AllPossible<'a, P> {
             claim.judge(planes, at, &mut marks.at(pixel));
         }
         let surfels = &self.projector.scene.surfels;
-        self.each((tile, &rect), |pixel, one| {
+        self.each(part, |pixel, one| {
             claims[pixel].doubt(&one, &mut marks.at(pixel));
-            claims[pixel].judge_tie(&one, (planes.ties, surfels), &mut marks.at(pixel));
+            claims[pixel].judge_tie(&one, planes.ties, surfels, &mut marks.at(pixel));
         });
         marks
     }

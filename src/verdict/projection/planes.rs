@@ -41,7 +41,7 @@ impl<'a> SamplePlanes<'a> {
     pub(crate) fn new(client: &'a Client, scene: &'a Scene) -> Self {
         let fields = &PixelSample::<f32>::PLANES;
         let kind = client.count(&PixelSample::<f32>::KIND.row);
-        Self::from_record_planes(client, scene, (RecordPlanes::new(client, fields, 0), kind))
+        Self::from_record_planes(client, scene, RecordPlanes::new(client, fields, 0), kind)
     }
 
     /// The planes of a pass that leaves only depths and ids.
@@ -52,13 +52,14 @@ impl<'a> SamplePlanes<'a> {
             fields.iter().position(|field| field.row.holds == row.holds).unwrap_or(usize::MAX)
         };
         let rows = rows.into_iter().map(|row| (place(&row), row));
-        Self::from_record_planes(client, scene, (RecordPlanes::of_rows(client, rows, 0), None))
+        Self::from_record_planes(client, scene, RecordPlanes::of_rows(client, rows, 0), None)
     }
 
     fn from_record_planes(
         client: &Client,
         scene: &'a Scene,
-        (planes, kind): (RecordPlanes<'a>, Option<StoredPlane<'a, u8>>),
+        planes: RecordPlanes<'a>,
+        kind: Option<StoredPlane<'a, u8>>,
     ) -> Self {
         let (depth, id) = (planes.depths(), planes.ids());
         let Client { ties, depth_test, .. } = *client;
@@ -105,7 +106,7 @@ impl<'a> SamplePlanes<'a> {
         sample: &PixelSample<Ball<P>>,
         report: &mut Report<'_>,
     ) {
-        self.planes.check((0, &PixelSample::PLANES), at, sample, report);
+        self.planes.check(0, &PixelSample::PLANES, at, sample, report);
     }
 
     /// Checks the kind of a pixel, if it is known.
@@ -141,7 +142,7 @@ impl<'a> SamplePlanes<'a> {
         let size = [depth.plane.width(), depth.plane.height()];
         Some(Plane::from_pixels(size, |x, y| {
             let mut sample = PixelSample::empty();
-            self.planes.read((all, &there), (x, y), &mut sample);
+            self.planes.read(all, &there, (x, y), &mut sample);
             if self.kind.is_none() {
                 sample.kind = kind_of(self.scene, sample.id).unwrap_or_default();
             }

@@ -18,7 +18,7 @@ use crate::frame::raster::{GUARD_BAND, Snap, Triangle};
 use crate::frame::{Bins, Grid, Rect};
 use crate::method::Job;
 use crate::method::projection::primitives::{
-    Piece, PiecePixel, corners, triangle_piece, triangle_within,
+    Piece, PiecePixel, Primitive, corners, triangle_piece, triangle_within,
 };
 use crate::method::projection::{PixelSample, SampleKind, SceneProjector};
 use crate::number::ball::Profile;
@@ -26,7 +26,7 @@ use crate::number::{Ball, MapInline, Real, Vector2, Vector3};
 use crate::scene::Scene;
 use crate::splat::clip::Clipped;
 use crate::verdict::checks::anything;
-use crate::verdict::marks::counted;
+use crate::verdict::marks::{TilePart, counted};
 
 /// Triangles that may be drawn, and where.
 pub(crate) struct AllPolygons<'a, P: Profile> {
@@ -95,11 +95,12 @@ impl<'a, P: Profile> AllPolygons<'a, P> {
     }
 
     /// The fragments that may lie in each pixel of a tile.
-    pub(crate) fn fragments(&self, (tile, rect): (usize, &Rect)) -> Vec<Vec<PossibleFragment<P>>> {
-        let mut found: Vec<_> = counted(*rect).map(|_| Vec::new()).collect();
+    pub(crate) fn fragments(&self, part: TilePart) -> Vec<Vec<PossibleFragment<P>>> {
+        let rect = part.rect;
+        let mut found: Vec<_> = counted(rect).map(|_| Vec::new()).collect();
         let place =
             |x: u32, y: u32| (y - rect.y0) as usize * rect.columns() + (x - rect.x0) as usize;
-        self.each((tile, rect), |(x, y), index, sample, lies| {
+        self.each(part, |(x, y), index, sample, lies| {
             let PixelSample { depth, normal, color, .. } = sample;
             found[place(x, y)].push(PossibleFragment { index, depth, normal, color, lies });
         });
@@ -110,12 +111,12 @@ impl<'a, P: Profile> AllPolygons<'a, P> {
     /// triangle, its sample, and whether it certainly lies there.
     pub(super) fn each(
         &self,
-        (tile, rect): (usize, &Rect),
+        TilePart { tile, rect }: TilePart,
         mut visit: impl FnMut((u32, u32), u32, PixelSample<Ball<P>>, bool),
     ) {
         self.bins.for_each(tile, |i| {
             let one = &self.drawn[i as usize];
-            let inner = one.bounds.intersection(rect);
+            let inner = one.bounds.intersection(&rect);
             match &one.form {
                 _ if inner.is_empty() => {}
                 Form::Exact(piece) => piece.for_each(&inner, |at| {
@@ -206,10 +207,10 @@ fn piece<P: Profile>(
     let least = std::array::from_fn(|k| (places[k].map_inline(|[least, _]| least), placed[k].m));
     let weights = fan.map_inline(|corner| corner.weights);
     let depths = depths(projector, &fan.map_inline(|corner| corner.position), p);
-    let id = ((projector.scene.surfels.len() + index) as u32, index);
+    let of = Primitive { id: (projector.scene.surfels.len() + index) as u32, index };
     let index = index as u32;
     if places.iter().flatten().all(|[least, greatest]| least == greatest) {
-        let piece = triangle_piece(projector, id, least, weights, *p)?;
+        let piece = triangle_piece(projector, of, least, weights, *p)?;
         return Some(PossiblePolygon {
             index,
             bounds: piece.bounds,
@@ -225,7 +226,7 @@ fn piece<P: Profile>(
         return Some(PossiblePolygon { index, bounds, depths, form });
     }
     let raster = Triangle::new(snap, least.map_inline(|(place, _)| place))?;
-    let piece = triangle_within(projector, id, (raster, bounds), least, weights, *p)?;
+    let piece = triangle_within(projector, of, raster, bounds, least, weights, *p)?;
     let between = Depths::new(intervals, placed.map_inline(|at| at.m), &weights);
     let form = Form::Between(Box::new((piece, between)));
     Some(PossiblePolygon { index, bounds, depths, form })
@@ -350,7 +351,7 @@ mod tests {
         let drawn = project::<R>(&job, cull, Snap::default()).unwrap().samples;
         let mut counts = [0; 3];
         for (tile, rect) in job.grid().rects().into_iter().enumerate() {
-            for ((_, (x, y)), may) in counted(rect).zip(all.fragments((tile, &rect))) {
+            for ((_, (x, y)), may) in counted(rect).zip(all.fragments(TilePart { tile, rect })) {
                 let sample = drawn.at(x, y);
                 let before = |one: &&PossibleFragment<P>| {
                     one.lies && { one.depth.middle + one.depth.radius < sample.depth.to_f64() }

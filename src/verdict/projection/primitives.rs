@@ -3,7 +3,9 @@
 use super::planes::kind_of;
 use super::polygons::{self, PossiblePolygon};
 use crate::frame::raster::{GUARD_BAND, Snap};
-use crate::method::projection::primitives::{Piece, corners, line_piece, triangle_piece};
+use crate::method::projection::primitives::{
+    Piece, Primitive, corners, line_piece, triangle_piece,
+};
 use crate::method::projection::{SampleKind, SceneProjector};
 use crate::number::ball::Profile;
 use crate::number::{Ball, MapInline, Real, Truth, Vector3};
@@ -42,16 +44,16 @@ impl<P: Profile> Pieces<P> {
             let index = id - first;
             let place = match kind {
                 SampleKind::Polygon => {
-                    found.triangle(projector, (id as u32, index));
+                    found.triangle(projector, id as u32, index);
                     Some(())
                 }
                 SampleKind::Ribbon => {
                     let index = index - triangles;
-                    found.line(&primitives.ribbons, projector, kind, (id as u32, index))
+                    found.line(&primitives.ribbons, projector, kind, id as u32, index)
                 }
                 _ => {
                     let index = index - triangles - ribbons;
-                    found.line(&primitives.tubes, projector, kind, (id as u32, index))
+                    found.line(&primitives.tubes, projector, kind, id as u32, index)
                 }
             };
             if place.is_none() {
@@ -62,12 +64,13 @@ impl<P: Profile> Pieces<P> {
     }
 
     /// Adds the pieces of a triangle.
-    fn triangle(&mut self, projector: &SceneProjector<'_, Ball<P>>, (id, index): (u32, usize)) {
+    fn triangle(&mut self, projector: &SceneProjector<'_, Ball<P>>, id: u32, index: usize) {
         let p = corners(&projector.scene.primitives.triangles, &projector.points, index);
         let weights = whole(p).map_inline(|corner: Clipped<_, 3>| corner.weights);
+        let of = Primitive { id, index };
         match Ends::new(projector, p).ways() {
             Some(ways) => {
-                self.add(ways, |ends| triangle_piece(projector, (id, index), ends, weights, p));
+                self.add(ways, |ends| triangle_piece(projector, of, ends, weights, p));
             }
             None => polygons::triangle(projector, index, &mut self.cut),
         }
@@ -79,12 +82,13 @@ impl<P: Profile> Pieces<P> {
         of: &Indexed<2>,
         projector: &SceneProjector<'_, Ball<P>>,
         kind: SampleKind,
-        (id, index): (u32, usize),
+        id: u32,
+        index: usize,
     ) -> Option<()> {
         let p = corners(of, &projector.points, index);
         let weights = whole(p).map_inline(|corner: Clipped<_, 2>| corner.weights);
         self.add(Ends::new(projector, p).ways()?, |ends| {
-            line_piece(projector, kind, (id, index), ends, weights, p)
+            line_piece(projector, kind, Primitive { id, index }, ends, weights, p)
         });
         Some(())
     }

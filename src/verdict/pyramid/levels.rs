@@ -39,14 +39,16 @@ pub(super) struct Levels<'a, P: Profile> {
 impl<'a, P: Profile> Levels<'a, P> {
     pub(super) fn new(
         job: &'a Job<'a>,
-        (sizes, supposed): (&'a [[u32; 2]], Supposed),
+        sizes: &'a [[u32; 2]],
+        supposed: Supposed,
         finest: &SamplePlanes<'_>,
         planes: [&'a [RecordPlanes<'a>]; 2],
     ) -> Self {
         // The planes of both phases have the same places in a cell.
-        let table = (&Cell::PULL[..], &job.there(Keep::Stages));
-        let level =
-            |(of, size): (&RecordPlanes<'_>, &[u32; 2])| of.records(table, *size, Cell::empty());
+        let there = job.there(Keep::Stages);
+        let level = |(of, size): (&RecordPlanes<'_>, &[u32; 2])| {
+            of.records(&Cell::PULL, &there, *size, Cell::empty())
+        };
         let samples = finest.samples(false);
         let mut pulled = vec![samples.map(|samples| samples.map(Cell::new))];
         pulled.extend(planes[0].iter().zip(&sizes[1..]).map(level));
@@ -104,7 +106,7 @@ impl<'a, P: Profile> Levels<'a, P> {
                 continue;
             };
             found.level(self.job, planes, self.sizes[level], |at, pixel| {
-                pushed((fine, coarse), at, level, (settings, self.supposed), pixel)
+                pushed(fine, coarse, at, level, settings, self.supposed, pixel)
             });
         }
         ("push", found.names, found.marks)
@@ -151,7 +153,7 @@ impl Phase {
                     continue;
                 }
                 let check = |truth: &_, report: &mut Report<'_>| {
-                    planes.check((0, &Cell::PULL), at, truth, report);
+                    planes.check(0, &Cell::PULL, at, truth, report);
                 };
                 if let Some(truth) = least_wrong::<_, 1>(&all, check) {
                     check(truth, &mut |_, error, fault| pixel.found(error, fault));
@@ -179,10 +181,12 @@ fn of_four<P: Profile>(
 
 /// Every outcome that a cell may have after the push.
 fn pushed<P: Profile>(
-    (fine, coarse): (&Level<P>, &Level<P>),
+    fine: &Level<P>,
+    coarse: &Level<P>,
     (x, y): (u32, u32),
     level: usize,
-    (settings, supposed): (&Settings, Supposed),
+    settings: &Settings,
+    supposed: Supposed,
     pixel: &mut PixelMarks<'_>,
 ) -> Vec<Cell<Ball<P>>> {
     let (cell, parent) = (fine.at(x, y), coarse.at(x / 2, y / 2));
@@ -194,8 +198,8 @@ fn pushed<P: Profile>(
         return vec![*cell];
     }
     let coarser = push::four(coarse, x, y);
-    let even = (x.is_multiple_of(2), y.is_multiple_of(2));
-    let offsets = push::offsets(&coarser, even, supposed.push_side(level));
+    let (even_x, even_y) = (x.is_multiple_of(2), y.is_multiple_of(2));
+    let offsets = push::offsets(&coarser, even_x, even_y, supposed.push_side(level));
     let (outcomes, doubts) = of_four(&coarser, &offsets, supposed);
     pixel.doubts(doubts);
     let mut all = Vec::with_capacity(outcomes.len() + 1);

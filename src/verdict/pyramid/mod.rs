@@ -61,8 +61,8 @@ pub(super) fn verify<P: Profile>(
     let last = pyramid::sizes(job.camera.width, job.camera.height).len() - 1;
     let there = job.there(Keep::Stages);
     let [pull, push] = [rows(&Cell::<f32>::PULL), rows(&Cell::<f32>::PUSH)];
-    stages[1].missing = missing(client, ("level", &pull), 1..last + 1, &there);
-    stages[2].missing = missing(client, ("level", &push), 0..last, &there);
+    stages[1].missing = missing(client, "level", &pull, 1..last + 1, &there);
+    stages[2].missing = missing(client, "level", &push, 0..last, &there);
     [stages[1].unjudged, stages[2].unjudged] = unjudged;
     let [pulled, pushed] = [1, 2].map_inline(|i: usize| stages[i].doubts.values());
     // Any doubt in a level may move the averages. A pixel with doubts in both stages is one pixel.
@@ -99,8 +99,7 @@ fn judge<P: Profile>(
     let pushed: Vec<_> = (0..last).map(cells(&Cell::<f32>::PUSH)).collect();
     let drawn = client.projection(job);
     let projection = samples::judge::<P>(&drawn, settings.cull, snap, &finest, watch);
-    let of = (&sizes[..], client.supposed);
-    let levels = Levels::<P>::new(job, of, &finest, [&pulled, &pushed]);
+    let levels = Levels::<P>::new(job, &sizes, client.supposed, &finest, [&pulled, &pushed]);
     let before = vec![projection, levels.pull(watch), levels.push(settings, watch)];
     let client_planes = PicturePlanes::new(client);
     let judge = PixelJudge::new(job, levels.finest(), &client_planes);

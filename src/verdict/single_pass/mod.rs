@@ -68,7 +68,7 @@ use crate::verdict::ewa::certificate::Nearest;
 use crate::verdict::ewa::client_planes::ClientPlanes;
 use crate::verdict::ewa::pixel::PixelJudge;
 use crate::verdict::ewa::sums::Continuations;
-use crate::verdict::marks::{self, Counts, Marks, counted};
+use crate::verdict::marks::{self, Counts, Marks, TilePart, counted};
 use crate::verdict::{Check, Verdict, gaps};
 use client_planes::ImagePlanes;
 pub(crate) use client_planes::sum_rows;
@@ -183,7 +183,7 @@ impl<'a, P: Profile> Judge<'a, P> {
     /// The planes of groups that the client lacks.
     pub(crate) fn missing(&self, job: &Job<'_>) -> Vec<String> {
         let (groups, there) = (0..self.images.len(), job.there(Keep::Stages));
-        gaps::missing(self.of.client, ("group", &self.of.images), groups, &there)
+        gaps::missing(self.of.client, "group", &self.of.images, groups, &there)
     }
 
     /// Opacity and colour of a pixel as the next pass reads them.
@@ -192,14 +192,14 @@ impl<'a, P: Profile> Judge<'a, P> {
     }
 
     /// Marks the wrong pixels of a rectangle in a tile, stage by stage.
-    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 3]) -> Counts {
+    fn judge(&self, TilePart { tile, rect }: TilePart, marks: &mut [Marks; 3]) -> Counts {
         let mut counts = Counts::default();
         let [geometry, compositing, shading] = marks;
         for y in rect.y0..rect.y1 {
             let row = Rect { y0: y, y1: y + 1, ..rect };
             let mut parts = [(); 3].map(|()| compositing.beside(row));
-            let place = (tile, (y - rect.y0) as usize, row);
-            for found in self.judge_row(place, geometry, &mut parts) {
+            let above = (y - rect.y0) as usize;
+            for found in self.judge_row(tile, above, row, geometry, &mut parts) {
                 counts.undecided += u64::from(!found.certain());
                 counts.covered += u64::from(found.covered());
             }
@@ -215,7 +215,9 @@ impl<'a, P: Profile> Judge<'a, P> {
     /// `above` rows lie above it in the tile.
     pub(crate) fn judge_row(
         &self,
-        (tile, above, row): (usize, usize, Rect),
+        tile: usize,
+        above: usize,
+        row: Rect,
         geometry: &mut Marks,
         parts: &mut [Marks; 3],
     ) -> Vec<PixelFindings<P>> {
@@ -227,7 +229,7 @@ impl<'a, P: Profile> Judge<'a, P> {
             let samples = images.judge(at, &fragments.at(column), &mut geometry.at(pixel));
             let (depth, sums) = self.compositing.judge(at, &samples, &mut parts[0].at(column));
             let nearest = Nearest { depth, id: None };
-            self.pixels.judge((column, at), &nearest, &sums, parts);
+            self.pixels.judge(column, at, &nearest, &sums, parts);
             PixelFindings { nearest, sums }
         };
         counted(row).map(of_pixel).collect()

@@ -34,11 +34,13 @@ impl<'a, P: Profile> Levels<'a, P> {
         finest: &SamplePlanes<'_>,
         planes: &'a [RecordPlanes<'a>],
     ) -> Self {
-        let table = (&Center::PLANES[..], &job.there(Keep::Stages));
+        let there = job.there(Keep::Stages);
         let samples = finest.samples(true);
         let mut levels = vec![samples.map(|samples| samples.map(Center::new))];
         let coarser = planes.iter().zip(&sizes[1..]);
-        levels.extend(coarser.map(|(of, size)| of.records(table, *size, Center::empty())));
+        levels.extend(
+            coarser.map(|(of, size)| of.records(&Center::PLANES, &there, *size, Center::empty())),
+        );
         Self { job, settings, sizes, planes, levels }
     }
 
@@ -73,7 +75,7 @@ impl<'a, P: Profile> Levels<'a, P> {
                 let mut marks = watch.marks(rect);
                 for (pixel, at) in counted(rect) {
                     let finer = propagation::four(fine, at.0, at.1);
-                    cell(planes, at, (&finer, reach), &mut marks.at(pixel));
+                    cell(planes, at, &finer, reach, &mut marks.at(pixel));
                 }
                 marks
             });
@@ -87,7 +89,8 @@ impl<'a, P: Profile> Levels<'a, P> {
 fn cell<P: Profile>(
     planes: &RecordPlanes<'_>,
     at: (u32, u32),
-    (finer, reach): (&[Center<Ball<P>>; 4], Ball<P>),
+    finer: &[Center<Ball<P>>; 4],
+    reach: Ball<P>,
     pixel: &mut PixelMarks<'_>,
 ) {
     let moving = finer.map_inline(|center| propagation::moves(&center, reach));
@@ -104,7 +107,7 @@ fn cell<P: Profile>(
     };
     let all: Vec<_> = found.iter().map(of).collect();
     let check = |truth: &_, report: &mut Report<'_>| {
-        planes.check((0, &Center::PLANES), at, truth, report);
+        planes.check(0, &Center::PLANES, at, truth, report);
     };
     if let Some(truth) = least_wrong::<_, 1>(&all, check) {
         check(truth, &mut |_, error, fault| pixel.found(error, fault));

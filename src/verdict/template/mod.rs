@@ -61,7 +61,7 @@ pub(super) fn verify<P: Profile>(
     let (found, unjudged, covered) = judge::<P>(job, settings, client, Watch::All);
     let mut stages = found.stage_verdicts(job);
     let (levels, there) = (1..levels(job, settings).len(), job.there(Keep::Stages));
-    stages[1].missing = missing(client, ("level", &rows(&Center::<f32>::PLANES)), levels, &there);
+    stages[1].missing = missing(client, "level", &rows(&Center::<f32>::PLANES), levels, &there);
     stages[1].unjudged = unjudged;
     let undecided = stages[2].doubtful(ANY);
     Verdict::new(stages, [covered, undecided], budget, Shifts::default())
@@ -104,7 +104,8 @@ fn judge<P: Profile>(
     let judge = PixelJudge::new(job, settings, levels.all(), &client_planes);
     let found = job.exec.ordered(watch.parts(&job.grid()), |(_, rect)| {
         let mut marks = [(); 3].map(|()| watch.marks(rect));
-        let covered = counted(rect).filter(|at| judge.judge(*at, &mut marks)).count();
+        let covered =
+            counted(rect).filter(|(pixel, at)| judge.judge(*pixel, *at, &mut marks)).count();
         (marks, covered as u64)
     });
     let covered = found.iter().map(|(_, covered)| covered).sum();

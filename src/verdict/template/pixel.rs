@@ -64,7 +64,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
 
     /// Marks a wrong pixel, by the outcome that errs least. Returns whether the pixel may be
     /// covered.
-    pub(super) fn judge(&self, (pixel, at): (usize, (u32, u32)), marks: &mut [Marks; 3]) -> bool {
+    pub(super) fn judge(&self, pixel: usize, at: (u32, u32), marks: &mut [Marks; 3]) -> bool {
         let (mut all, mut replayed) = (Vec::new(), false);
         if let Some(levels) = &self.levels {
             let found = outcomes(levels, self.settings, at);
@@ -94,7 +94,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
         };
         // The next stage continues from the client's own numbers.
         let mut own = sums.copied().unwrap_or(nothing);
-        self.client_planes.gathered.read((&Gathered::PLANES, &self.there), at, &mut own);
+        self.client_planes.gathered.read(&Gathered::PLANES, &self.there, at, &mut own);
         self.check_averages(at, &own, report);
         self.check_shading(at, &own, report);
     }
@@ -113,7 +113,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
             colors: sums.colors.map_inline(|part| widened(part, lost(heaviest * self.brightest))),
             ..*sums
         };
-        client_planes.gathered.check((RECONSTRUCTION, &Gathered::PLANES), at, &truth, report);
+        client_planes.gathered.check(RECONSTRUCTION, &Gathered::PLANES, at, &truth, report);
     }
 
     /// Checks the averages, and the weight again.

@@ -36,13 +36,14 @@ impl<'a> AveragePlanes<'a> {
     pub(crate) fn judge<P: Profile>(
         &self,
         at: (u32, u32),
-        (groups, holes): (&[GroupFound<P>], Holes),
+        groups: &[GroupFound<P>],
+        holes: Holes,
         pixel: &mut PixelMarks<'_>,
     ) -> GroupAverage<Ball<P>> {
         let mut average = average(groups, holes);
         let report = &mut |_: usize, error: f64, fault: &dyn Fn() -> _| pixel.found(error, fault);
-        self.planes.check((0, &GroupAverage::PLANES), at, &average, report);
-        self.planes.read((&GroupAverage::PLANES, &self.there), at, &mut average);
+        self.planes.check(0, &GroupAverage::PLANES, at, &average, report);
+        self.planes.read(&GroupAverage::PLANES, &self.there, at, &mut average);
         average
     }
 }

@@ -79,7 +79,8 @@ impl<P: Profile> GroupDrawings<P> {
         let shader = Shader::new(View::new(job.camera), &scene.lights, scene.material);
         let picture = job.picture();
         let prepared = Prepared::new(
-            (job, &job.grid()),
+            job,
+            &job.grid(),
             &settings.splats,
             items.len(),
             |projector, range, drawings| {

@@ -46,7 +46,7 @@ impl<'a, P: Profile> LayersJudge<'a, P> {
     /// The planes of groups that a client lacks.
     pub(crate) fn missing(&self, job: &Job<'_>, client: &Client) -> Vec<String> {
         let (rows, there) = (rows(&GroupLayers::<f32>::PLANES), job.there(Keep::Stages));
-        gaps::missing(client, ("group", &rows), 0..self.planes.len(), &there)
+        gaps::missing(client, "group", &rows, 0..self.planes.len(), &there)
     }
 
     /// The fragments of a row of pixels in a tile.
@@ -57,7 +57,8 @@ impl<'a, P: Profile> LayersJudge<'a, P> {
     /// Marks a wrong pixel. Only fragments whose depth `stays` count.
     pub(crate) fn judge(
         &self,
-        (column, at): (usize, (u32, u32)),
+        column: usize,
+        at: (u32, u32),
         row: &RowDrawings<P>,
         stays: impl Fn(Ball<P>) -> Three,
         pixel: &mut PixelMarks<'_>,

@@ -43,7 +43,7 @@ use crate::method::transparent::{Holes, Settings};
 use crate::number::ball::Profile;
 use crate::verdict::client::{Client, Ties};
 use crate::verdict::ewa::client_planes::ClientPlanes;
-use crate::verdict::marks::{self, Counts, Marks, counted};
+use crate::verdict::marks::{self, Counts, Marks, TilePart, counted};
 use crate::verdict::single_pass::sum_rows;
 use crate::verdict::{Check, Verdict};
 use averages::AveragePlanes;
@@ -116,7 +116,7 @@ impl<'a, P: Profile> Judge<'a, P> {
     }
 
     /// Marks the wrong pixels of a rectangle in a tile.
-    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 2]) -> Counts {
+    fn judge(&self, TilePart { tile, rect }: TilePart, marks: &mut [Marks; 2]) -> Counts {
         let mut counts = Counts::default();
         let [blending, averaging] = marks;
         for y in rect.y0..rect.y1 {
@@ -125,10 +125,9 @@ impl<'a, P: Profile> Judge<'a, P> {
             for (column, at) in counted(row) {
                 let pixel = (y - rect.y0) as usize * row.columns() + column;
                 let all = |_| true.into();
-                let found =
-                    self.layers.judge((column, at), &drawings, all, &mut blending.at(pixel));
+                let found = self.layers.judge(column, at, &drawings, all, &mut blending.at(pixel));
                 let pixel = &mut averaging.at(pixel);
-                let average = self.averages.judge(at, (&found.groups, self.holes), pixel);
+                let average = self.averages.judge(at, &found.groups, self.holes, pixel);
                 let judged = self.shown.judge(at, &found.groups, &average, pixel);
                 counts.covered += u64::from(found.groups.iter().any(GroupFound::covered));
                 counts.undecided += u64::from(found.open || !judged);

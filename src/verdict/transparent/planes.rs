@@ -107,7 +107,7 @@ impl<'a> GroupPlanes<'a> {
         };
         let opacity = widened(truth.opacity, lost(truth.opacity.middle.at_least(1.0)));
         let truth = GroupLayers { blend, opacity, ..truth.stored() };
-        self.planes.check((0, &GroupLayers::PLANES), at, &truth, report);
+        self.planes.check(0, &GroupLayers::PLANES, at, &truth, report);
     }
 
     /// The group as the average reads it: the client's values, else all values of the
@@ -130,7 +130,7 @@ impl<'a> GroupPlanes<'a> {
             depth: anything(),
             surfel: NO_ID,
         };
-        self.planes.read((&GroupLayers::PLANES, &self.there), at, &mut own);
+        self.planes.read(&GroupLayers::PLANES, &self.there, at, &mut own);
         let there =
             |field: Field<GroupLayers<f32>, f32>| self.planes.names().contains(&field.row.name);
         let counted = there(GroupLayers::COUNT) || count.radius == 0.0;

@@ -51,7 +51,7 @@ use crate::number::{Ball, Real};
 use crate::verdict::checks::anything;
 use crate::verdict::client::{Client, StoredPlane};
 use crate::verdict::ewa::client_planes::ClientPlanes;
-use crate::verdict::marks::{self, Counts, Marks, counted};
+use crate::verdict::marks::{self, Counts, Marks, TilePart, counted};
 use crate::verdict::single_pass::compositing::limit;
 use crate::verdict::single_pass::{self as groups, GroupsOf, PixelFindings, sum_rows};
 use crate::verdict::transparent::averages::AveragePlanes;
@@ -143,23 +143,25 @@ impl<'a, P: Profile> Judge<'a, P> {
     }
 
     /// Marks the wrong pixels of a rectangle in a tile, stage by stage.
-    fn judge(&self, (tile, rect): (usize, Rect), marks: &mut [Marks; 5]) -> Counts {
+    fn judge(&self, TilePart { tile, rect }: TilePart, marks: &mut [Marks; 5]) -> Counts {
         let mut counts = Counts::default();
         for y in rect.y0..rect.y1 {
             let row = Rect { y0: y, y1: y + 1, ..rect };
-            self.judge_row((tile, (y - rect.y0) as usize, row), marks, &mut counts);
+            self.judge_row(tile, (y - rect.y0) as usize, row, marks, &mut counts);
         }
         counts
     }
 
     fn judge_row(
         &self,
-        (tile, above, row): (usize, usize, Rect),
+        tile: usize,
+        above: usize,
+        row: Rect,
         [geometry, nearest, blending, averaging, compositing]: &mut [Marks; 5],
         counts: &mut Counts,
     ) {
         let mut parts = [(); 3].map(|()| nearest.beside(row));
-        let fronts = self.nearest.judge_row((tile, above, row), geometry, &mut parts);
+        let fronts = self.nearest.judge_row(tile, above, row, geometry, &mut parts);
         parts.into_iter().for_each(|part| nearest.put(part));
         let drawings = self.others.of_row(tile, &row);
         for ((column, at), front) in counted(row).zip(fronts) {
@@ -167,9 +169,9 @@ impl<'a, P: Profile> Judge<'a, P> {
             let near = self.front(at, &front);
             let behind = self.behind(at, near.depth);
             let marks = &mut blending.at(pixel);
-            let others = self.others.judge((column, at), &drawings, behind, marks);
-            let of = (others.groups.as_slice(), self.settings.layers.holes);
-            let average = self.averages.judge(at, of, &mut averaging.at(pixel));
+            let others = self.others.judge(column, at, &drawings, behind, marks);
+            let (groups, holes) = (others.groups.as_slice(), self.settings.layers.holes);
+            let average = self.averages.judge(at, groups, holes, &mut averaging.at(pixel));
             let judged = self.shown.judge(at, &near, &average, &mut compositing.at(pixel));
             counts.covered += u64::from(front.covered());
             counts.undecided += u64::from(!front.certain() || others.open || !judged);

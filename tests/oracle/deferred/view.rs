@@ -10,7 +10,7 @@ use crate::oracle::kit::eye::V3;
 use crate::oracle::kit::scene::surfels;
 use splatref::frame::Exec;
 use splatref::index::sequential::Sequential;
-use splatref::scene::{Camera, Objects, Primitives, Projection, Surfels};
+use splatref::scene::{Camera, Objects, Primitives, Projection, Sphere, Surfels};
 
 /// A similarity, backwards.
 fn into_geometry(objects: &Objects, object: usize, p: V3) -> V3 {
@@ -90,7 +90,7 @@ impl Reach {
         if camera.projection == Projection::Orthographic {
             return Self { eye, scale, least: 1.0 / k, flat: Some(1.0 / k) };
         }
-        let (middle, radius) = objects.sphere(object as u32);
+        let Sphere { center: middle, radius } = objects.sphere(object as u32);
         let (c, radius) = (into_geometry(objects, object, middle.to_array()), radius / k);
         let far = distance([0.0; 3], c) + radius;
         let least = distance(c, eye) - radius - far * (-20.0_f64).exp2();
@@ -126,7 +126,7 @@ impl Reach {
 pub(crate) fn taken(objects: &Objects, object: usize, camera: &Camera) -> Option<Taken> {
     let geometry = objects.geometry(object as u32);
     let detail = geometry.tree()?;
-    let (middle, radius) = objects.sphere(object as u32);
+    let Sphere { center: middle, radius } = objects.sphere(object as u32);
     if !in_sight(camera, (middle.to_array(), radius), 16.0 + detail.threshold()) {
         return Some(Taken { first: 0, nodes: Vec::new() });
     }

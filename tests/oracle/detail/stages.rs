@@ -8,7 +8,7 @@ use crate::oracle::kit::scene::{discs, surfels};
 use glam::Vec3;
 use splatref::frame::Exec;
 use splatref::scene::{
-    Cloud, Geometry, Motion, Object, Objects, Primitives, Similarity, Triangles, Vertices,
+    Cloud, Geometry, Motion, Object, Objects, Primitives, Similarity, Sphere, Triangles, Vertices,
 };
 
 /// The ids of the first so many surfels of objects, by the first split that fits: object by object as
@@ -141,7 +141,7 @@ fn spheres_are_those_of_the_page() {
             };
             let all = own.map(|(p, r)| (*p, *r)).chain(used);
             let radius = all.map(reach).fold(0.0, f64::max) * place.scale;
-            let (at, found) = objects.sphere(o);
+            let Sphere { center: at, radius: found } = objects.sphere(o);
             assert_eq!((at.to_array(), found), (placed(place, middle), radius));
         }
     }
@@ -179,6 +179,6 @@ fn spheres_hold_ellipses_and_vertices() {
         let middle = [0, 1, 2].map(|k| (low[k] + high[k]) / 2.0);
         let reach = |(p, r): &([f64; 3], f64)| dot(sub(*p, middle), sub(*p, middle)).sqrt() + r;
         let radius = all.iter().map(reach).fold(0.0, f64::max);
-        assert_eq!(objects.sphere(0), (middle.into(), radius));
+        assert_eq!(objects.sphere(0), Sphere { center: middle.into(), radius });
     }
 }

@@ -3,7 +3,7 @@
 use crate::oracle::kit::eye::{Eye, V3, wide};
 use splatref::scene::objects::Detail;
 use splatref::scene::objects::detail::prefix::Estimate;
-use splatref::scene::{Camera, Objects, Similarity};
+use splatref::scene::{Camera, Objects, Similarity, Sphere};
 
 /// What is drawn of an object.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -109,7 +109,7 @@ fn asked(objects: &Objects, object: u32, camera: &Camera) -> Asked {
     let (eye, at, shifts) = Eye::middle(camera);
     let place = &objects.places()[object as usize];
     let f = eye.fx.max(eye.fy);
-    let (middle, radius) = objects.sphere(object);
+    let Sphere { center: middle, radius } = objects.sphere(object);
     let p = eye.point(middle.to_array());
     let t = -p[2];
     let wanted = objects.refinement();

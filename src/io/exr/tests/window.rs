@@ -78,7 +78,7 @@ fn a_part_keeps_its_place_and_its_bits() {
     let frame = Frame::new(5, 37).with("Z", Samples::Scalar(depth)).unwrap();
     let window = Window { region: Rect { x0: 7, y0: 33, x1: 12, y1: 70 }, picture: [60_000, 70] };
     for compression in [Compression::Rle, Compression::Zip, Compression::Piz, Compression::None] {
-        pending_part(&path, (&frame, window), "text", compression, &exec).unwrap().put().unwrap();
+        pending_part(&path, &frame, window, "text", compression, &exec).unwrap().put().unwrap();
         let read = read_region(&path, &exec).unwrap();
         assert_eq!((read.window, read.compression), (window, Some(compression)));
         assert_eq!(Image { text: None, ..read.image }, Image::from(&frame), "{compression:?}");
@@ -95,8 +95,8 @@ fn a_part_keeps_its_place_and_its_bits() {
         (window.region, [11, 70]),
         (Rect::default(), window.picture),
     ] {
-        let other = (&frame, Window { region, picture });
-        let refused = pending_part(&path, other, "", Compression::Rle, &exec);
+        let other = Window { region, picture };
+        let refused = pending_part(&path, &frame, other, "", Compression::Rle, &exec);
         assert_eq!(refused.unwrap_err().exit_code(), 1);
     }
 }

@@ -88,8 +88,8 @@ impl Accessors<'_> {
             None => vec![[0.0; N]; accessor.count as usize],
             Some(view) => {
                 let (bytes, stride) = self.buffers.view(self.document, view)?;
-                let place = (accessor.byte_offset, accessor.count, stride);
-                elements(bytes, place, component).ok_or_else(|| {
+                let (offset, count) = (accessor.byte_offset, accessor.count);
+                elements(bytes, offset, count, stride, component).ok_or_else(|| {
                     format!(
                         "accessor {index} reaches beyond buffer view {view}: the file is damaged"
                     )
@@ -124,8 +124,9 @@ impl Accessors<'_> {
         let length = sparse.count.checked_mul(size).ok_or_else(damaged)?;
         let indices = part(bytes, indices.byte_offset, length).ok_or_else(damaged)?;
         let (bytes, stride) = self.buffers.view(self.document, values.buffer_view)?;
-        let place = (values.byte_offset, sparse.count, stride);
-        let values: Vec<[f32; N]> = elements(bytes, place, component).ok_or_else(damaged)?;
+        let (offset, count) = (values.byte_offset, sparse.count);
+        let values: Vec<[f32; N]> =
+            elements(bytes, offset, count, stride, component).ok_or_else(damaged)?;
         for (index, value) in indices.chunks_exact(size as usize).zip(values) {
             let mut four = [0; 4];
             four[..index.len()].copy_from_slice(index);
@@ -174,7 +175,9 @@ fn component(accessor: &Accessor, index: usize) -> Reason<Component> {
 /// `count` elements from `offset` on; `None` if there are fewer.
 fn elements<const N: usize>(
     bytes: &[u8],
-    (offset, count, stride): (u64, u64, Option<u64>),
+    offset: u64,
+    count: u64,
+    stride: Option<u64>,
     component: Component,
 ) -> Option<Vec<[f32; N]>> {
     let Component { size, decode, divisor, .. } = component;

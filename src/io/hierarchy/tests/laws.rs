@@ -48,7 +48,7 @@ fn a_mesh_is_approximated_at_every_level() {
             assert_eq!(cloud.position.len(), node.surfels as usize);
             let normal = cloud.normal.clone().unwrap_or_default();
             // Squares of the nodes below are as large as a pixel, and flat.
-            let pixel = pixel(settings.side_of(node.surfels), (node.low, node.high)) as f32;
+            let pixel = pixel(settings.side_of(node.surfels), node.low, node.high) as f32;
             for (i, p) in cloud.position.iter().enumerate() {
                 assert!(
                     (p.length() - 1.0).abs() < pixel * pixel + 0.003,

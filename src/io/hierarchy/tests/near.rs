@@ -74,7 +74,7 @@ fn no_surfel_of_a_root_lies_off_the_discs_below() {
         make(&at, "mesh.ply", "out", &settings).unwrap();
         let hierarchy = Hierarchy::open(&at.path().join("out")).unwrap();
         let root = &hierarchy.nodes()[1];
-        let pixel = pixel(settings.side_of(root.surfels), (root.low, root.high));
+        let pixel = pixel(settings.side_of(root.surfels), root.low, root.high);
         let below = hierarchy.nodes()[2..].iter().filter(|node| node.surfels > 0);
         let below: Vec<&Node> = below.collect();
         assert!(below.len() >= 3 && below.iter().all(|node| node.parent == 1 && node.below > 1000));

@@ -12,12 +12,26 @@ use crate::scene::objects::outline::{Missing, Needed};
 use crate::scene::{Objects, Primitives, Stereo, Surfels};
 use glam::DVec3;
 
-/// Views as distance of the eye and size of discs: from coarse to single triangles, from afar and
-/// from inside.
-const VIEWS: [(f64, f32); 6] =
-    [(60.0, 9.0), (60.0, 3.0), (40.0, 1.0), (12.0, 2.0), (3.0, 4.0), (40.0, 1e-3)];
+/// From where a scene is seen, and how finely.
+#[derive(Clone, Copy, Debug)]
+struct View {
+    /// The distance of the eye.
+    eye: f64,
+    /// The size of discs in pixels.
+    surfel_size: f32,
+}
 
-fn scene(at: &TempDir, (eye, surfel_size): (f64, f32), method: &'static str) -> SceneFile {
+/// From coarse to single triangles, from afar and from inside.
+const VIEWS: [View; 6] = [
+    View { eye: 60.0, surfel_size: 9.0 },
+    View { eye: 60.0, surfel_size: 3.0 },
+    View { eye: 40.0, surfel_size: 1.0 },
+    View { eye: 12.0, surfel_size: 2.0 },
+    View { eye: 3.0, surfel_size: 4.0 },
+    View { eye: 40.0, surfel_size: 1e-3 },
+];
+
+fn scene(at: &TempDir, View { eye, surfel_size }: View, method: &'static str) -> SceneFile {
     let mut file = SceneFile::open(at.path().join("out")).unwrap();
     file.method.name = Some(method);
     file.refinement.surfel_size = surfel_size;
@@ -176,7 +190,7 @@ fn a_walk_reads_a_node_once() {
             fs::remove_file(at.path().join("out").join(name)).unwrap();
         }
     }
-    let again = ready.with_surfel_size(VIEWS[1].1).unwrap();
+    let again = ready.with_surfel_size(VIEWS[1].surfel_size).unwrap();
     assert!(again.has_ordered_points());
     let placed = |ready: Ready| {
         let objects = ready.loaded.scene.objects.clone().unwrap();
@@ -193,7 +207,7 @@ fn a_walk_reads_a_node_once() {
     let mut same = again.clone();
     same.loaded.scene.objects = Some(known);
     assert!(picture(&same) == expected);
-    let finer = again.with_surfel_size(VIEWS[1].1 / 2.0).unwrap();
+    let finer = again.with_surfel_size(VIEWS[1].surfel_size / 2.0).unwrap();
     let line = placed(finer).unwrap_err().to_string();
     assert!(line.contains("out/surfels-") || line.contains("out/mesh-"), "{line}");
 }

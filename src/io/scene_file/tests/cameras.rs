@@ -143,7 +143,7 @@ fn intrinsics_go_with_any_pose_and_size() {
     assert_eq!((camera.projection, camera.cx), (Projection::Perspective, 32.0));
     assert!((camera.fx - 24.0).abs() < 1e-5);
     // The near plane follows from the distance to the middle of the scene.
-    let (middle, _) = scene.bounding_sphere();
+    let middle = scene.bounding_sphere().center;
     let near = ((middle - camera.eye()).length() / 1024.0) as f32;
     assert_eq!(camera.near, near);
     let inside = with(

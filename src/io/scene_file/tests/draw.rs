@@ -1,7 +1,7 @@
 //! Check models drawn as polygons, ribbons, tubes or hybrids.
 
 use super::*;
-use crate::scene::{Counts, Primitives, Surfels};
+use crate::scene::{Counts, Primitives, Sphere, Surfels};
 use crate::source::plant;
 
 /// A pyramid of four triangles without a bottom, whose apex is up, and two edges. Vertices have
@@ -225,7 +225,8 @@ fn the_camera_frames_primitives_too() {
     let text = model("draw = \"polygons\"\n") + "[camera]\nsize = [40, 30]\n";
     let (_folder, mut file) = scene(&ply(&[], ""), &text);
     let alone = load(&file).scene;
-    let sphere = (DVec3::new(0.0, 1.5, 0.0), (1.0 + 1.5 * 1.5 + 1.0_f64).sqrt());
+    let radius = (1.0 + 1.5 * 1.5 + 1.0_f64).sqrt();
+    let sphere = Sphere { center: DVec3::new(0.0, 1.5, 0.0), radius };
     assert_eq!(alone.bounding_sphere(), sphere);
     let lens = Lens::FieldOfView(DEFAULT_FIELD_OF_VIEW);
     let framed = Camera::framing(40, 30, sphere, DEFAULT_SIDE, lens).unwrap();

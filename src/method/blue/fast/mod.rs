@@ -28,7 +28,7 @@ pub(super) fn render(job: &Job<'_>, settings: &Settings, target: &mut Framebuffe
     assert_eq!([target.width, target.height], job.size(), "framebuffer size");
     let projector = SquareProjector::new(job, settings.cull);
     let strips = job.strips();
-    let squares = Squares::projected_by((job, &strips), |range, squares| {
+    let squares = Squares::projected_by(job, &strips, |range, squares| {
         place::squares(&projector, range, squares)
     });
     let view = View::new(job.camera);

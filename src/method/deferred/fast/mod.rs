@@ -71,16 +71,16 @@ pub(super) fn render(
     let shared = &flagged.splats.shared;
     clock.lap("attributes");
 
-    let stages = (&mut clock, ["difference", "attributes", "normalization"]);
+    let names = ["difference", "attributes", "normalization"];
     let gather = |tile: &mut Tile, index, rect, watch: &mut Stopwatch<3>| {
-        gather(tile, (index, rect), [&flagged, &fresh], &ranks);
+        gather(tile, index, rect, [&flagged, &fresh], &ranks);
         // Pass 4 needs the depth of pass 1 even where pass 3 draws nothing.
         if !tile.splats.is_empty() {
             first.load(&ranks, tile);
         }
         watch.lap(1);
     };
-    draw(job, target, stages, gather, |tile, watch| {
+    draw(job, target, &mut clock, names, gather, |tile, watch| {
         let index = grid.place(tile.grid.rect.x0, tile.grid.rect.y0).0;
         more(tile, &fresh.splats, &ranks, index);
         watch.lap(0);
@@ -135,7 +135,8 @@ impl Projected {
 /// Starts a tile of pass 4: the splats of B(i), numbered by their ranks.
 fn gather(
     tile: &mut Tile,
-    (index, rect): (usize, Rect),
+    index: usize,
+    rect: Rect,
     [flagged, fresh]: [&Projected; 2],
     ranks: &Ranks,
 ) {
@@ -172,9 +173,8 @@ impl First {
         let wanted = Wanted { normal: false, color: false, observed: false };
         let [width, height] = job.camera.size();
         let mut target = Framebuffer::new(width, height, shared.empty(), wanted);
-        let stages = (clock, ["visibility"]);
         let gather = |tile: &mut Tile, index, rect, _: &mut _| tile.gather(flagged, index, rect);
-        draw(job, &mut target, stages, gather, |tile, _| tile.visibility(&shared));
+        draw(job, &mut target, clock, ["visibility"], gather, |tile, _| tile.visibility(&shared));
         Self { shared, target }
     }
 

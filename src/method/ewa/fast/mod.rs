@@ -29,9 +29,9 @@ pub(super) fn render(
     let prepared = prepare(job, settings);
     clock.lap("projection");
     let shared = &prepared.shared;
-    let stages = (&mut clock, ["visibility", "attributes", "normalization"]);
+    let names = ["visibility", "attributes", "normalization"];
     let gather = |tile: &mut Tile, index, rect, _: &mut _| tile.gather(&prepared, index, rect);
-    draw(job, target, stages, gather, |tile, watch| {
+    draw(job, target, &mut clock, names, gather, |tile, watch| {
         tile.visibility(shared);
         watch.lap(0);
         tile.limits(shared, prepared.epsilon);

@@ -29,6 +29,14 @@ struct Foremost {
 /// The sums of a layer, in the order of [`Attributes`].
 type Sums = [Lanes; 8];
 
+/// A layer of a block: its nearest fragments, its sums, and whether no layer is before it.
+#[derive(Clone, Copy)]
+struct Layer<'a> {
+    nearest: &'a Foremost,
+    sums: &'a Sums,
+    first: bool,
+}
+
 impl FastPeeling<'_> {
     /// Peels the layers off the pixels of a block, whose first pixel is `corner`.
     pub(super) fn peel(
@@ -48,8 +56,8 @@ impl FastPeeling<'_> {
                 block.id = nearest.id;
             }
             spend(Work::Blend);
-            let shown = (layer == 0, corner, self.own);
-            resolve(block, &mut through, (&nearest, &sums), shown, (&self.shader, shared));
+            let layer = Layer { nearest: &nearest, sums: &sums, first: layer == 0 };
+            resolve(block, &mut through, layer, corner, self.own, &self.shader, shared);
         }
         for alpha in &mut block.alpha {
             *alpha = alpha.at_most(1.0);
@@ -129,9 +137,11 @@ vectorized!(
     fn resolve(
         block: &mut LayeredBlock,
         through: &mut Lanes,
-        (nearest, sums): (&Foremost, &Sums),
-        (first, corner, own): (bool, (u32, u32), Option<[f32; 3]>),
-        (shader, shared): (&Shader<f32>, &Shared<f32>),
+        Layer { nearest, sums, first }: Layer<'_>,
+        corner: (u32, u32),
+        own: Option<[f32; 3]>,
+        shader: &Shader<f32>,
+        shared: &Shared<f32>,
     ) {
         let (shared, nearest_id) = (*shared, nearest.id);
         let [r, g, b, opacity, x, y, z, weight] = *sums;

@@ -53,8 +53,8 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Pictu
         }
     });
     let LayeredPlanes { color, alpha, depth, id, layers } = target;
-    let shown = before_environment(job, color, alpha);
-    let mut left: Vec<_> = planes::shown(shown).into();
+    let (color, alpha) = before_environment(job, color, alpha);
+    let mut left: Vec<_> = planes::shown(color, alpha).into();
     left.extend(planes::pixel_planes(depth, id, layers));
     clock.lap("layers and blending");
     let (frame, timings) = (job.frame(left), clock.into_laps());

@@ -33,7 +33,8 @@ impl Points {
     /// Calls `draw` for every row of pixels, with the target of the row.
     pub(crate) fn each_row<T: Send>(
         &self,
-        (surfels, lens): (&Surfels, &PointProjector<f32>),
+        surfels: &Surfels,
+        lens: &PointProjector<f32>,
         rows: impl Iterator<Item = T>,
         exec: &Exec,
         draw: impl Fn(&NearestPoints<'_>, T) + Sync + Send,

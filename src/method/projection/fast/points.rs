@@ -235,19 +235,19 @@ vectorized!(
         let (r, last_r) = surfels.radius()[range.clone()].as_chunks();
         let (mut count, mut fates) = (0, Fates::default());
         for (index, block) in chunk.blocks[..p.len()].iter_mut().enumerate() {
-            let visible =
-                block.fill((&p[index], &n[index], &r[index]), index, lens, bands, &mut fates);
+            let surfels = SurfelLanes { position: &p[index], normal: &n[index], radius: &r[index] };
+            let visible = block.fill(surfels, index, lens, bands, &mut fates);
             count += note(&visible, index, &mut chunk.seen[count..]);
         }
         let rest = last_p.len();
         if rest > 0 {
             // Lanes without a surfel repeat the last surfel, and are not counted.
             let (index, at) = (p.len(), std::array::from_fn(|i: usize| i.min(rest - 1)));
-            let last = (
-                &at.map_inline(|i| last_p[i]),
-                &at.map_inline(|i| last_n[i]),
-                &at.map_inline(|i| last_r[i]),
-            );
+            let last = SurfelLanes {
+                position: &at.map_inline(|i| last_p[i]),
+                normal: &at.map_inline(|i| last_n[i]),
+                radius: &at.map_inline(|i| last_r[i]),
+            };
             let mut own = Fates::default();
             let mut visible = chunk.blocks[index].fill(last, index, lens, bands, &mut own);
             visible[rest..].fill(0);
@@ -272,13 +272,21 @@ fn note(visible: &[u32; LANES], block: usize, seen: &mut [u16]) -> usize {
     count
 }
 
+/// The surfels of a block, lane by lane.
+#[derive(Clone, Copy)]
+struct SurfelLanes<'a> {
+    position: &'a [Vec3; LANES],
+    normal: &'a [Vec3; LANES],
+    radius: &'a Lanes,
+}
+
 impl PointBlock {
-    /// Fills the block with this index from positions, normals and radii. Returns which surfels are
+    /// Fills the block with this index from surfels. Returns which surfels are
     /// visible: 1, else 0.
     #[inline(always)]
     fn fill(
         &mut self,
-        (p, n, radius): (&[Vec3; LANES], &[Vec3; LANES], &Lanes),
+        SurfelLanes { position: p, normal: n, radius }: SurfelLanes<'_>,
         index: usize,
         lens: &PointProjector<f32>,
         bands: Bands,

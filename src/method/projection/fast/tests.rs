@@ -21,7 +21,7 @@ fn samples(of: &Surfels, camera: &Camera, cull: bool, points: &mut Points) -> Ve
     points.find(of, &lens, &exec);
     let width = camera.width as usize;
     let mut rows = vec![vec![String::new(); width]; camera.height as usize];
-    points.each_row((of, &lens), rows.iter_mut(), &exec, |nearest, row| {
+    points.each_row(of, &lens, rows.iter_mut(), &exec, |nearest, row| {
         for x in (0..width).step_by(LANES) {
             let Some(s) = nearest.take(x) else { continue };
             let ids = nearest.ids(&s);

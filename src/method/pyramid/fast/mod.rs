@@ -96,8 +96,8 @@ impl CellLevels {
         }
         let lens = PointProjector::new(View::new(camera), settings.cull);
         let tally = self.points.find(&scene.surfels, &lens, exec);
-        let (layout, from) = (level.layout, (&scene.surfels, &lens));
-        self.points.each_row(from, level.rows_mut(), exec, |nearest, row| {
+        let layout = level.layout;
+        self.points.each_row(&scene.surfels, &lens, level.rows_mut(), exec, |nearest, row| {
             samples(nearest, row, &layout);
         });
         Ok(tally)

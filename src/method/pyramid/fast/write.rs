@@ -42,7 +42,7 @@ impl GBufferRow<'_> {
     pub(super) fn write(self, cells: &[f32], layout: &RowLayout, view: &View<f32>) {
         spend(Work::Store);
         let tangent = layout.attributes - 3;
-        write(cells, layout, (self.kind, self.depth, self.alpha));
+        write(cells, layout, self.kind, self.depth, self.alpha);
         if let Some(normals) = self.normal {
             vectors(cells, layout, NORMAL, Some(view), normals);
         }
@@ -59,7 +59,9 @@ vectorized!(
     fn write(
         cells: &[f32],
         layout: &RowLayout,
-        (kinds, depths, alphas): (&mut [u8], &mut [f32], &mut [f32]),
+        kinds: &mut [u8],
+        depths: &mut [f32],
+        alphas: &mut [f32],
     ) {
         let number = |attribute: usize| &cells[layout.at(attribute, 0)..][..layout.width];
         let found = number(KIND).iter().zip(number(FRONT));

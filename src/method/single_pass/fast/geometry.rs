@@ -70,7 +70,7 @@ vectorized!(
                 let splat = &tile.splats[index as usize];
                 each_block::<RAY_CAST>(splat, &tile.grid, &shared, |block, q, w| {
                     touched[block / 64] |= 1 << (block % 64);
-                    kept[block].meet::<VORONOI>((index, splat), (q, w), &shared, bins);
+                    kept[block].meet::<VORONOI>(index, splat, q, w, &shared, bins);
                 });
             }
             start = end;
@@ -98,8 +98,10 @@ impl KeptFragments {
     #[inline(always)]
     fn meet<const VORONOI: bool>(
         &mut self,
-        (index, splat): (u32, &Record),
-        (q, w): (&Lanes, &Lanes),
+        index: u32,
+        splat: &Record,
+        q: &Lanes,
+        w: &Lanes,
         shared: &Shared<f32>,
         bins: Option<&DepthBins<f32>>,
     ) {

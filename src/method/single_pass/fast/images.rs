@@ -58,7 +58,8 @@ impl GroupImages {
     /// `empty` is the nearness of an empty pixel.
     pub(crate) fn new(
         tile: &Tile,
-        (groups, count): (&[u8], usize),
+        groups: &[u8],
+        count: usize,
         empty: f32,
         opacities: Option<&[f32]>,
     ) -> Self {

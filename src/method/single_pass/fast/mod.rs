@@ -51,11 +51,11 @@ pub(super) fn render(
     let prepared = prepare(job, &settings.splats);
     clock.lap("projection");
     let shared = &prepared.shared;
-    let stages = (&mut clock, ["geometry", "compositing"]);
+    let names = ["geometry", "compositing"];
     let gather = |tile: &mut Tile, index, rect, _: &mut _| tile.gather(&prepared, index, rect);
-    draw(job, target, stages, gather, |tile, watch| {
+    draw(job, target, &mut clock, names, gather, |tile, watch| {
         let own = own(&tile.splats, groups);
-        let mut images = GroupImages::new(tile, (&own, groups.len()), shared.empty(), None);
+        let mut images = GroupImages::new(tile, &own, groups.len(), shared.empty(), None);
         images.draw(tile, shared, bins.as_ref());
         watch.lap(0);
         images.nearest(tile);

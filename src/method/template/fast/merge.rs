@@ -27,7 +27,7 @@ pub(super) fn merge(fine: &CenterLevel, coarse: &mut CenterLevel, reach: [f32; 2
             let lower = if exists { fine.row(2 * y + 1) } else { upper };
             *row.has = [false; 2];
             let moving = upper.has[1] || (exists && lower.has[1]);
-            merge_row([upper, lower], (exists, moving), &mut row, &layouts, reach);
+            merge_row([upper, lower], exists, moving, &mut row, &layouts, reach);
         }
     });
 }
@@ -42,7 +42,8 @@ struct FourCenters {
 vectorized!(
     fn merge_row(
         finer: [CenterRow<'_>; 2],
-        (exists, moving): (bool, bool),
+        exists: bool,
+        moving: bool,
         coarse: &mut CenterRowMut<'_>,
         [fine, layout]: &[RowLayout; 2],
         [reach, own]: [f32; 2],

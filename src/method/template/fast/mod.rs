@@ -82,8 +82,8 @@ impl CenterLevels {
         let lens = PointProjector::new(View::new(camera), cull);
         let tally = self.points.find(&scene.surfels, &lens, exec);
         let level = &mut self.levels[0];
-        let (layout, from) = (level.layout, (&scene.surfels, &lens));
-        self.points.each_row(from, level.rows_mut(), exec, |nearest, mut row| {
+        let layout = level.layout;
+        self.points.each_row(&scene.surfels, &lens, level.rows_mut(), exec, |nearest, mut row| {
             samples(nearest, &mut row, &layout, reach);
         });
         tally

@@ -69,10 +69,10 @@ vectorized!(
                     match (row.has[0], level) {
                         (false, _) => {}
                         (true, 0) => {
-                            beside::<COLORED, GAUSSIAN>(&mut gathered, row, (x, y, cy == y), half);
+                            beside::<COLORED, GAUSSIAN>(&mut gathered, row, x, y, cy == y, half);
                         }
                         (true, _) => {
-                            around::<COLORED, GAUSSIAN>(&mut gathered, row, (x, y, level), half);
+                            around::<COLORED, GAUSSIAN>(&mut gathered, row, x, y, level, half);
                         }
                     }
                 }
@@ -87,7 +87,9 @@ vectorized!(
 fn beside<const COLORED: bool, const GAUSSIAN: bool>(
     gathered: &mut GatheredLanes,
     row: CenterRow<'_>,
-    (x, y, own_row): (usize, usize, bool),
+    x: usize,
+    y: usize,
+    own_row: bool,
     half: usize,
 ) {
     for dx in 0..=2 * half {
@@ -120,7 +122,9 @@ fn beside<const COLORED: bool, const GAUSSIAN: bool>(
 fn around<const COLORED: bool, const GAUSSIAN: bool>(
     gathered: &mut GatheredLanes,
     row: CenterRow<'_>,
-    (x, y, level): (usize, usize, usize),
+    x: usize,
+    y: usize,
+    level: usize,
     half: usize,
 ) {
     let first = (x >> level).saturating_sub(half);

@@ -3,16 +3,13 @@
 use super::FastBlending;
 use super::averaging::AverageBlock;
 use super::projection::{Blended, Layer};
-use crate::composite::bins::DepthBins;
 use crate::composite::decide;
 use crate::frame::NO_ID;
 use crate::index::members::Set;
 use crate::method::clock::{Work, spend};
 use crate::method::fast::fragments::{fragments, inside};
 use crate::method::fast::tile::Record;
-use crate::method::transparent::Holes;
 use crate::number::lanes::{LANES, Lanes, Mask, any, each, mask, select, select_u32, vectorized};
-use crate::splat::Shared;
 
 /// The image of the present group at the pixels of a block.
 #[derive(Clone, Copy)]
@@ -64,37 +61,33 @@ impl<A: Blended> FastBlending<A> {
     /// image for each group; their previous values are ignored.
     pub(super) fn blend<const BEHIND: bool>(
         &self,
-        (average, images): (&mut AverageBlock, &mut [LayersBlock]),
+        average: &mut AverageBlock,
+        images: &mut [LayersBlock],
         splats: &[Record<A>],
         list: &[u32],
         corner: (u32, u32),
         nearest: &Nearest,
     ) {
         spend(Work::Blend);
-        let shared = &self.prepared.shared;
-        let blocks = (average, images, corner, nearest);
-        let with = (shared, self.bins.as_slice(), self.holes);
-        if shared.ray_cast {
-            blend::<true, BEHIND, A>(blocks, splats, list, with);
+        if self.prepared.shared.ray_cast {
+            blend::<true, BEHIND, A>(self, average, images, splats, list, corner, nearest);
         } else {
-            blend::<false, BEHIND, A>(blocks, splats, list, with);
+            blend::<false, BEHIND, A>(self, average, images, splats, list, corner, nearest);
         }
     }
 }
 
 vectorized!(
     fn blend<const RAY_CAST: bool, const BEHIND: bool, A: Blended>(
-        (average, images, corner, nearest): (
-            &mut AverageBlock,
-            &mut [LayersBlock],
-            (u32, u32),
-            &Nearest,
-        ),
+        rules: &FastBlending<A>,
+        average: &mut AverageBlock,
+        images: &mut [LayersBlock],
         splats: &[Record<A>],
         list: &[u32],
-        (shared, bins, holes): (&Shared<f32>, &[DepthBins<f32>], Holes),
+        corner: (u32, u32),
+        nearest: &Nearest,
     ) {
-        let shared = *shared;
+        let (shared, bins, holes) = (rules.prepared.shared, rules.bins.as_slice(), rules.holes);
         let common = bins[0];
         let groups = images.len();
         // The groups that have a fragment; the images of the others still belong to an earlier

@@ -80,7 +80,7 @@ impl<A: Blended> FastBlending<A> {
         for (block, list) in lists.blocks() {
             let (average, corner) = (&mut averages[block], grid.corner(block));
             let nearest = nearest(block);
-            self.blend::<BEHIND>((average, &mut images), splats, list, corner, &nearest);
+            self.blend::<BEHIND>(average, &mut images, splats, list, corner, &nearest);
         }
         averages
     }

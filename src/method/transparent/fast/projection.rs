@@ -108,7 +108,8 @@ impl<A: Blended> FastBlending<A> {
         let grid = job.strips();
         let size = batch_size(&grid, surfels.len());
         let prepared = Prepared::of_batches(
-            (job, &grid),
+            job,
+            &grid,
             &settings.splats,
             batches(order.parts(camera, size.div_ceil(2)), size),
             |projector, parts: Vec<Part>, records: &mut Vec<Record<A>>| {

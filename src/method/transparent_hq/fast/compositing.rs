@@ -26,7 +26,7 @@ pub(super) fn compositing(
     let shown = |(index, ((nearest, front), others)): (usize, Behind<'_>)| {
         let mut block = over(nearest, front, others);
         if through.bends() {
-            refract(through, &mut block, tile.grid.corner(index), (nearest, front, others));
+            refract(through, &mut block, tile.grid.corner(index), nearest, front, others);
         }
         block
     };
@@ -59,7 +59,9 @@ fn refract(
     through: &Through<'_, f32>,
     block: &mut LayeredBlock,
     (x, y): (u32, u32),
-    (nearest, front, others): (&PixelBlock, &FrontBlock, &AverageBlock),
+    nearest: &PixelBlock,
+    front: &FrontBlock,
+    others: &AverageBlock,
 ) {
     for i in (0..LANES).filter(|&i| nearest.nearest[i].is_finite()) {
         let near = FrontLayer {

@@ -58,8 +58,8 @@ impl<'a> FastNearest<'a> {
     /// The geometry pass over a tile that has splats.
     pub(super) fn geometry(&self, gathered: &Gathered) -> GroupImages {
         let Gathered { nearest: tile, groups, opacities, .. } = gathered;
-        let (shared, groups) = (&self.shared, (groups.as_slice(), self.groups));
-        let mut images = GroupImages::new(tile, groups, shared.empty(), Some(opacities));
+        let (shared, empty) = (&self.shared, self.shared.empty());
+        let mut images = GroupImages::new(tile, groups, self.groups, empty, Some(opacities));
         images.draw(tile, shared, self.bins.as_ref());
         images
     }
@@ -77,7 +77,7 @@ impl<'a> FastNearest<'a> {
         spend(Work::Shade);
         let blocks = tile.blocks.iter().zip(&images.opacities).enumerate();
         let front = |(index, (block, opacity)): (usize, (&PixelBlock, &Lanes))| {
-            shaded(&self.shader, block, opacity, (grid.corner(index), own))
+            shaded(&self.shader, block, opacity, grid.corner(index), own)
         };
         blocks.map(front).collect()
     }
@@ -90,7 +90,8 @@ vectorized!(
         shader: &Shader<f32>,
         block: &PixelBlock,
         opacity: &Lanes,
-        (corner, own): ((u32, u32), Option<[f32; 3]>),
+        corner: (u32, u32),
+        own: Option<[f32; 3]>,
     ) -> FrontBlock {
         let surface = own.map_or(block.color, |own| own.map_inline(|value| [value; LANES]));
         let color = shader.block::<ROW>(corner, &block.nearest, &block.normal, &surface);

@@ -47,7 +47,7 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::number::{MapInline, Real};
 use crate::scene::objects::Ids;
-use crate::scene::{Camera, Projection, Sides, Similarity};
+use crate::scene::{Camera, Projection, Sides, Similarity, Sphere};
 use glam::{DMat4, DVec3};
 use prefix::Prefix;
 use std::sync::Arc;
@@ -67,7 +67,7 @@ pub enum Detail {
 
 impl Detail {
     /// A sphere around the geometry.
-    pub(super) fn sphere(&self) -> (DVec3, f64) {
+    pub(super) fn sphere(&self) -> Sphere {
         match self {
             Self::Tree(tree) => tree.sphere,
             Self::Prefix(prefix) => prefix.sphere,
@@ -367,7 +367,7 @@ impl Eye {
     }
 
     /// Whether a sphere reaches into the picture of an eye, widened by `margin` pixels.
-    fn may_see(&self, (middle, radius): (DVec3, f64), margin: f64) -> bool {
+    fn may_see(&self, Sphere { center: middle, radius }: Sphere, margin: f64) -> bool {
         let Camera { width, height, projection, fx, fy, cx, cy, near, .. } = self.camera;
         let [fx, fy, cx, cy, near] = [fx, fy, cx, cy, near].map_inline(f64::from);
         let DVec3 { x, y, z } = self.view_from_world.transform_point3(middle);

@@ -31,7 +31,7 @@ use crate::error::{Error, Result};
 use crate::number::Real;
 use crate::scene::bounds::Bounds;
 use crate::scene::objects::Geometry;
-use crate::scene::{Projection, Similarity, bounds};
+use crate::scene::{Projection, Similarity, Sphere, bounds};
 use glam::DVec3;
 
 /// How densely an order covers: "\[`r_m`\] is the precomputed median minimum distance for a fixed
@@ -53,7 +53,7 @@ pub struct Prefix {
     count: u32,
     /// The box around the geometry.
     corners: [DVec3; 2],
-    pub(super) sphere: (DVec3, f64),
+    pub(super) sphere: Sphere,
 }
 
 impl Prefix {

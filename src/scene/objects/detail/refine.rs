@@ -73,8 +73,8 @@ use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::number::MapInline;
 use crate::number::Real;
-use crate::scene::Projection;
 use crate::scene::objects::{Detail, Objects};
+use crate::scene::{Projection, Sphere};
 use std::sync::Arc;
 
 /// The largest size of discs of prefixes, in pixels.
@@ -407,7 +407,7 @@ const LEAST: f64 = 1.0 / 1_267_650_600_228_229_401_496_703_205_376.0;
 impl Eye {
     /// How far a sphere is from the principal point on the screen, in pixels; of a stereo pair, in the
     /// picture where it is nearer.
-    fn off_principal_point(&self, (middle, radius): (glam::DVec3, f64)) -> f64 {
+    fn off_principal_point(&self, Sphere { center: middle, radius }: Sphere) -> f64 {
         let v = self.view_from_world.transform_point3(middle);
         let (depth, fx, fy) = (-v.z, f64::from(self.camera.fx), f64::from(self.camera.fy));
         let m = match self.camera.projection {

@@ -27,8 +27,7 @@ use super::{Detail, Eye, Mask};
 use crate::error::{Error, Result};
 use crate::number::Real;
 use crate::scene::objects::Geometry;
-use crate::scene::{Projection, Similarity, Surfels, bounds};
-use glam::DVec3;
+use crate::scene::{Projection, Similarity, Sphere, Surfels, bounds};
 use std::sync::Arc;
 
 /// The largest threshold in pixels.
@@ -44,7 +43,7 @@ pub struct Tree {
     /// sphere.
     pub(super) count: u32,
     pub(super) median_radius: f32,
-    pub(super) sphere: (DVec3, f64),
+    pub(super) sphere: Sphere,
 }
 
 impl Tree {
@@ -77,7 +76,7 @@ impl Tree {
             );
         }
         let eye = eye.before(place);
-        let (middle, radius) = self.sphere;
+        let Sphere { center: middle, radius } = self.sphere;
         let lost = (middle.length() + radius) / 1_048_576.0;
         let least = ((middle - eye).length() - radius - lost).at_least(0.0);
         let count = self.list.prefix(least, scale);

@@ -127,8 +127,8 @@ fn popping(length: f64, exec: &Exec) -> Result<[Found; 2]> {
         let order = if cured { Order::Pixel } else { Order::Depth };
         let settings = Settings { order, ..Settings::INRIA };
         // The second frame has the right order, so the first is the one to show.
-        let second = draw((&scene, &after), settings, exec)?.0.color("blended")?.clone();
-        measured((&scene, &before), settings, |found| worst(found, &second), exec)
+        let second = draw(&scene, &after, settings, exec)?.0.color("blended")?.clone();
+        measured(&scene, &before, settings, |found| worst(found, &second), exec)
     })
 }
 
@@ -151,7 +151,7 @@ fn steps(gaps: f64, exec: &Exec) -> Result<[Found; 2]> {
     both(|cured| {
         let order = if cured { Order::Distance } else { Order::Steps };
         let settings = Settings { order, ..Settings::KHR };
-        measured((&scene, &camera), settings, |found| share(found, &truth), exec)
+        measured(&scene, &camera, settings, |found| share(found, &truth), exec)
     })
 }
 
@@ -190,7 +190,7 @@ fn negative(coefficient: f64, exec: &Exec) -> Result<[Found; 2]> {
     both(|cured| {
         let bounds = if cured { ColorBounds::Zero } else { ColorBounds::None };
         let settings = Settings { bounds, ..Settings::KHR };
-        measured((&scene, &camera), settings, |found| worst(found, &truth), exec)
+        measured(&scene, &camera, settings, |found| worst(found, &truth), exec)
     })
 }
 
@@ -219,10 +219,10 @@ fn tiles(count: f64, exec: &Exec) -> Result<[Found; 2]> {
         let support = if cured { Support::None } else { Support::Tiles };
         let settings = Settings { support, ..Settings::INRIA };
         let size = [camera.width - SHIFT, camera.height - SHIFT];
-        let moved = draw((&scene, &shifted), settings, exec)?.0;
+        let moved = draw(&scene, &shifted, settings, exec)?.0;
         let back = part(moved.color("blended")?, [SHIFT; 2], size);
         let error = |found: &Plane<_>| worst(&part(found, [0; 2], size), &back);
-        measured((&scene, &camera), settings, error, exec)
+        measured(&scene, &camera, settings, error, exec)
     })
 }
 
@@ -236,6 +236,6 @@ fn stop(opacity: f64, exec: &Exec) -> Result<[Found; 2]> {
     both(|cured| {
         let stop = if cured { 0.0 } else { Settings::GSPLAT.stop };
         let settings = Settings { stop, ..Settings::GSPLAT };
-        measured((&scene, &camera), settings, |found| worst(found, &truth), exec)
+        measured(&scene, &camera, settings, |found| worst(found, &truth), exec)
     })
 }

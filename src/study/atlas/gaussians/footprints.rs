@@ -107,7 +107,7 @@ fn far(pixels: f64, exec: &Exec) -> Result<[Found; 2]> {
             kernel.compensation = if cured { Compensation::Ratio } else { Compensation::None };
         });
         let error = |found: &Plane<_>| 100.0 * (sum(found) / truth - 1.0).abs();
-        measured((&scene, &camera), settings, error, exec)
+        measured(&scene, &camera, settings, error, exec)
     })
 }
 
@@ -127,7 +127,7 @@ fn beside(degrees: f64, exec: &Exec) -> Result<[Found; 2]> {
         let settings = with_kernel(Settings::KHR, |kernel| {
             kernel.clamp = if cured { Clamp::Fov } else { Clamp::None };
         });
-        measured((&scene, &camera), settings, |found| worst(found, &truth), exec)
+        measured(&scene, &camera, settings, |found| worst(found, &truth), exec)
     })
 }
 
@@ -150,9 +150,9 @@ fn shift(widths: f64, exec: &Exec) -> Result<[Found; 2]> {
         let settings = with_kernel(Settings::INRIA, |kernel| {
             kernel.clamp = if cured { Clamp::Edges } else { Clamp::Fov };
         });
-        let larger = draw((&scene, &whole), settings, exec)?.0;
+        let larger = draw(&scene, &whole, settings, exec)?.0;
         let same = part(larger.color("blended")?, [first, 0], SIZE);
-        measured((&scene, &shifted), settings, |found| worst(found, &same), exec)
+        measured(&scene, &shifted, settings, |found| worst(found, &same), exec)
     })
 }
 
@@ -170,7 +170,7 @@ fn near(size: f64, exec: &Exec) -> Result<[Found; 2]> {
     let truth = truth(&[whole], &camera, 1, exec);
     let found = |blobs: &[Blob]| {
         let settings = with_kernel(Settings::KHR, |kernel| kernel.low_pass = 0.0);
-        measured((&scene(blobs)?, &camera), settings, |found| worst(found, &truth), exec)
+        measured(&scene(blobs)?, &camera, settings, |found| worst(found, &truth), exec)
     };
     Ok([found(&[whole])?, found(&split(&whole))?])
 }

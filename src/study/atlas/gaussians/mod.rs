@@ -77,7 +77,8 @@ fn scene(blobs: &[Blob]) -> Result<Scene> {
 }
 
 fn draw(
-    (scene, camera): (&Scene, &Camera),
+    scene: &Scene,
+    camera: &Camera,
     settings: Settings,
     exec: &Exec,
 ) -> Result<(Frame<f32>, Duration)> {
@@ -87,12 +88,13 @@ fn draw(
 
 /// Draws a scene, and measures its blended values.
 fn measured(
-    view: (&Scene, &Camera),
+    scene: &Scene,
+    camera: &Camera,
     settings: Settings,
     error: impl FnOnce(&Plane<[f32; 3]>) -> f64,
     exec: &Exec,
 ) -> Result<Found> {
-    let (frame, time) = draw(view, settings, exec)?;
+    let (frame, time) = draw(scene, camera, settings, exec)?;
     let picture = frame.color("")?.clone();
     Ok(Found { error: error(frame.color("blended")?), picture, time: Some(time) })
 }

@@ -65,7 +65,7 @@ fn what_cannot_be_seen_is_refused() {
     let exec = Exec::sequential();
     let camera = camera([4, 4], 3.0, Lens::FieldOfView(60.0));
     let see = |surface: Surface, camera: &Camera| {
-        of_surfaces(&[surface], &scene, true, (camera, &[]), &exec, &|_, _, _| ()).map(|_| ())
+        of_surfaces(&[surface], &scene, true, camera, &[], &exec, &|_, _, _| ()).map(|_| ())
     };
     let put = |shape, scale| Surface::Shape {
         shape,
@@ -80,7 +80,7 @@ fn what_cannot_be_seen_is_refused() {
     assert!(see(put(Shape::Sphere, 1.0), &Camera { near: 0.0, ..camera }).is_err());
     assert!(see(put(Shape::Sphere, 1.0), &Camera { width: 0, ..camera }).is_err());
     // A scene without content gives an empty picture.
-    let none = of_surfaces(&[], &scene, true, (&camera, &[]), &exec, &|_, _, _| ()).unwrap();
+    let none = of_surfaces(&[], &scene, true, &camera, &[], &exec, &|_, _, _| ()).unwrap();
     assert!(colors(&none).iter().all(|v| *v == 0.0));
 }
 
@@ -91,7 +91,7 @@ fn blocks_of_points_have_no_seams() {
     let exec = Exec::new(2, 32).unwrap();
     let wide = camera([134, 10], 2.0, Lens::Focal(120.0));
     let rest = Camera { width: 34, cx: wide.cx - 100.0, ..wide };
-    let see = |camera| of_points(&scene, (camera, &[[3, 1]]), &exec, &|_, _, _| ()).unwrap();
+    let see = |camera| of_points(&scene, camera, &[[3, 1]], &exec, &|_, _, _| ()).unwrap();
     let (wide, rest) = (see(&wide), see(&rest));
     let pairs = [
         (wide.frame.color("").unwrap(), rest.frame.color("").unwrap()),
@@ -121,7 +121,7 @@ fn layers_are_blended() {
     let (surfels, _) = Surfels::new_with(cloud, &exec).unwrap();
     let scene = Scene::unlit("discs", surfels);
     let camera = camera([6, 6], 5.0, Lens::Orthographic(1.0));
-    let truth = of_points(&scene, (&camera, &[]), &exec, &|_, _, _| ()).unwrap();
+    let truth = of_points(&scene, &camera, &[], &exec, &|_, _, _| ()).unwrap();
     assert_eq!(truth.how, How::Layers);
     for color in truth.frame.color("").unwrap().values() {
         let off = (0..3).map(|c| (color[c] - [0.5, 0.25, 0.0][c]).abs());

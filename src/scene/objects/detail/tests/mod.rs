@@ -2,7 +2,7 @@ mod prefixes;
 
 use super::*;
 use crate::scene::transform::rotation;
-use crate::scene::{Lens, Motion, Object, Pose, Primitives, Surfels};
+use crate::scene::{Lens, Motion, Object, Pose, Primitives, Sphere, Surfels};
 use crate::source::Shape;
 use glam::Vec3;
 use proptest::prelude::*;
@@ -105,7 +105,7 @@ proptest! {
         let lens = if ortho { Lens::Orthographic(20.0) } else { Lens::FieldOfView(50.0) };
         let camera = camera(DVec3::new(1.0, 2.0, 20.0), DVec3::ZERO, lens);
         let seen = objects.seen_from(&camera, &Exec::sequential()).unwrap();
-        let (center, radius) = objects.sphere(0);
+        let Sphere { center, radius } = objects.sphere(0);
         // Points of the sphere, projected.
         let mut inside = false;
         for i in 0..2000_u32 {
