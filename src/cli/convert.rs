@@ -2,6 +2,7 @@
 
 use super::{Ended, Ending, complain, output, progress, report};
 use splatref::io::gaussians::{self, GaussianFile};
+use splatref::io::scene_file::FileKind;
 use splatref::scene::Gaussians;
 use splatref::{Error, Result};
 use std::path::{Path, PathBuf};
@@ -25,6 +26,16 @@ pub(super) fn run(args: &Args) -> Ended {
     gaussians::check_name(&args.output)?;
     output::check_folder(&args.output)?;
     output::check_other(&args.output, &args.input)?;
+    if !matches!(
+        FileKind::from_extension(&args.input),
+        Ok(FileKind::Ply | FileKind::Gaussians) | Err(_)
+    ) {
+        return Err(Error::Usage(format!(
+            "{}: Gaussians are read from a .ply, .glb, .gltf, .splat or .spz; give one",
+            args.input.display()
+        ))
+        .into());
+    }
     let (file, all, dropped) = progress::during("reading", || read(&args.input))?;
     for what in &file.warnings {
         complain(format!("warning: {}: {what}", args.input.display()));

@@ -21,13 +21,17 @@ Examples:
   splatref info bunny.ply
   splatref info out/cluster.exr")]
 pub(super) struct Args {
-    /// A .ply, .obj, .las, .laz, .e57, .glb, .gltf, .splat or .spz, a scene .toml, an .exr, or a folder that "splatref tile" or "splatref surfels" wrote
+    /// A .ply, .obj, .las, .laz, .e57, .glb, .gltf, .splat or .spz, a scene .toml, an .exr, a folder that "splatref tile" or "splatref surfels" wrote, or a shape
     file: PathBuf,
 }
 
 pub(super) fn run(args: &Args) -> Ended {
     if Hierarchy::is_in(&args.file) {
         hierarchy::info(&args.file)?;
+        return Ok(Ending::Good);
+    }
+    if args.file.to_str().is_some_and(|name| Source::procedural(name).is_some()) {
+        scene(&args.file)?;
         return Ok(Ending::Good);
     }
     let kind = FileKind::from_extension(&args.file)?;

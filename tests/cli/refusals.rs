@@ -13,6 +13,8 @@ fn wrong_usage_is_exit_code_2() {
     fails(at.path(), &["render", "nothing-of-the-kind"], 2);
     fails(at.path(), &["render", "picture.exr"], 2);
     fails(at.path(), &["render", "a.ply", "--count", "3"], 2);
+    let line = fails(at.path(), &["convert", "a.obj", "b.ply"], 2);
+    assert!(line.contains(".spz"), "{line}");
     fails(at.path(), &["explain", "torus"], 2);
     let line = fails(at.path(), &["explain", "torus", "1", "1", "--method", "nothing"], 2);
     assert!(line.contains("single-pass"), "{line}");
@@ -174,7 +176,7 @@ fn pipes_and_names_are_told_in_one_line() {
         assert!(line.contains("a pipe or a device"), "{line}");
     }
     let line = fails(at.path(), &["info", "."], 2);
-    assert!(line.contains("a directory"), "{line}");
+    assert!(line.contains("this directory holds no surfels"), "{line}");
     let line = fails(at.path(), &["render", "a\u{1b}[2J\n\u{202e}.ply"], 1);
     assert!(line.contains("a\\u{1b}[2J \\u{202e}.ply"), "{line}");
     let line = fails(at.path(), &["render", &format!("{}.ply", "long".repeat(20_000))], 1);

@@ -101,6 +101,8 @@ fn info_describes_every_kind_of_file() {
     {
         assert!(said.contains(word), "{word} in {said}");
     }
+    let said = succeeds(at.path(), &["info", "staircase"]);
+    assert!(said.contains("Staircase {") && said.contains("radius"), "{said}");
     fails(at.path(), &["info", "a.txt"], 2);
     fails(at.path(), &["info", "b.exr"], 1);
 }

@@ -20,6 +20,21 @@ fn torus(at: &Path, count: usize) {
 }
 
 #[test]
+fn a_folder_with_the_name_of_a_shape_is_not_taken_for_it() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    torus(at, 300);
+    fs::rename(at.join("tiled/torus"), at.join("torus")).unwrap();
+    let size = ["--size", "20x10", "-o", "a.exr"];
+    let line = fails(at, &[&["render", "torus"], &size[..]].concat(), 2);
+    assert!(line.contains("./torus"), "{line}");
+    let said = succeeds(at, &[&["render", "./torus"], &size[..]].concat());
+    assert!(said.contains("300 surfels"), "{said}");
+    let line = fails(at, &["render", "tiled"], 2);
+    assert!(line.contains("holds no surfels"), "{line}");
+}
+
+#[test]
 fn file_folder_regions_and_bands_give_one_file() {
     let at = TempDir::new().unwrap();
     let at = at.path();

@@ -148,6 +148,11 @@ impl FileKind {
             Some("toml") => Ok(Self::Toml),
             Some("exr") => Ok(Self::Exr),
             _ if Blocks::is_in(path) => Ok(Self::Blocks),
+            _ if path.is_dir() => Err(Error::Usage(format!(
+                "{}: this directory holds no surfels; give a file, or a folder that `splatref tile` or \
+                 `splatref surfels` wrote",
+                path.display()
+            ))),
             _ => Err(Error::Usage(match input::no_file(path) {
                 Some(what) => format!("{}: {what}", path.display()),
                 None => format!(
@@ -231,11 +236,18 @@ impl SceneFile {
     /// ```
     ///
     /// # Errors
-    /// [`Error::Usage`] if the name is neither a shape nor a scene; else as [`SceneFile::read`].
-    /// The model itself is not read yet.
+    /// [`Error::Usage`] if the name is neither a shape nor a scene, or is a shape and a folder of surfels;
+    /// else as [`SceneFile::read`]. The model itself is not read yet.
     pub fn open(name: impl AsRef<Path>) -> Result<Self> {
         let path = name.as_ref();
         if let Some(source) = path.to_str().and_then(Source::procedural) {
+            if Hierarchy::is_in(path) || Blocks::is_in(path) {
+                return Err(Error::Usage(format!(
+                    "{0}: this is the name of a shape and of a folder of surfels; give ./{0} for the \
+                     folder, or rename it",
+                    path.display()
+                )));
+            }
             return Ok(Self::of_model(source));
         }
         if Hierarchy::is_in(path) {
