@@ -33,8 +33,7 @@ pub(super) fn run(args: &Args) -> Ended {
         return Err(Error::Usage(format!(
             "{}: Gaussians are read from a .ply, .glb, .gltf, .splat or .spz; give one",
             args.input.display()
-        ))
-        .into());
+        )));
     }
     let (file, all, dropped) = progress::during("reading", || read(&args.input))?;
     for what in &file.warnings {
