@@ -120,24 +120,19 @@ impl Splats<'_> {
 
 /// Loads a scene file. In parts, of a folder of blocks nothing is read except its index.
 fn of_file(py: Python<'_>, how: &How, file: SceneFile, parts: bool) -> PyResult<Scene> {
-    let loaded = call(py, how, |exec, show| match parts {
-        true => file.load_outlined(exec, show),
-        false => file.load_for_views(exec, show),
-    })?;
+    let load = if parts { SceneFile::load_outlined } else { SceneFile::load_for_views };
+    let loaded = call(py, how, |exec, show| load(&file, exec, show))?;
     let dropped = loaded.dropped.reasons();
     let warnings = loaded.warnings.clone();
-    let content = Arc::new(Content::File(Box::new(loaded)));
-    Ok(Scene {
-        file,
-        content,
-        whole: Mutex::default(),
-        groups: Mutex::new(None),
-        warnings,
-        dropped,
-    })
+    Ok(Scene::of(file, Content::File(Box::new(loaded)), warnings, dropped))
 }
 
 impl Scene {
+    fn of(file: SceneFile, content: Content, warnings: Vec<String>, dropped: String) -> Self {
+        let (whole, groups) = (Mutex::default(), Mutex::default());
+        Self { file, content: Arc::new(content), whole, groups, warnings, dropped }
+    }
+
     /// All of a scene in parts, read once.
     pub(crate) fn whole(&self, exec: &Exec) -> splatref::Result<Arc<Content>> {
         let mut whole = self.whole.lock().unwrap_or_else(PoisonError::into_inner);
@@ -211,15 +206,7 @@ impl Scene {
             };
             Ok((scene, derived.dropped.reasons()))
         })?;
-        let content = Arc::new(Content::Arrays(Box::new(scene)));
-        Ok(Self {
-            file,
-            content,
-            whole: Mutex::default(),
-            groups: Mutex::new(None),
-            warnings: Vec::new(),
-            dropped,
-        })
+        Ok(Self::of(file, Content::Arrays(Box::new(scene)), Vec::new(), dropped))
     }
 
     /// Takes arrays of Gaussians. `text` has the environment and the surface as a scene file.
@@ -247,15 +234,7 @@ impl Scene {
             let reasons = || format!("{dropped} Gaussians with {UNDRAWABLE}");
             Ok((scene, if dropped == 0 { String::new() } else { reasons() }))
         })?;
-        let content = Arc::new(Content::Arrays(Box::new(scene)));
-        Ok(Self {
-            file,
-            content,
-            whole: Mutex::default(),
-            groups: Mutex::new(None),
-            warnings: Vec::new(),
-            dropped,
-        })
+        Ok(Self::of(file, Content::Arrays(Box::new(scene)), Vec::new(), dropped))
     }
 
     #[getter]

@@ -26,12 +26,12 @@ pub(super) struct Args {
 }
 
 pub(super) fn run(args: &Args) -> Ended {
-    if Hierarchy::is_in(&args.file) {
-        hierarchy::info(&args.file)?;
-        return Ok(Ending::Good);
-    }
     if args.file.to_str().is_some_and(|name| Source::procedural(name).is_some()) {
         scene(&args.file)?;
+        return Ok(Ending::Good);
+    }
+    if Hierarchy::is_in(&args.file) {
+        hierarchy::info(&args.file)?;
         return Ok(Ending::Good);
     }
     let kind = FileKind::from_extension(&args.file)?;

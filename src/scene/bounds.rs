@@ -35,7 +35,7 @@ impl Scene {
     }
 }
 
-/// A sphere in world space.
+/// A sphere, in the coordinates of what it surrounds.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Sphere {
     /// The middle.

@@ -176,7 +176,7 @@ fn pipes_and_names_are_told_in_one_line() {
         assert!(line.contains("a pipe or a device"), "{line}");
     }
     let line = fails(at.path(), &["info", "."], 2);
-    assert!(line.contains("this directory holds no surfels"), "{line}");
+    assert!(line.contains("a directory"), "{line}");
     let line = fails(at.path(), &["render", "a\u{1b}[2J\n\u{202e}.ply"], 1);
     assert!(line.contains("a\\u{1b}[2J \\u{202e}.ply"), "{line}");
     let line = fails(at.path(), &["render", &format!("{}.ply", "long".repeat(20_000))], 1);

@@ -148,11 +148,6 @@ impl FileKind {
             Some("toml") => Ok(Self::Toml),
             Some("exr") => Ok(Self::Exr),
             _ if Blocks::is_in(path) => Ok(Self::Blocks),
-            _ if path.is_dir() => Err(Error::Usage(format!(
-                "{}: this directory holds no surfels; give a file, or a folder that `splatref tile` or \
-                 `splatref surfels` wrote",
-                path.display()
-            ))),
             _ => Err(Error::Usage(match input::no_file(path) {
                 Some(what) => format!("{}: {what}", path.display()),
                 None => format!(
@@ -253,7 +248,15 @@ impl SceneFile {
         if Hierarchy::is_in(path) {
             return Ok(Self::of_hierarchy(path));
         }
-        match FileKind::from_extension(path)? {
+        let kind = FileKind::from_extension(path);
+        if kind.is_err() && path.is_dir() {
+            return Err(Error::Usage(format!(
+                "{}: this is a directory without surfels; give a file, or a folder that `splatref tile` \
+                 or `splatref surfels` wrote",
+                path.display()
+            )));
+        }
+        match kind? {
             FileKind::Ply
             | FileKind::Obj
             | FileKind::Las

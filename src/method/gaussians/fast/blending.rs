@@ -158,8 +158,8 @@ vectorized!(
                 let seen = before(&block.alive, opaque, |_| splat.depth);
                 let fragments = fragments::<FUSED>(splat, limits, corner, &seen);
                 if let Some((alpha, takes)) = fragments {
-                    let own = (|_| splat.index, |_| splat.color, |_| splat.depth);
-                    block.add(limits, (&alpha, &takes), own);
+                    let (index, color, depth) = (splat.index, splat.color, splat.depth);
+                    block.add(limits, (&alpha, &takes), |_| index, |_| color, |_| depth);
                 }
             },
         );
@@ -252,11 +252,9 @@ impl Block {
         &mut self,
         limits: &Limits,
         (alpha, takes): (&Lanes, &Mask),
-        (index, color, depth): (
-            impl Fn(usize) -> u32,
-            impl Fn(usize) -> [f32; 3] + Copy,
-            impl Fn(usize) -> f32 + Copy,
-        ),
+        index: impl Fn(usize) -> u32,
+        color: impl Fn(usize) -> [f32; 3] + Copy,
+        depth: impl Fn(usize) -> f32 + Copy,
     ) {
         let before = self.through;
         let weight = each(|i| before[i] * alpha[i]);

@@ -25,8 +25,8 @@ vectorized!(
                 let own = fragments::<FUSED>((splat, disc), (rays, limits), corner, &block.alive);
                 if let Some((alpha, takes, depth)) = own {
                     let takes = before(&takes, opaque, |i| depth[i]);
-                    let own = (|_| splat.index, |_| splat.color, |i: usize| depth[i]);
-                    block.add(limits, (&alpha, &takes), own);
+                    let (index, color) = (splat.index, splat.color);
+                    block.add(limits, (&alpha, &takes), |_| index, |_| color, |i| depth[i]);
                 }
             },
         );

@@ -139,11 +139,7 @@ vectorized!(
                     (color[i], index[i]) = (own.color, own.index);
                 }
             }
-            block.add(
-                limits,
-                (&alpha, &takes),
-                (|i: usize| index[i], |i: usize| color[i], |i: usize| depth[i]),
-            );
+            block.add(limits, (&alpha, &takes), |i| index[i], |i| color[i], |i| depth[i]);
         }
         block.finish();
         block
