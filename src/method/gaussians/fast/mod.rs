@@ -59,7 +59,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
         if places.is_empty() {
             tile.clear();
         } else if own {
-            tile.store(&own_order::blend(&blending, places, rect));
+            tile.store(&own_order::blend(&blending, &places, rect));
         } else {
             let mut blocks = Blocks::new(rect, blending.source.surface());
             blend(&blending, &places, &mut blocks);

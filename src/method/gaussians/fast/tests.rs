@@ -101,6 +101,36 @@ fn every_pixel_has_the_bits_of_the_definition() {
     }
 }
 
+/// Discs side by side in one plane that faces an orthographic camera have one depth in every pixel.
+#[test]
+fn splats_of_one_depth_in_different_places_are_drawn_in_the_order_of_their_indices() {
+    let upright = Pose { eye: 5.0 * DVec3::Z, target: DVec3::ZERO, up: DVec3::Y };
+    let camera = Camera::new(70, 33, upright, Lens::Orthographic(4.0)).unwrap();
+    let exec = Exec::sequential();
+    let colors = [Vec3::X, Vec3::Y, Vec3::Z];
+    let draw = |order: [usize; 3]| {
+        let arrays = GaussianArrays {
+            position: order.map(|i| Vec3::new(0.3 * i as f32 - 0.3, 0.1, 0.25)).into(),
+            scale: vec![Vec3::new(0.5, 0.5, 0.01); 3],
+            rotation: vec![[1.0, 0.0, 0.0, 0.0]; 3],
+            opacity: vec![0.6; 3],
+            degree: 0,
+            harmonics: order.map(|i| colors[i]).into(),
+            encoding: Encoding::Linear,
+        };
+        let scene = Scene::of_gaussians("discs", Gaussians::new(arrays).unwrap().0);
+        let mut session = Session::new(&scene, Settings::EXACT.into(), &exec).unwrap();
+        let definition = session.define::<f32>(&camera, false).unwrap().frame;
+        let frame = &session.render(&camera).unwrap().frame;
+        assert!(frame.planes.iter().zip(&definition.planes).all(|(own, other)| own == other));
+        let [x, y] = camera.size().map(|side| side / 2);
+        (*frame.index("id").unwrap().at(x, y), *frame.scalar("Z").unwrap().at(x, y))
+    };
+    for order in [[0, 1, 2], [2, 1, 0], [1, 2, 0]] {
+        assert_eq!(draw(order), (0, 4.75), "{order:?}");
+    }
+}
+
 /// A splat that is behind a surface by less than a step of a depth buffer of 16 bits.
 #[test]
 fn a_depth_buffer_of_few_digits_draws_what_it_cannot_tell_apart() {
