@@ -6,6 +6,7 @@ use crate::choose::{CameraChoice, Choices};
 use crate::error::{raised, value};
 use crate::scene::{Content, Scene};
 use crate::setup::Setup;
+use glam::DVec3;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use splatref::frame::image::Values;
@@ -136,8 +137,8 @@ pub(crate) fn render<'py>(
 /// The numbers of a camera.
 pub(crate) fn camera_numbers<'py>(
     py: Python<'py>,
-    setup: &Setup,
     camera: &Camera,
+    offset: DVec3,
 ) -> PyResult<Bound<'py, PyDict>> {
     let Camera { width, height, fx, fy, cx, cy, near, .. } = *camera;
     let numbers = PyDict::new(py);
@@ -147,11 +148,11 @@ pub(crate) fn camera_numbers<'py>(
     }
     let rows = camera.view_from_world.transpose().to_cols_array_2d();
     numbers.set_item("view_from_world", rows.map(|row| row.map(f64::from)))?;
-    numbers.set_item("offset", setup.scene().offset.to_array())?;
-    numbers.set_item("eye", (camera.eye() + setup.scene().offset).to_array())?;
+    numbers.set_item("offset", offset.to_array())?;
+    numbers.set_item("eye", (camera.eye() + offset).to_array())?;
     let perspective = matches!(camera.projection, Projection::Perspective);
     numbers.set_item("perspective", perspective)?;
-    numbers.set_item("text", provenance::camera(camera, setup.scene().offset))?;
+    numbers.set_item("text", provenance::camera(camera, offset))?;
     Ok(numbers)
 }
 
@@ -166,8 +167,10 @@ pub(crate) fn resolve<'py>(
 ) -> PyResult<Bound<'py, PyDict>> {
     let file = choices.on(&scene.get().file, camera.as_ref().map(Bound::get))?;
     let scene = scene.get();
-    let setup = call(py, &how, |exec, _| Setup::placed(scene, &file, None, exec))?;
-    camera_numbers(py, &setup, &setup.camera)
+    // The scene is not placed, which would read all surfels of a scene in parts.
+    let scene = scene.content.scene();
+    let camera = call(py, &how, |_, _| file.camera(scene))?;
+    camera_numbers(py, &camera, scene.offset)
 }
 
 #[pymethods]
@@ -222,7 +225,7 @@ impl Drawn {
 
     #[getter]
     fn camera<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        camera_numbers(py, &self.setup, &self.camera)
+        camera_numbers(py, &self.camera, self.setup.scene().offset)
     }
 
     /// The pixels that the planes hold, x0, y0, x1, y1, and the size of the picture.

@@ -154,7 +154,7 @@ impl Judged {
 
     #[getter]
     fn camera<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
-        camera_numbers(py, &self.setup, &self.setup.camera)
+        camera_numbers(py, &self.setup.camera, self.setup.scene().offset)
     }
 
     /// The stages: names, planes, errors in bounds, and undecided decisions.

@@ -22,10 +22,13 @@ CAMERA = sr.Camera(size=(60, 44), fov=40)
 
 @pytest.fixture(scope="module")
 def client() -> Iterator[Any]:
-    # Processes, as on several machines; no page, because nobody looks at it.
-    with distributed.LocalCluster(n_workers=2, threads_per_worker=1, dashboard_address=None) as local:
-        with distributed.Client(local) as client:
-            yield client
+    # Processes, as on several machines.
+    with _cluster(2) as local, distributed.Client(local) as client:
+        yield client
+
+
+def _cluster(workers: int) -> Any:
+    return distributed.LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=":0")
 
 
 @pytest.mark.parametrize("method", ["ewa", "peeling", "blue", "pyramid", "template"])
@@ -54,6 +57,30 @@ def test_a_tiled_folder_is_drawn_as_its_file(client: Any, method: str, program: 
     for picture in (sr.render(scene, CAMERA, **how), cluster.render(folder, CAMERA, client=client, regions=3, **how)):
         assert all(np.array_equal(picture[name], whole[name], equal_nan=True) for name in whole)
     assert sr.verify(scene, CAMERA, whole, method=method).right
+
+
+def test_the_size_of_a_picture_is_known_without_a_surfel(program: Path, tmp_path: Path) -> None:
+    folder, blocks = tmp_path / "ball", tmp_path / "ball" / "blocks"
+    subprocess.run([program, "tile", ROOT / "golden" / "unoriented.ply", "-o", folder], check=True, capture_output=True)
+    whole = sr.Scene.open(folder).camera(CAMERA)
+    # Its last byte belongs to the last block of surfels.
+    blocks.write_bytes(blocks.read_bytes()[:-1] + b"?")
+    scene = sr.Scene._in_parts(folder)
+    assert scene.camera(CAMERA)._text == whole._text
+    with pytest.raises(ValueError, match="blocks"):
+        sr.render(scene, CAMERA)
+
+
+@pytest.mark.parametrize("workers", [1, 4])
+def test_the_number_of_workers_changes_nothing(workers: int) -> None:
+    def torus() -> sr.Scene:
+        return sr.Scene.open("torus", count=800)
+
+    whole = sr.render(torus(), CAMERA)
+    with _cluster(workers) as local, distributed.Client(local) as client:
+        client.wait_for_workers(workers)
+        picture = cluster.render(torus, CAMERA, client=client, regions=7)
+    assert all(np.array_equal(picture[name], whole[name], equal_nan=True) for name in whole)
 
 
 def test_a_worker_that_dies_changes_nothing(client: Any, tmp_path: Path) -> None:
