@@ -4,7 +4,7 @@ use super::Support;
 use super::splats::Source;
 use crate::frame::Rect;
 use crate::number::{Real, elementary};
-use crate::splat::ray_disc::RayDisc;
+use crate::splat::ray_disc::{DiscBox, RayDisc};
 
 /// Which of the bounds of ranges.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -32,7 +32,8 @@ impl<R: Real> Source<'_, R> {
         &self,
         center: [[f64; 2]; 2],
         [xx, xy, yy]: [f64; 3],
-        (alpha, reach): (f64, f64),
+        alpha: f64,
+        reach: f64,
     ) -> Rect {
         let k = f64::from(self.settings.cutoff);
         let wide = |q: f64| {
@@ -75,10 +76,12 @@ impl<R: Real> Source<'_, R> {
         &self,
         disc: &RayDisc<S>,
         ends: impl Fn(S) -> [f64; 2] + Copy,
-        (reach, slack): (f64, f64),
+        reach: f64,
+        slack: f64,
         end: End,
     ) -> Rect {
         let k = f64::from(self.settings.cutoff);
+        let boxed = |r: f64| disc.boxed(S::from_f32(r as f32));
         let around = |r: f64| self.around_disc(disc, ends, r, end);
         if reach < 0.0 {
             return Rect::default();
@@ -94,11 +97,11 @@ impl<R: Real> Source<'_, R> {
                     let side = x.at_least(y).at_least(filter).ceil();
                     [side, side]
                 };
-                self.tiles_of_disc(disc, (ends, slack), (k, Cover::Square, end), tiles)
+                self.tiles_of_disc(&boxed(k), ends, slack, Cover::Square, end, tiles)
             }
             Support::Boxes => {
                 let tiles = |[x, y]: [f64; 2]| [(k * x).ceil(), (k * y).ceil()];
-                self.tiles_of_disc(disc, (ends, slack), (1.0, Cover::Box, end), tiles)
+                self.tiles_of_disc(&boxed(1.0), ends, slack, Cover::Box, end, tiles)
             }
         };
         support.intersection(&dense)
@@ -130,16 +133,16 @@ impl<R: Real> Source<'_, R> {
         shown.hull(&rect(filter, [blurred; 2], self.size, Cover::Centers))
     }
 
-    /// The tiles that a disc touches, whose box of r standard deviations has the extents that `tiles`
-    /// makes of its half sides.
+    /// The tiles that a disc touches, whose box has the extents that `tiles` makes of its half sides.
     fn tiles_of_disc<S: Real>(
         &self,
-        disc: &RayDisc<S>,
-        (ends, slack): (impl Fn(S) -> [f64; 2] + Copy, f64),
-        (r, cover, end): (f64, Cover, End),
+        own: &DiscBox<S>,
+        ends: impl Fn(S) -> [f64; 2] + Copy,
+        slack: f64,
+        cover: Cover,
+        end: End,
         tiles: impl Fn([f64; 2]) -> [f64; 2],
     ) -> Rect {
-        let own = disc.boxed(S::from_f32(r as f32));
         let middle = own.middle.map(ends);
         let side = |square: S, [least, most]: [f64; 2]| {
             let [low, high] = ends(square);

@@ -242,7 +242,9 @@ impl<R: Copy> GaussianRecord<R> {
     pub(crate) fn new(
         index: u32,
         Projected { on_screen, alpha, distance, .. }: &Projected<R>,
-        (key, color, bounds): (R, [R; 3], [u32; 4]),
+        key: R,
+        color: [R; 3],
+        bounds: [u32; 4],
     ) -> Self {
         Self {
             place: [on_screen.place.x, on_screen.place.y, on_screen.place.z],
@@ -273,7 +275,7 @@ pub fn project_records(job: &Job<'_>, settings: &Settings) -> (Vec<GaussianRecor
         let projected = source.project(splat.index as usize);
         let b = splat.bounds;
         let bounds = [b.x0, b.y0, b.x1, b.y1];
-        GaussianRecord::new(splat.index, &projected, (splat.key, splat.color, bounds))
+        GaussianRecord::new(splat.index, &projected, splat.key, splat.color, bounds)
     };
     ((0..splats.len()).map(record).collect(), splats.tally)
 }

@@ -283,9 +283,9 @@ impl<R: Exact> Source<'_, R> {
             _ if !seen => Rect::default(),
             Some(disc) => {
                 let disc = disc.map(R::to_f64);
-                self.bounds_of_disc(&disc, |number| [number; 2], (reach, 0.0), End::Most)
+                self.bounds_of_disc(&disc, |number| [number; 2], reach, 0.0, End::Most)
             }
-            None => self.bounds([[x, x], [y, y]], ellipse.map_inline(R::to_f64), (alpha, reach)),
+            None => self.bounds([[x, x], [y, y]], ellipse.map_inline(R::to_f64), alpha, reach),
         };
         let fate = match (behind, sound, bounds.is_empty()) {
             (true, _, _) => Fate::Behind,

@@ -112,7 +112,7 @@ fn truth<P: Profile>(
 ) -> GaussianRecord<Ball<P>> {
     let key = keys.key(index, own, source.settings.order);
     let color = source.look(index as usize, &own.shape).1;
-    GaussianRecord::new(index, own, (key, color, [0; 4]))
+    GaussianRecord::new(index, own, key, color, [0; 4])
 }
 
 /// The worst error in a record. It has no words, because most records are right.

@@ -259,8 +259,7 @@ fn bounds<P: Profile>(
     if let Some(disc) = disc {
         let [least, most] = alpha.ends();
         let bounds = |alpha, end| {
-            let reach = (source.reach(alpha), discs::SLACK);
-            source.bounds_of_disc(disc, Ball::ends, reach, end)
+            source.bounds_of_disc(disc, Ball::ends, source.reach(alpha), discs::SLACK, end)
         };
         return [bounds(most, End::Most), bounds(least, End::Least)];
     }
@@ -277,11 +276,10 @@ fn bounds<P: Profile>(
     let [small, large] = if across[0] < across[1] { across } else { [across[1], across[0]] };
     let small = if xy[0] < 0.0 && xy[1] > 0.0 { 0.0 } else { small };
     let positive = |end: f64| if end > 0.0 { end } else { 0.0 };
-    let with_reach = |alpha| (alpha, source.reach(alpha));
-    let widest = source.bounds([x, y], [xx[1], large, yy[1]], with_reach(most));
+    let widest = source.bounds([x, y], [xx[1], large, yy[1]], most, source.reach(most));
     let ends = [[x[1], x[0]], [y[1], y[0]]];
     let smallest = [positive(xx[0]), small, positive(yy[0])];
-    [widest, source.bounds(ends, smallest, with_reach(least))]
+    [widest, source.bounds(ends, smallest, least, source.reach(least))]
 }
 
 /// The order of two items with the same key.

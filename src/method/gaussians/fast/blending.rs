@@ -91,7 +91,7 @@ impl Blocks {
         &mut self,
         splats: &[S],
         bounds: impl Fn(&S) -> Rect,
-        mut add: impl FnMut(&S, (&mut Block, Option<&Lanes>), (u32, u32)),
+        mut add: impl FnMut(&S, &mut Block, Option<&Lanes>, (u32, u32)),
     ) {
         let rect = self.grid.rect;
         let mut left = self.all.len();
@@ -107,7 +107,7 @@ impl Blocks {
                         continue;
                     }
                     let opaque = self.opaque.get(index);
-                    add(splat, (block, opaque), (rect.x0 + column * SIDE, rect.y0 + row * SIDE));
+                    add(splat, block, opaque, (rect.x0 + column * SIDE, rect.y0 + row * SIDE));
                     left -= usize::from(!any(&block.alive));
                 }
             }
@@ -154,12 +154,12 @@ vectorized!(
         blocks.each(
             splats,
             |splat| splat.bounds,
-            |splat, (block, opaque), corner| {
+            |splat, block, opaque, corner| {
                 let seen = before(&block.alive, opaque, |_| splat.depth);
                 let fragments = fragments::<FUSED>(splat, limits, corner, &seen);
                 if let Some((alpha, takes)) = fragments {
                     let (index, color, depth) = (splat.index, splat.color, splat.depth);
-                    block.add(limits, (&alpha, &takes), |_| index, |_| color, |_| depth);
+                    block.add(limits, &alpha, &takes, |_| index, |_| color, |_| depth);
                 }
             },
         );
@@ -251,7 +251,8 @@ impl Block {
     pub(super) fn add(
         &mut self,
         limits: &Limits,
-        (alpha, takes): (&Lanes, &Mask),
+        alpha: &Lanes,
+        takes: &Mask,
         index: impl Fn(usize) -> u32,
         color: impl Fn(usize) -> [f32; 3] + Copy,
         depth: impl Fn(usize) -> f32 + Copy,
@@ -275,7 +276,7 @@ impl Block {
         self.moment = sum(&drawn, &self.moment, &weight, depth);
         // There are fewer than 2^32 splats.
         self.count = each(|i| self.count[i] + (drawn[i] & 1));
-        self.mark(index, (&before, &weight, &drawn), depth);
+        self.mark(index, &before, &weight, &drawn, depth);
     }
 
     /// Notes the fragment in the lanes where it is the first, the heaviest or the median.
@@ -283,7 +284,9 @@ impl Block {
     fn mark(
         &mut self,
         index: impl Fn(usize) -> u32,
-        (before, weight, drawn): (&Lanes, &Lanes, &Mask),
+        before: &Lanes,
+        weight: &Lanes,
+        drawn: &Mask,
         depth: impl Fn(usize) -> f32 + Copy,
     ) {
         let half = mask(|i| (drawn[i] != 0) & (before[i] > 0.5));

@@ -21,12 +21,12 @@ vectorized!(
         blocks.each(
             splats,
             |(splat, _)| splat.bounds,
-            |(splat, disc), (block, opaque), corner| {
-                let own = fragments::<FUSED>((splat, disc), (rays, limits), corner, &block.alive);
+            |(splat, disc), block, opaque, corner| {
+                let own = fragments::<FUSED>(splat, disc, rays, limits, corner, &block.alive);
                 if let Some((alpha, takes, depth)) = own {
                     let takes = before(&takes, opaque, |i| depth[i]);
                     let (index, color) = (splat.index, splat.color);
-                    block.add(limits, (&alpha, &takes), |_| index, |_| color, |i| depth[i]);
+                    block.add(limits, &alpha, &takes, |_| index, |_| color, |i| depth[i]);
                 }
             },
         );
@@ -37,8 +37,10 @@ vectorized!(
 /// depths; none if no lane does.
 #[inline(always)]
 pub(super) fn fragments<const FUSED: bool>(
-    (splat, disc): (&GaussianSplat<f32>, &RayDisc<f32>),
-    (rays, limits): (&RayRules<f32>, &Limits),
+    splat: &GaussianSplat<f32>,
+    disc: &RayDisc<f32>,
+    rays: &RayRules<f32>,
+    limits: &Limits,
     (x, y): (u32, u32),
     of: &Mask,
 ) -> Option<(Lanes, Mask, Lanes)> {

@@ -7,7 +7,7 @@ use crate::method::clock::{Work, spend};
 use crate::method::fast::tile::{BlockGrid, SIDE};
 use crate::method::gaussians::blending::Blending;
 use crate::method::gaussians::splats::{Beside, GaussianSplat, Solid};
-use crate::number::lanes::{LANES, Lanes, any, each, mask, vectorized};
+use crate::number::lanes::{LANES, Lanes, Mask, any, each, mask, vectorized};
 use crate::number::real::ordered_f32;
 use crate::splat::gaussian::GaussianProjector;
 use multiversion::target::target_cfg_f;
@@ -41,6 +41,16 @@ fn height(depth: f32) -> u32 {
     (ordered_f32(depth) + (1 << 31)) as u32
 }
 
+/// Where a block is.
+struct BlockPlace {
+    /// Its first pixel.
+    corner: (u32, u32),
+    /// The pixels that are in the tile.
+    inside: Mask,
+    /// The depths of the surface, if there is one.
+    opaque: Option<Lanes>,
+}
+
 /// A splat of a tile. All of it is copied, so that blocks do not look for it all over memory.
 struct Near {
     splat: GaussianSplat<f32>,
@@ -72,12 +82,12 @@ pub(super) fn blend(blending: &Blending<'_, f32>, places: &[usize], rect: Rect) 
     let blocks = (0..grid.len()).map(|block| {
         let (column, corner) = (block % row.len(), grid.corner(block));
         if column == 0 {
-            list_row(&mut row, &all, (rect, corner.1));
+            list_row(&mut row, &all, rect, corner.1);
         }
         own.clear();
         let surface = blending.source.surface().map(|surface| opaque(surface, rect, corner));
-        let rules = (&limits, &blending.source.projector);
-        list(&mut own, (&all, &row[column]), rules, (rect, corner, surface.as_ref()));
+        let place = BlockPlace { corner, inside: inside(rect, corner), opaque: surface };
+        list(&mut own, &all, &row[column], &limits, &blending.source.projector, &place);
         own.sort();
         blended(&own, &limits)
     });
@@ -85,7 +95,7 @@ pub(super) fn blend(blending: &Blending<'_, f32>, places: &[usize], rect: Rect) 
 }
 
 /// Lists, for each block of the row that begins at line `y`, the splats whose bounds it touches.
-fn list_row(row: &mut [Vec<u32>], all: &[Near], (rect, y): (Rect, u32)) {
+fn list_row(row: &mut [Vec<u32>], all: &[Near], rect: Rect, y: u32) {
     row.iter_mut().for_each(Vec::clear);
     let line = Rect { y0: y, y1: y + SIDE, ..rect };
     for (index, near) in (0..).zip(all) {
@@ -201,7 +211,7 @@ vectorized!(
                 (alpha[i], depth[i]) = (list.alphas[row][i], list.depths[row][i]);
                 (color[i], index[i]) = (paint.color, paint.index);
             }
-            block.add(limits, (&alpha, &takes), |i| index[i], |i| color[i], |i| depth[i]);
+            block.add(limits, &alpha, &takes, |i| index[i], |i| color[i], |i| depth[i]);
         }
         block.finish();
         block
@@ -212,28 +222,30 @@ vectorized!(
     /// Lists the fragments of a block, which are of some of the tile's splats.
     fn list(
         list: &mut BlockList,
-        (all, some): (&[Near], &[u32]),
-        (limits, projector): (&Limits, &GaussianProjector<f32>),
-        (rect, corner, opaque): (Rect, (u32, u32), Option<&Lanes>),
+        all: &[Near],
+        some: &[u32],
+        limits: &Limits,
+        projector: &GaussianProjector<f32>,
+        place: &BlockPlace,
     ) {
         const FUSED: bool = target_cfg_f!(target_feature = "fma");
-        let own = inside(rect, corner);
+        let (corner, own) = (place.corner, &place.inside);
         let pixel = |i: usize| (corner.0 + i as u32 % SIDE, corner.1 + i as u32 / SIDE);
         let (u, v) = (each(|i| projector.ray(pixel(i))[0]), each(|i| projector.ray(pixel(i))[1]));
         for &index in some {
             let near = &all[index as usize];
             let found = match &near.beside {
                 Beside::Solid(solid) => {
-                    let found = fragments::<FUSED>(&near.splat, limits, corner, &own);
+                    let found = fragments::<FUSED>(&near.splat, limits, corner, own);
                     found.map(|(alpha, takes)| (alpha, takes, depths(projector, solid, &u, &v)))
                 }
                 Beside::Disc(disc) => {
-                    let splat = (&near.splat, disc);
-                    discs::fragments::<FUSED>(splat, (&projector.rays, limits), corner, &own)
+                    let rays = &projector.rays;
+                    discs::fragments::<FUSED>(&near.splat, disc, rays, limits, corner, own)
                 }
             };
             let Some((alpha, takes, depth)) = found else { continue };
-            let takes = before(&takes, opaque, |i| depth[i]);
+            let takes = before(&takes, place.opaque.as_ref(), |i| depth[i]);
             let GaussianSplat { color, index, .. } = near.splat;
             list.alphas.push(alpha);
             list.depths.push(depth);
