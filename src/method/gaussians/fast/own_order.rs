@@ -71,11 +71,12 @@ pub(super) fn blend(blending: &Blending<'_, f32>, places: &[usize], rect: Rect) 
     spend(Work::Blend);
     let splats = blending.splats;
     let limits = Limits::new(blending.source.settings);
-    let near = |&place: &usize| {
-        let (splat, beside) = (*splats.at(place), *splats.beside(place)?);
-        Some(Near { splat, beside })
-    };
-    let all: Vec<Near> = places.iter().filter_map(near).collect();
+    let mut all = Vec::with_capacity(places.len());
+    for &place in places {
+        if let Some(&beside) = splats.beside(place) {
+            all.push(Near { splat: *splats.at(place), beside });
+        }
+    }
     let mut own = BlockList::default();
     let grid = BlockGrid::new(rect);
     let mut row = vec![Vec::new(); grid.columns as usize];
