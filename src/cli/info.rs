@@ -1,7 +1,7 @@
 //! `splatref info`: describes a file or a folder of surfels.
 
 use super::report::{self, line};
-use super::{Ended, Ending, hierarchy, progress, region, render, say, warn, warn_of};
+use super::{Ended, Ending, hierarchy, progress, region, say, warn, warn_of};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::exr::{self, ChannelType};
@@ -180,7 +180,7 @@ fn picture(path: &Path) -> Result<()> {
         line("region", region::words(data));
     }
     if header.text.as_deref().is_some_and(provenance::is_projection) {
-        line("holds", render::PROJECTION);
+        line("holds", region::PROJECTION);
     }
     line("stored", header.compressions.join("; "));
     for (name, kind) in &header.channels {

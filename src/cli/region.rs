@@ -1,6 +1,10 @@
-//! Parse `--region`.
+//! Parse `--region`, and say what a part holds.
 
 use splatref::frame::Rect;
+
+/// What a part holds by a method whose other stages need the whole picture.
+pub(super) const PROJECTION: &str =
+    "the projection alone; `splatref assemble` runs the other stages";
 
 /// Parses `X0,Y0,X1,Y1`.
 pub(super) fn region(text: &str) -> Result<Rect, String> {

@@ -257,10 +257,6 @@ fn several(
     sequence::render(destination, &file, &shots, walk, exec)
 }
 
-/// What a part holds by a method whose other stages need the whole picture.
-pub(super) const PROJECTION: &str =
-    "the projection alone; `splatref assemble` runs the other stages";
-
 /// Draws the picture, and times this many pictures: of `deferred` the frames that follow, because
 /// the first frame does other work.
 fn repeated<'s>(
@@ -309,7 +305,7 @@ fn print_part(destination: &Destination<'_>, projects: bool) {
         report::line("region", region::words(part));
     }
     if projects {
-        report::line("holds", PROJECTION);
+        report::line("holds", region::PROJECTION);
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::destination::{Depth, Destination, write};
 use super::walk::Walk;
-use super::{Ended, Ending, draw, progress, render, report};
+use super::{Ended, Ending, draw, progress, region, report};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::index::seen::Seen;
@@ -90,7 +90,7 @@ pub(super) fn render(
     report::picture(&ready.camera, file.output);
     let projects = to.projects(&ready.method, &ready.camera);
     if projects {
-        report::line("holds", render::PROJECTION);
+        report::line("holds", region::PROJECTION);
     }
     report::method(&ready.method, &ready.loaded.scene, &ready.camera);
     to.make_folder()?;

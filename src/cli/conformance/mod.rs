@@ -8,8 +8,7 @@ use super::options::{ExecOptions, method};
 use super::verify::{rounding, share};
 use super::{Ended, Ending, output, progress, say};
 use command::{Program, split};
-use page::Shown;
-use report::{Run, Tried};
+use report::{Exhibit, Run, Tried};
 use splatref::frame::Exec;
 use splatref::io::conformance::{write, write_index};
 use splatref::io::replace::Pending;
@@ -198,7 +197,7 @@ fn try_all(
             Ok((judged, client)) if args.report.is_some() => {
                 page::rule(&case, client, judged, &place, exec)?
             }
-            _ => Shown::default(),
+            _ => Exhibit::default(),
         };
         drop(steps);
         let row = Row::new(rule, judged.map(|(judged, _)| judged));

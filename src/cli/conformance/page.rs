@@ -2,7 +2,7 @@
 //! the page of its verdict, in the folder of its scene.
 
 use super::command;
-use super::report::{Run, Tried};
+use super::report::{Exhibit, Run, Tried};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::io::png::encode_frame;
@@ -20,15 +20,6 @@ use std::path::Path;
 /// The page of a verdict, in the folder of its scene.
 const VERDICT: &str = "verdict.html";
 
-/// What the page shows of a rule beside its row.
-#[derive(Default)]
-pub(super) struct Shown {
-    /// The pictures of the renderer and of splatref as PNG, if they have colours.
-    pictures: [Option<Vec<u8>>; 2],
-    /// Whether the folder of the scene has the page of the verdict.
-    linked: bool,
-}
-
 /// Draws what the page shows of a rule, and writes the page of its verdict if it is not right.
 pub(super) fn rule(
     case: &Case,
@@ -36,7 +27,7 @@ pub(super) fn rule(
     judged: &Judged,
     folder: &Path,
     exec: &Exec,
-) -> Result<Shown> {
+) -> Result<Exhibit> {
     let (session, camera) = (&case.session(exec)?, &case.camera);
     let own = session.define::<f32>(camera, false)?.frame;
     let pictures = [encode_frame(&client.frame().to_f32())?, encode_frame(&own)?];
@@ -49,7 +40,7 @@ pub(super) fn rule(
         let page = page.page(session, camera, Number::F32, exec)?;
         page::pending(&folder.join(VERDICT), &page, exec)?.put()?;
     }
-    Ok(Shown { pictures, linked })
+    Ok(Exhibit { pictures, linked })
 }
 
 /// The page at `path` as text. Its links are relative to its folder.

@@ -1,6 +1,5 @@
 //! The report as JSON and as JUnit XML.
 
-use super::page::Shown;
 use crate::cli::Ending;
 use serde_json::{Value, json};
 use splatref::report::verdict::{JsonShift, JsonStage};
@@ -25,7 +24,16 @@ pub(super) struct Run {
     pub(super) seconds: f64,
     /// The folder of the scene.
     pub(super) folder: PathBuf,
-    pub(super) shown: Shown,
+    pub(super) shown: Exhibit,
+}
+
+/// What the page shows of a rule beside its row.
+#[derive(Default)]
+pub(super) struct Exhibit {
+    /// The pictures of the renderer and of splatref as PNG, if they have colours.
+    pub(super) pictures: [Option<Vec<u8>>; 2],
+    /// Whether the folder of the scene has the page of the verdict.
+    pub(super) linked: bool,
 }
 
 /// A verdict in the words of `verify --json`.

@@ -1,7 +1,7 @@
 //! Find the colours of vertices and faces, decode them, and doubt the ones that cannot be meant.
 
+use super::decode::Decode;
 use super::header::{Element, PropertyKind, Scalar, quote};
-use super::layout::Decode;
 use crate::number::{Real, srgb};
 use glam::Vec3;
 use std::sync::LazyLock;

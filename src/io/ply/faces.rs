@@ -1,8 +1,8 @@
 //! Read the element `face`: polygons, cut into triangles.
 
 use super::colors;
+use super::decode::Decode;
 use super::header::{Element, PropertyKind, quote};
-use super::layout::Decode;
 use super::values::{BodyValues, Event};
 use crate::io::polygon;
 use crate::scene::{Cloud, Coordinates};

@@ -1,8 +1,8 @@
 //! Find the place of each property of a vertex, and how to decode it.
 
+use super::decode::Decode;
 use super::header::{Element, PropertyKind, Scalar, quote};
 use super::{colors, groups};
-use crate::number::srgb;
 use crate::scene::mipmap::MOST_LEVELS;
 use crate::scene::{Cloud, Coordinates, Mipmap};
 use glam::DVec3;
@@ -26,33 +26,6 @@ pub(super) const TANGENT: Range<usize> = 17..20;
 pub(super) const COORDINATE: Range<usize> = 20..22;
 /// The first place of prefiltered colours; each level takes three.
 pub(super) const MIPMAP: usize = 22;
-
-/// How a number of the file becomes a number of the cloud.
-#[derive(Clone, Copy)]
-pub(super) enum Decode {
-    /// Rounded to `f32`.
-    Keep,
-    /// Less an offset, then rounded to `f32`.
-    Shift(f64),
-    /// Divided by the code of 1, then rounded to `f32`.
-    Divide(f64),
-    /// A code of sRGB, looked up.
-    Srgb(&'static [f32]),
-    /// A number of sRGB, of which this one is white; decoded in f64 and rounded once.
-    Encoded(f64),
-}
-
-impl Decode {
-    pub(super) fn apply(self, value: f64) -> f32 {
-        match self {
-            Self::Keep => value as f32,
-            Self::Shift(offset) => (value - offset) as f32,
-            Self::Divide(one) => (value / one) as f32,
-            Self::Srgb(table) => table[value as usize], // the type of the file bounds the code
-            Self::Encoded(white) => srgb::to_linear(value / white) as f32,
-        }
-    }
-}
 
 /// How a property is used.
 #[derive(Clone, Copy)]

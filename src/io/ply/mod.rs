@@ -87,6 +87,7 @@
 //! - It does not tell 8-bit colours from float colours without a deserializer of about this size.
 
 mod colors;
+mod decode;
 mod edges;
 mod faces;
 mod far;

@@ -4,10 +4,11 @@
 //! cannot fail, because the reader does not judge values. The walk in [`super::values`] reads all
 //! other vertices.
 
+use super::decode::Decode;
 use super::header::{Element, Format, PropertyKind, Scalar};
 use super::layout::{
-    COLOR, COORDINATE, Decode, Layout, MIPMAP, NORMAL, OPACITY, POSITION, PropertyUse, RADIUS,
-    TANGENT, TANGENTS,
+    COLOR, COORDINATE, Layout, MIPMAP, NORMAL, OPACITY, POSITION, PropertyUse, RADIUS, TANGENT,
+    TANGENTS,
 };
 use crate::frame::Exec;
 use crate::scene::{Cloud, Coordinates};

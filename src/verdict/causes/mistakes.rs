@@ -65,6 +65,7 @@ pub(super) fn rare(case: &Case<'_, '_>, stage: &str) -> Mistakes {
         }
         "projection" | "geometry" => {
             all.extend(limits(case));
+            all.extend(surfels::scaled(session, client));
             all.extend(surfels::normals(session, camera));
         }
         "attributes" | "compositing" => {

@@ -18,6 +18,7 @@
 //! Some numbers are estimated: what depths mean by a fitted line, and the low-pass filter, the
 //! cut-off, radii, the lens, and an offset by search.
 
+mod cameras;
 mod change;
 mod coarse;
 mod depths;
@@ -25,6 +26,7 @@ mod epsilon;
 mod fields;
 mod gaussians;
 mod mistakes;
+mod numbers;
 mod plain;
 mod planes;
 mod sample;

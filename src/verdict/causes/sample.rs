@@ -29,10 +29,13 @@ pub(super) fn is_large(case: &Case<'_, '_>) -> bool {
     case.wrong.errors.values().len() > 2 * MOST
 }
 
-/// Whether a verdict can judge some tiles alone. The other methods have levels of the whole picture,
-/// or passes that choose surfels from all of it.
-fn has_tiles(method: &Method) -> bool {
-    !matches!(method, Method::Pyramid(_) | Method::Template(_) | Method::Deferred(_))
+/// Whether a verdict can judge some tiles alone. The passes of `deferred` choose surfels from the whole
+/// picture. Where a method has levels of the whole picture, its projection alone is judged.
+fn has_tiles(case: &Case<'_, '_>) -> bool {
+    match case.session.method() {
+        Method::Deferred(_) => false,
+        method => !method.projects_regions() || case.wrong.stage == "projection",
+    }
 }
 
 /// The fewest pixels that are judged first in each trial, and the side of the squares that they are in.
@@ -47,7 +50,7 @@ pub(super) struct Parts {
 
 /// The parts with the most wrong pixels; none if the whole picture is judged.
 pub(super) fn parts(case: &Case<'_, '_>) -> Option<Parts> {
-    if !is_large(case) || !has_tiles(case.session.method()) {
+    if !is_large(case) || !has_tiles(case) {
         return None;
     }
     let grid = case.session.job(case.camera).ok()?.grid();
@@ -114,8 +117,11 @@ fn spread(case: &Case<'_, '_>) -> Result<Option<(Client, Wrong)>> {
         tiles.filter(|(tile, _)| (tile % columns + 2 * (tile / columns)).is_multiple_of(ONE_IN));
     let part: Arc<[_]> = some.collect();
     let wrong = |stage| part.iter().map(|(_, rect)| count(stage, *rect)).sum::<u64>();
-    // Records are judged wherever they are.
-    if case.client.has_records() || near(case).map(wrong).sum::<u64>() < ENOUGH {
+    // Records are judged wherever they are, and levels nowhere in a part.
+    if case.client.has_records()
+        || case.session.method().projects_regions()
+        || near(case).map(wrong).sum::<u64>() < ENOUGH
+    {
         return Ok(None);
     }
     let all = case.verdict.stages.iter().map(wrong).sum();
@@ -192,7 +198,7 @@ mod tests {
     use super::*;
     use crate::frame::Exec;
     use crate::method::{Method, Session, ewa, single_pass};
-    use crate::scene::{Camera, Lens, Scene};
+    use crate::scene::{Camera, Lens, Scene, Surfels};
     use crate::source::Shape;
     use crate::splat::{Kernel, Outline};
     use crate::verdict::causes::likely_cause;
@@ -204,20 +210,62 @@ mod tests {
         let scene = Scene::unlit("", Shape::Sphere.surfels(600, 3).unwrap());
         let camera = camera(Shape::Sphere, [176, 128], None);
         let right = ewa::Settings::default();
-        let session = Session::new(&scene, Method::Ewa(right), &exec).unwrap();
-        let named = |mistaken, by: &Camera| {
-            let mistaken = Session::new(&scene, Method::Ewa(mistaken), &exec).unwrap();
+        let named = |method, mistaken: (&Scene, Method), by: &Camera| {
+            let session = Session::new(&scene, method, &exec).unwrap();
+            let mistaken = Session::new(mistaken.0, mistaken.1, &exec).unwrap();
             let client = Client::from(&mistaken.define::<f32>(by, true).unwrap().frame);
             let verdict = session.verify(&camera, &client, 1.0).unwrap();
             likely_cause(&session, &camera, &client, &verdict).unwrap().unwrap_or_default()
         };
         let kernel = Kernel { cutoff: 1.9, ..right.kernel };
-        let cutoff = named(ewa::Settings { kernel, ..right }, &camera);
+        let mistaken = ewa::Settings { kernel, ..right };
+        let cutoff = named(right.into(), (&scene, mistaken.into()), &camera);
         assert_eq!(cutoff, "the cut-off is 1.9, not 2");
         // Errors fall only close to the right lens.
         let wide = Camera { fx: 0.9 * camera.fx, fy: 0.9 * camera.fy, ..camera };
-        let lens = named(right, &wide);
+        let lens = named(right.into(), (&scene, right.into()), &wide);
         assert!(lens.starts_with("another field of view"), "{lens}");
+        // Parts of the pyramid and the template have the projection alone.
+        let mut cloud = scene.surfels.clone().into_cloud();
+        cloud.radius.iter_mut().flatten().for_each(|radius| *radius *= 1.2);
+        let larger = Scene::unlit("", Surfels::new(cloud).unwrap().0);
+        for method in ["pyramid", "template"] {
+            let method = Method::by_name(method).unwrap();
+            let radii = named(method, (&larger, method), &camera);
+            assert_eq!(radii, "radii are 1.2 times as large", "{}", camera.width);
+        }
+    }
+
+    #[test]
+    fn the_projection_of_a_part_is_judged_as_in_the_whole_picture() {
+        let exec = Exec::new(2, 32).unwrap();
+        let mut wrong = 0;
+        for scene in [Shape::Sphere.surfels(600, 3).unwrap(), Shape::Torus.surfels(400, 1).unwrap()]
+        {
+            let scene = Scene::unlit("", scene);
+            let camera = camera(Shape::Sphere, [112, 96], None);
+            let moved = Camera { cx: camera.cx + 0.7, ..camera };
+            let all: Vec<_> = exec.grid(112, 96).rects().into_iter().enumerate().collect();
+            for part in [&all[4..6], &all[..], &all[..1]] {
+                for method in ["pyramid", "template"] {
+                    let method = Method::by_name(method).unwrap();
+                    let session = Session::new(&scene, method, &exec).unwrap();
+                    let client = Client::from(&session.define::<f32>(&moved, true).unwrap().frame);
+                    let judged = |part| {
+                        let client = Client { part, ..client.clone() };
+                        session.verify_as(&method, &camera, &client, 1.0).unwrap()
+                    };
+                    let (whole, own) = (judged(None), judged(Some(part.into())));
+                    let at = part.iter().flat_map(|(_, rect)| pixels(*rect));
+                    let errors: Vec<_> =
+                        at.map(|(x, y)| *whole.stages[0].errors.at(x, y)).collect();
+                    assert_eq!(own.stages.len(), 1);
+                    assert_eq!(own.stages[0].errors.values(), errors);
+                    wrong += own.stages[0].wrong;
+                }
+            }
+        }
+        assert!(wrong > 1000, "{wrong}");
     }
 
     #[test]

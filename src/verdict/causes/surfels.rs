@@ -1,10 +1,12 @@
 //! Mistakes with the surfels that are drawn: their normals and their radii.
 
 use super::change::Change;
+use super::depths::digits;
 use crate::method::{Method, Session};
 use crate::scene::{Camera, Scene, Surfels};
 use crate::setting::{Fields, Value};
 use crate::splat::Epsilon;
+use crate::verdict::client::Client;
 use glam::{Mat3, Vec3};
 use std::sync::Arc;
 
@@ -51,6 +53,21 @@ pub(super) fn missing(
         Some((format!("surfel {surfel} is missing"), change))
     };
     some.filter_map(change).collect()
+}
+
+/// Radii that are too large or too small by one factor, if the client hands on the radii of its surfels.
+/// Copied numbers are right or wrong, so that no search finds the factor.
+pub(super) fn scaled(session: &Session<'_>, client: &Client) -> Option<(String, Change)> {
+    let frame = client.frame();
+    let ids = frame.index("projection.id").ok()?;
+    let radii = frame.scalar("projection.radius").ok()?;
+    let right = session.scene().surfels.radius();
+    let ratio = |(id, radius): (&u32, &f64)| Some(radius / f64::from(*right.get(*id as usize)?));
+    let mut ratios: Vec<f64> = ids.values().iter().zip(radii.values()).filter_map(ratio).collect();
+    ratios.sort_by(f64::total_cmp);
+    let by = digits(*ratios.get(ratios.len() / 2)?);
+    let change = of_radii(session, |radius| radius * by as f32)?;
+    (by != 1.0).then(|| (format!("radii are {by} times as large"), change))
 }
 
 /// The scene with other normals.

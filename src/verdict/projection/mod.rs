@@ -49,12 +49,15 @@ use crate::composite::decide;
 use crate::frame::raster::Snap;
 use crate::frame::{Bins, Rect};
 use crate::method::Job;
+use crate::method::part::{Nearby, Part};
 use crate::method::projection::{PixelSample, SceneProjector};
 use crate::method::tiled::Tiled;
 use crate::number::ball::{Profile, Three};
-use crate::number::{Ball, MapInline, Real, Truth};
-use crate::verdict::Doubt;
-use crate::verdict::marks::{Marks, StageMarks, TilePart, Watch, counted};
+use crate::number::{Ball, MapInline, Real, Truth, Vector3};
+use crate::verdict::client::Client;
+use crate::verdict::marks::{Marks, StageMarks, TilePart, Watch, counted, stage_verdicts};
+use crate::verdict::shift::Shifts;
+use crate::verdict::{Doubt, Verdict};
 use candidate::{Candidate, Possible};
 use claim::Claim;
 use planes::PixelContent;
@@ -88,6 +91,31 @@ pub(crate) fn judge<P: Profile>(
             ("projection", names, possible.judge_all(job, planes, watch))
         }
     }
+}
+
+/// The verdict on the projection alone, in a part of the picture. It takes all pixels of the part for
+/// covered.
+pub(crate) fn verify_part<P: Profile>(
+    job: &Job<'_>,
+    part: Part<'_>,
+    cull: bool,
+    snap: Snap,
+    client: &Client,
+    budget: f64,
+) -> Verdict {
+    let planes = SamplePlanes::new(client, job.scene);
+    let drawn = client.projection(job);
+    let nearby = part.is_small().then(|| Nearby::new(part, drawn.camera, 1.0));
+    let position = drawn.scene.surfels.position();
+    let is_near =
+        |i: usize| nearby.is_none_or(|nearby| nearby.holds(Vector3::from_glam(position[i]), 0.0));
+    let possible = AllPossible::<P>::drawn_where(&drawn, cull, snap, None, is_near);
+    let found = job.exec.ordered(part.pieces.to_vec(), |(tile, rect)| {
+        [possible.judge(&planes, TilePart { tile, rect }, Marks::new(rect))]
+    });
+    let stages = stage_verdicts(job, [("projection", planes.names())], found);
+    let pixels = part.pieces.iter().map(|(_, rect)| rect.pixels() as u64).sum();
+    Verdict::new(stages, [pixels, 0], budget, Shifts::default())
 }
 
 impl<'a, P: Profile> AllPossible<'a, P> {

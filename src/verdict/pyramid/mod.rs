@@ -49,13 +49,16 @@ use levels::Levels;
 use pixel::PixelJudge;
 use planes::PicturePlanes;
 
-/// Judges the planes of a client.
+/// Judges the planes of a client; in a part of the picture, the planes of the projection alone.
 pub(super) fn verify<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
     client: &Client,
     budget: f64,
 ) -> Verdict {
+    if let Some(part) = job.part {
+        return samples::verify_part::<P>(job, part, settings.cull, snap(settings), client, budget);
+    }
     let (found, unjudged, covered) = judge::<P>(job, settings, client, Watch::All);
     let mut stages = found.stage_verdicts(job);
     let last = pyramid::sizes(job.camera.width, job.camera.height).len() - 1;
@@ -69,6 +72,12 @@ pub(super) fn verify<P: Profile>(
     let undecided =
         pulled.iter().zip(pushed).filter(|(pull, push)| *pull | *push != 0).count() as u64;
     Verdict::new(stages, [covered, undecided], budget, Shifts::default())
+}
+
+/// The grid of the corners.
+fn snap(settings: &Settings) -> Snap {
+    // The settings were checked before, so there is a grid with this many digits.
+    Snap::new(settings.subpixel_bits).unwrap_or_default()
 }
 
 /// Every check at one pixel: the cells at its place in all levels, and the pixel itself.
@@ -89,8 +98,6 @@ fn judge<P: Profile>(
     client: &Client,
     watch: Watch,
 ) -> (MethodMarks<1>, [Vec<String>; 2], u64) {
-    // The settings were checked before, so there is a grid with this many digits.
-    let snap = Snap::new(settings.subpixel_bits).unwrap_or_default();
     let sizes = pyramid::sizes(job.camera.width, job.camera.height);
     let last = sizes.len() - 1;
     let finest = SamplePlanes::new(client, job.scene);
@@ -98,7 +105,7 @@ fn judge<P: Profile>(
     let pulled: Vec<_> = (1..=last).map(cells(&Cell::<f32>::PULL)).collect();
     let pushed: Vec<_> = (0..last).map(cells(&Cell::<f32>::PUSH)).collect();
     let drawn = client.projection(job);
-    let projection = samples::judge::<P>(&drawn, settings.cull, snap, &finest, watch);
+    let projection = samples::judge::<P>(&drawn, settings.cull, snap(settings), &finest, watch);
     let levels = Levels::<P>::new(job, &sizes, client.supposed, &finest, [&pulled, &pushed]);
     let before = vec![projection, levels.pull(watch), levels.push(settings, watch)];
     let client_planes = PicturePlanes::new(client);

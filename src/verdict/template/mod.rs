@@ -58,6 +58,10 @@ pub(super) fn verify<P: Profile>(
     client: &Client,
     budget: f64,
 ) -> Verdict {
+    if let Some(part) = job.part {
+        let snap = Snap::default();
+        return samples::verify_part::<P>(job, part, settings.cull, snap, client, budget);
+    }
     let (found, unjudged, covered) = judge::<P>(job, settings, client, Watch::All);
     let mut stages = found.stage_verdicts(job);
     let (levels, there) = (1..levels(job, settings).len(), job.there(Keep::Stages));
