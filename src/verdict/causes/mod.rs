@@ -15,8 +15,9 @@
 //! 3. numbers, which are estimated: see [`search`](self);
 //! 4. numbers that are coarser than the client says.
 //!
-//! Some numbers are estimated: what depths mean by a fitted line, and the low-pass filter, the
-//! cut-off, radii, the lens, and an offset by search.
+//! Some numbers are estimated: what depths mean by a fitted line; the lens, an offset and a roll by a
+//! map from each surfel's centre to the place where the client shows it; the low-pass filter, the
+//! cut-off and radii by search.
 
 mod cameras;
 mod change;
