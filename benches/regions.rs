@@ -23,18 +23,16 @@ const SIDE: usize = 8;
 fn main() -> Result<()> {
     let arguments = Arguments::parse()?;
     let folder = tempfile::tempdir().map_err(|error| Error::Invalid(error.to_string()))?;
-    let (at, mut table) = (
-        folder.path(),
-        Table::new(&[
-            "surfels",
-            "pixels",
-            "file, s",
-            "folder, s",
-            "64 regions, s",
-            "of the folder",
-            "of the file",
-        ]),
-    );
+    let at = folder.path();
+    let mut table = Table::new(&[
+        "surfels",
+        "pixels",
+        "file, s",
+        "folder, s",
+        "64 regions, s",
+        "of the folder",
+        "of the file",
+    ]);
     for count in [1_000_000, 4_000_000, 16_000_000] {
         let sizes = [2048, 4096, 8192].map(|size| (size, format!("{count} | {size} x {size}")));
         if sizes.iter().all(|(_, row)| !row.contains(&arguments.pattern)) {

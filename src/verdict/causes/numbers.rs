@@ -222,26 +222,22 @@ fn of_lens<'a>(camera: &'a Camera, moved: Option<Moved>) -> [Number<'a>; 2] {
 /// The numbers that move or turn the picture.
 fn of_place<'a>(camera: &'a Camera, moved: Option<Moved>) -> [Number<'a>; 3] {
     let estimate = |of: fn(&Moved) -> f64| moved.as_ref().map(of);
-    let across = Number {
+    let shift = |estimate, way: &'a str, shifted: fn(&Camera, f32) -> Camera| Number {
         right: 0.0,
         step: 0.02,
-        estimate: estimate(|moved| moved.x.z),
+        estimate,
         is_of_camera: true,
-        change: Box::new(move |by| {
-            Some(Change::Camera(Camera { cx: camera.cx + by as f32, ..*camera }))
-        }),
-        in_words: Box::new(|by| format!("the picture is {by} px too far right")),
+        change: Box::new(move |by| Some(Change::Camera(shifted(camera, by as f32)))),
+        in_words: Box::new(move |by| format!("the picture is {by} px too far {way}")),
     };
-    let down = Number {
-        right: 0.0,
-        step: 0.02,
-        estimate: estimate(|moved| moved.y.z),
-        is_of_camera: true,
-        change: Box::new(move |by| {
-            Some(Change::Camera(Camera { cy: camera.cy + by as f32, ..*camera }))
-        }),
-        in_words: Box::new(|by| format!("the picture is {by} px too far down")),
-    };
+    let across = shift(estimate(|moved| moved.x.z), "right", |camera, by| Camera {
+        cx: camera.cx + by,
+        ..*camera
+    });
+    let down = shift(estimate(|moved| moved.y.z), "down", |camera, by| Camera {
+        cy: camera.cy + by,
+        ..*camera
+    });
     let roll = Number {
         right: 0.0,
         step: 0.1,

@@ -232,7 +232,7 @@ mod tests {
         for method in ["pyramid", "template"] {
             let method = Method::by_name(method).unwrap();
             let radii = named(method, (&larger, method), &camera);
-            assert_eq!(radii, "radii are 1.2 times as large", "{}", camera.width);
+            assert_eq!(radii, "radii are 1.2 times as large", "{}", method.name());
         }
     }
 

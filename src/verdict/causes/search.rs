@@ -38,11 +38,10 @@ pub(super) fn best(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
     }
     // Another camera moves splats so far that a few pixels show no way to it, so that each value is
     // tried on the whole part.
-    if let Some((number, tried)) = estimated(case, &cameras)? {
-        keep(case, number, Some(tried), &mut best);
-        if best.is_some() {
-            return Ok(best);
-        }
+    if let Some((number, tried)) = estimated(case, &cameras)?
+        && keep(case, number, Some(tried), &mut best)
+    {
+        return Ok(best);
     }
     for number in &cameras {
         let wrong = |value| number.judge(case, value, case.client);
@@ -75,22 +74,23 @@ fn estimated<'n, 'c>(
     Ok(Some((number, narrowed(number.right, ends, tried, case.all, false, wrong)?)))
 }
 
-/// Keeps the value of a number if it explains the wrong pixels, and more than the best one.
+/// Keeps the value of a number if it explains the wrong pixels, and more than the best one; says whether it
+/// does.
 fn keep(
     case: &Case<'_, '_>,
     number: &Number<'_>,
     tried: Option<Tried>,
     best: &mut Option<Explanation>,
-) {
-    let Some(Tried { value, left }) = tried else { return };
+) -> bool {
+    let Some(Tried { value, left }) = tried else { return false };
     let least = best.as_ref().is_none_or(|best| left.all < best.left.all);
-    if case.explains(left, MOST_LEFT)
-        && least
-        && let Some(change) = (number.change)(value)
-    {
-        let (what, most) = ((number.in_words)(digits(value)), MOST_LEFT);
-        *best = Some(Explanation { what, change, most, left });
+    if !least || !case.explains(left, MOST_LEFT) {
+        return false;
     }
+    let Some(change) = (number.change)(value) else { return false };
+    let (what, most) = ((number.in_words)(digits(value)), MOST_LEFT);
+    *best = Some(Explanation { what, change, most, left });
+    true
 }
 
 /// A value of a number, and the pixels that stay wrong with it.

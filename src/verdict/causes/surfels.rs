@@ -66,8 +66,12 @@ pub(super) fn scaled(session: &Session<'_>, client: &Client) -> Option<(String, 
     let mut ratios: Vec<f64> = ids.values().iter().zip(radii.values()).filter_map(ratio).collect();
     ratios.sort_by(f64::total_cmp);
     let by = digits(*ratios.get(ratios.len() / 2)?);
+    // Another scene is a copy of all surfels.
+    if by == 1.0 {
+        return None;
+    }
     let change = of_radii(session, |radius| radius * by as f32)?;
-    (by != 1.0).then(|| (format!("radii are {by} times as large"), change))
+    Some((format!("radii are {by} times as large"), change))
 }
 
 /// The scene with other normals.
