@@ -10,6 +10,7 @@ pub(super) fn watch() {
     use signal_hook::low_level::emulate_default_handler;
     use splatref::io::replace::remove_partial_files;
 
+    survive_large_files();
     let wait = || {
         let ignored = ignored();
         let signals = [SIGHUP, SIGINT, SIGTERM].into_iter();
@@ -22,6 +23,17 @@ pub(super) fn watch() {
         }
     };
     let _ = std::thread::Builder::new().name("signals".into()).spawn(wait);
+}
+
+/// Makes a write beyond `ulimit -f` an error of the file. By default SIGXFSZ would end the program, without a
+/// line of complaint, and partial files would stay.
+#[cfg(unix)]
+fn survive_large_files() {
+    use std::sync::{Arc, atomic::AtomicBool};
+
+    // With a handler, whatever it does, the write fails. If there can be none, the signal keeps its effect.
+    let seen = Arc::<AtomicBool>::default();
+    let _ = signal_hook::flag::register(signal_hook::consts::SIGXFSZ, seen);
 }
 
 /// The ignored signals, signal n as bit n - 1; 0 if the system does not tell.

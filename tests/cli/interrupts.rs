@@ -50,6 +50,35 @@ fn a_signal_leaves_no_partial_file() {
     }
 }
 
+/// `ulimit -f` stands for a full disk, which a test cannot have without rights of its own.
+#[test]
+fn a_file_that_cannot_grow_is_an_error_and_leaves_nothing() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    let torus = ["render", "torus", "--count", "300", "--size", "300x200"];
+    let halves =
+        [["--region", "0,0,300,90", "-o", "a.exr"], ["--region", "0,90,300,200", "-o", "b.exr"]];
+    halves.iter().for_each(|half| drop(succeeds(at, &[&torus[..], half].concat())));
+    let cloud = splatref::source::Shape::Torus.surfels(3000, 0).unwrap().into_cloud();
+    splatref::io::ply::write(&at.join("torus.ply"), &cloud).unwrap();
+    let before = names(at);
+    for arguments in [
+        &[&torus[..], &["-o", "c.exr"]].concat()[..],
+        &[&torus[..], &["--region", "0,0,300,90", "-o", "c.exr"]].concat(),
+        &[&torus[..], &["--bands", "4", "-o", "c.exr"]].concat(),
+        &["assemble", "a.exr", "b.exr", "-o", "c.exr"],
+        &["tile", "torus.ply", "-o", "c"],
+    ] {
+        let mut shell = Command::new("sh");
+        shell.args(["-c", "ulimit -f 16; exec \"$0\" \"$@\"", env!("CARGO_BIN_EXE_splatref")]);
+        let output = shell.current_dir(at).args(arguments).output().unwrap();
+        let line = String::from_utf8(output.stderr).unwrap();
+        assert_eq!(output.status.code(), Some(1), "{arguments:?}: {line} {:?}", output.status);
+        assert!(line.starts_with("splatref: c") && line.lines().count() == 1, "{line}");
+        assert_eq!(names(at), before, "{arguments:?}");
+    }
+}
+
 /// As under `nohup`.
 #[cfg(target_os = "linux")]
 #[test]

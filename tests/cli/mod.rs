@@ -16,6 +16,7 @@ mod hierarchy;
 #[cfg(unix)]
 mod interrupts;
 mod memory;
+mod one_file;
 mod pictures;
 mod plan;
 mod primitives;

@@ -3,7 +3,6 @@
 
 use super::*;
 use splatref::frame::{Exec, Frame, Plane, Samples};
-use splatref::io::scene_file::SceneFile;
 use splatref::io::{exr::Region, provenance};
 use tempfile::TempDir;
 
@@ -51,24 +50,6 @@ fn divided(at: &Path, scene: &[&str], [w, h]: [u32; 2]) {
 }
 
 #[test]
-fn the_golden_scenes_of_both_methods_are_one_file() {
-    let at = TempDir::new().unwrap();
-    let golden = |name: &str| Path::new(env!("CARGO_MANIFEST_DIR")).join("golden").join(name);
-    for (name, more) in [
-        ("mkc08_hybrid.toml", &[][..]),
-        ("mkc08_odd_size_box.toml", &["--threads", "1"]),
-        ("moc08_odd_size_radius.toml", &[]),
-        ("moc08_gaussian_5.toml", &["--compression", "piz", "--tile", "8"]),
-    ] {
-        let path = golden(name);
-        let file = SceneFile::read(&path).unwrap();
-        let scene = [&[path.to_str().unwrap()], more].concat();
-        let loaded = file.load(&Exec::sequential(), &|_, _, _| ()).unwrap();
-        divided(at.path(), &scene, file.camera(&loaded.scene).unwrap().size());
-    }
-}
-
-#[test]
 fn what_the_later_stages_need_of_a_scene_comes_from_the_parts() {
     let at = TempDir::new().unwrap();
     let size = ["--size", "60x41"];
@@ -76,6 +57,7 @@ fn what_the_later_stages_need_of_a_scene_comes_from_the_parts() {
         ("pyramid", &["--stages", "--environment", "sky"][..]),
         ("template", &["--environment", "sky", "--compression", "zip"]),
         ("template", &["--stages", "--template", "3", "--falloff", "gaussian"]),
+        ("pyramid", &["--compression", "piz", "--tile", "8", "--threads", "1"]),
     ] {
         let scene = [&["torus", "--count", "900", "--method", method], &size[..], more].concat();
         divided(at.path(), &scene, [60, 41]);

@@ -111,6 +111,41 @@ fn the_folder_stands_for_the_file() {
     assert!(said.contains("6000 surfels") && said.contains("sha256"), "{said}");
 }
 
+/// Whenever the folder is replaced, the picture is of the old scene, of the new one, or not there.
+#[test]
+fn a_folder_that_is_replaced_meanwhile_is_never_mixed() {
+    let at = TempDir::new().unwrap();
+    let at = at.path();
+    torus(at, 6000);
+    let other = Shape::Torus.surfels(6000, 1).unwrap().into_cloud();
+    ply::write(&at.join("other.ply"), &other).unwrap();
+    let draw = ["render", "tiled/torus", "--size", "90x400", "--bands", "12", "-o"];
+    let read = |name: &str| fs::read(at.join(name)).unwrap();
+    let drawn = ["torus", "other"].map(|scene| {
+        succeeds(at, &["tile", &format!("{scene}.ply"), "-o", "tiled/torus"]);
+        succeeds(at, &[&draw[..], &["whole.exr"]].concat());
+        read("whole.exr")
+    });
+    assert!(drawn[0] != drawn[1]);
+    for scene in ["torus", "other"].repeat(3) {
+        let output = std::thread::scope(|scope| {
+            let output = scope.spawn(|| splatref(at, &[&draw[..], &["now.exr"]].concat()));
+            succeeds(at, &["tile", &format!("{scene}.ply"), "-o", "tiled/torus"]);
+            output.join().unwrap()
+        });
+        let line = String::from_utf8(output.stderr).unwrap();
+        if output.status.success() {
+            assert!(line.is_empty() && drawn.contains(&read("now.exr")), "{line}");
+            fs::remove_file(at.join("now.exr")).unwrap();
+        } else {
+            let why = "splatref: tiled/torus/blocks: the file was replaced or truncated";
+            assert!(line.starts_with(why) && line.lines().count() == 1, "{line}");
+            assert_eq!(output.status.code(), Some(1), "{line}");
+        }
+        assert!(!names(at).iter().any(|name| name.ends_with(".partial") || name == "now.exr"));
+    }
+}
+
 #[test]
 fn a_scene_file_takes_a_folder_as_a_model() {
     let at = TempDir::new().unwrap();

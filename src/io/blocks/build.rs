@@ -45,7 +45,6 @@ pub(in crate::io) fn build(
         let what = "the folder holds a hierarchy of `splatref surfels`; give another name";
         return Err(Error::format(folder, what));
     }
-    let io = |source| Error::io(folder, source);
     let whole = measure(input, exec, progress)?;
     if whole.count == 0 {
         return Ok(None);
@@ -54,13 +53,32 @@ pub(in crate::io) fn build(
         let what = format!("{} surfels, but ids have 32 bits: split the scene", whole.count);
         return Err(Error::Invalid(what));
     }
-    fs::create_dir(folder)
-        .or_else(|error| if folder.is_dir() { Ok(()) } else { Err(error) })
-        .map_err(io)?;
+    let existed = match fs::create_dir(folder) {
+        Ok(()) => false,
+        Err(_) if folder.is_dir() => true,
+        Err(error) => return Err(Error::io(folder, error)),
+    };
+    let report = sort_into(input, whole, folder, exec, progress);
+    if report.is_err() && !existed {
+        // Another process may have put its blocks there; then the folder stays.
+        let _ = fs::remove_dir(folder);
+    }
+    report.map(Some)
+}
+
+/// Sorts the surfels in a temporary file in the folder, and writes the blocks.
+fn sort_into(
+    input: &mut Input,
+    whole: Whole,
+    folder: &Path,
+    exec: &Exec,
+    progress: Progress<'_>,
+) -> Result<Tiled> {
     let kind = input.kind();
     let budget = (memory::left() / 2).clamp(LEAST, MOST);
     memory::ask(budget, || "sorting surfels".to_owned())?;
-    let mut sorter = Sorter::new(folder, kind.size(), budget as usize).map_err(io)?;
+    let mut sorter = Sorter::new(folder, kind.size(), budget as usize)
+        .map_err(|source| Error::io(folder, source))?;
     let index = survey(input, whole, &mut sorter, folder, exec, progress)?;
     let index = index.ok_or_else(|| {
         Error::Invalid("the scene changed while it was read; run the command again".into())
@@ -71,7 +89,7 @@ pub(in crate::io) fn build(
         blocks: index.count.div_ceil(SURFELS as u32).into(),
     };
     write_atomically(&Blocks::path(folder), |to| write(to, index, sorter, progress))?;
-    Ok(Some(report))
+    Ok(report)
 }
 
 /// The least and the most memory for sorting.

@@ -10,8 +10,12 @@ use crate::method::part::{Nearby, Part};
 use crate::scene::{Camera, Cloud, Excerpt, Surfels};
 use glam::{DVec3, Vec3};
 use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::{ErrorKind, Read, Seek, SeekFrom};
 use std::path::{Path, PathBuf};
+
+/// Why a file is refused that is not the one whose index was read.
+const CHANGED: &str =
+    "the file was replaced or truncated since it was opened; run the command again";
 
 /// A folder of blocks. Its index is in memory; blocks are read on demand.
 #[derive(Clone, Debug)]
@@ -167,7 +171,11 @@ impl Blocks {
             if may_hold(nearby, block) {
                 bytes.resize(size as usize, 0);
                 let read = file.seek(SeekFrom::Start(at)).and_then(|_| file.read_exact(&mut bytes));
-                read.map_err(|source| Error::io(&self.path, source))?;
+                read.map_err(|source| match source.kind() {
+                    // The length was right when the file was opened.
+                    ErrorKind::UnexpectedEof => format(CHANGED),
+                    _ => Error::io(&self.path, source),
+                })?;
                 let surfels = checksum::open(&bytes).ok_or_else(|| format(DAMAGED))?;
                 for surfel in surfels.chunks_exact(kind.size()) {
                     let one =
@@ -204,9 +212,7 @@ impl Blocks {
             file.read_exact(&mut sum).map_err(io)?;
         }
         if length != self.length || sum != self.index.sum {
-            let what =
-                "the file was replaced or truncated since it was opened; run the command again";
-            return Err(Error::format(&self.path, what));
+            return Err(Error::format(&self.path, CHANGED));
         }
         Ok(file)
     }

@@ -188,6 +188,9 @@ fn reason(place: &str, error: exr::error::Error) -> String {
         exr::error::Error::NotSupported(what) => {
             format!("{place}: {what}; save it as a flat EXR with ZIP compression")
         }
+        exr::error::Error::Invalid(what) if what == "reference to missing bytes" => {
+            ends_early(place)
+        }
         exr::error::Error::Invalid(what) => format!("{place}: {what}; write the file again"),
         other => format!("{place}: {other}"),
     }
