@@ -1,9 +1,12 @@
 //! Estimate how another camera moved the picture, from the pixels that the client gave to each surfel.
 //! A search cannot: errors fall only where splats meet again.
 
-use super::Case;
+use crate::frame::Frame;
+use crate::method::Session;
 use crate::number::Vector3;
+use crate::scene::Camera;
 use crate::splat::View;
+use crate::verdict::client::Client;
 use glam::{DMat3, DVec2, DVec3};
 
 /// The affine map from the right picture to the client's, about the principal point.
@@ -21,8 +24,8 @@ const FEWEST_SURFELS: usize = 32;
 const ROUNDS: usize = 4;
 
 /// The map that fits best, if the client tells surfels.
-pub(super) fn moved(case: &Case<'_, '_>) -> Option<Moved> {
-    let mut pairs = pairs(case)?;
+pub(super) fn moved(session: &Session<'_>, camera: &Camera, client: &Client) -> Option<Moved> {
+    let mut pairs = pairs(session, camera, client.frame())?;
     let mut found = fitted(&pairs)?;
     for _ in 0..ROUNDS {
         let off = |(right, seen): &(DVec2, DVec2)| {
@@ -38,11 +41,14 @@ pub(super) fn moved(case: &Case<'_, '_>) -> Option<Moved> {
 
 /// For each surfel that the client shows, its centre and the middle of its pixels, from the principal
 /// point on.
-fn pairs(case: &Case<'_, '_>) -> Option<Vec<(DVec2, DVec2)>> {
-    let frame = case.client.frame();
+fn pairs(
+    session: &Session<'_>,
+    camera: &Camera,
+    frame: &Frame<f64>,
+) -> Option<Vec<(DVec2, DVec2)>> {
     let ids = ["visibility.id", "projection.id", "id"];
     let ids = ids.into_iter().find_map(|name| frame.index(name).ok())?;
-    let (view, surfels) = (View::<f64>::new(case.camera), &case.session.scene().surfels);
+    let (view, surfels) = (View::<f64>::new(camera), &session.scene().surfels);
     let mut seen = vec![DVec3::ZERO; surfels.len()];
     let width = ids.width() as usize;
     for (i, id) in ids.values().iter().enumerate() {

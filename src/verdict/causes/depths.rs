@@ -187,7 +187,7 @@ fn of_means(points: &[[f64; 2]]) -> [f64; 2] {
 }
 
 /// The median; NaN of nothing.
-fn median(mut values: Vec<f64>) -> f64 {
+pub(super) fn median(mut values: Vec<f64>) -> f64 {
     values.sort_by(f64::total_cmp);
     values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }

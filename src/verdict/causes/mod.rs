@@ -15,9 +15,9 @@
 //! 3. numbers, which are estimated: see [`search`](self);
 //! 4. numbers that are coarser than the client says.
 //!
-//! Some numbers are estimated: what depths mean by a fitted line; the lens, an offset and a roll by a
-//! map from each surfel's centre to the place where the client shows it; the low-pass filter, the
-//! cut-off and radii by search.
+//! Some numbers are estimated: what depths mean by a fitted line; the lens, an offset and a roll by
+//! the pixels in which the client says surfel and depth, or by a map from each surfel's centre to the
+//! place where the client shows it; the low-pass filter, the cut-off and radii by search.
 
 mod cameras;
 mod change;
@@ -32,6 +32,7 @@ mod plain;
 mod planes;
 mod sample;
 mod search;
+mod shown;
 mod surfels;
 
 use super::client::Client;
@@ -283,8 +284,7 @@ fn explanations(case: &Case<'_, '_>) -> Result<Vec<Explanation>> {
         // A client with another setting is right by that setting.
         found.retain(|one| one.left.all == 0);
     }
-    // Where trials judge the whole of a large picture, a search takes too long.
-    if found.is_empty() && (case.client.part.is_some() || !sample::is_large(case)) {
+    if found.is_empty() {
         found.extend(search::best(case)?);
     }
     if found.is_empty() {

@@ -52,7 +52,10 @@ pub(super) fn numbers<'a>(case: &'a Case<'_, '_>) -> Vec<Number<'a>> {
     if is_in(&SHAPES) {
         all.extend(of_sizes(case));
         all.extend(of_clamps(case));
-        let moved = cameras::moved(case);
+    }
+    // The centres of another camera lie in other pixels.
+    if is_in(&SHAPES) || is_in(&["indices"]) {
+        let moved = cameras::moved(case.session, case.camera, case.client);
         all.extend(of_lens(case.camera, moved));
         all.extend(of_place(case.camera, moved));
     }
@@ -187,7 +190,7 @@ fn largest_half(case: &Case<'_, '_>) -> Option<f64> {
 }
 
 /// The numbers of the lens.
-fn of_lens<'a>(camera: &'a Camera, moved: Option<Moved>) -> [Number<'a>; 2] {
+pub(super) fn of_lens<'a>(camera: &'a Camera, moved: Option<Moved>) -> [Number<'a>; 2] {
     let estimate = |of: fn(&Moved) -> f64| moved.as_ref().map(of);
     let (fx, fy) = (f64::from(camera.fx), f64::from(camera.fy));
     let focal = Number {
@@ -220,7 +223,7 @@ fn of_lens<'a>(camera: &'a Camera, moved: Option<Moved>) -> [Number<'a>; 2] {
 }
 
 /// The numbers that move or turn the picture.
-fn of_place<'a>(camera: &'a Camera, moved: Option<Moved>) -> [Number<'a>; 3] {
+pub(super) fn of_place<'a>(camera: &'a Camera, moved: Option<Moved>) -> [Number<'a>; 3] {
     let estimate = |of: fn(&Moved) -> f64| moved.as_ref().map(of);
     let shift = |estimate, way: &'a str, shifted: fn(&Camera, f32) -> Camera| Number {
         right: 0.0,

@@ -225,6 +225,13 @@ mod tests {
         let wide = Camera { fx: 0.9 * camera.fx, fy: 0.9 * camera.fy, ..camera };
         let lens = named(right.into(), (&scene, right.into()), &wide);
         assert!(lens.starts_with("another field of view"), "{lens}");
+        // The whole of a large picture is judged for `deferred`, so numbers are not searched.
+        let method = Method::by_name("deferred").unwrap();
+        for by in [0.9, 1.001] {
+            let wrong = Camera { fx: by * camera.fx, fy: by * camera.fy, ..camera };
+            let lens = named(method, (&scene, method), &wrong);
+            assert!(lens.starts_with("another field of view"), "{lens}");
+        }
         // Parts of the pyramid and the template have the projection alone.
         let mut cloud = scene.surfels.clone().into_cloud();
         cloud.radius.iter_mut().flatten().for_each(|radius| *radius *= 1.2);

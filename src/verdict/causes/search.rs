@@ -3,7 +3,8 @@
 
 use super::depths::digits;
 use super::numbers::{Number, numbers};
-use super::{Case, Explanation, FEWEST, MOST_LEFT, Wrong};
+use super::shown::{Fitted, Shown};
+use super::{Case, Explanation, FEWEST, MOST_LEFT, Wrong, sample};
 use crate::error::Result;
 use crate::number::Real;
 
@@ -30,11 +31,25 @@ pub(super) fn best(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
     }
     let (cameras, others): (Vec<_>, Vec<_>) =
         numbers(case).into_iter().partition(|number| number.is_of_camera);
+    let shown = Shown::new(case.session, case.camera, case.client);
+    if let Some(Fitted::Number(number, value)) = shown.as_ref().map(|shown| shown.fit(&cameras))
+        && keep(case, number, near(case, number, value)?, &mut best)
+    {
+        return Ok(best);
+    }
+    // Where trials judge the whole of a large picture, a search takes too long.
+    if case.client.part.is_none() && sample::is_large(case) {
+        return Ok(best);
+    }
     for number in &others {
         keep(case, number, found(case, number)?, &mut best);
         if best.as_ref().is_some_and(|best| best.left.all == 0) {
             return Ok(best);
         }
+    }
+    // The pixels have shown that the camera is right, or wrong in another way.
+    if shown.is_some() {
+        return Ok(best);
     }
     // Another camera moves splats so far that a few pixels show no way to it, so that each value is
     // tried on the whole part.
@@ -51,6 +66,15 @@ pub(super) fn best(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
         }
     }
     Ok(best)
+}
+
+/// A value that was fitted, or a shorter one beside it.
+fn near(case: &Case<'_, '_>, number: &Number<'_>, value: f64) -> Result<Option<Tried>> {
+    let mut wrong = |value| number.judge(case, value, case.client);
+    let Some(left) = wrong(value)? else { return Ok(None) };
+    let range = 1e-3 * (value - number.right).abs();
+    let size = |value, best: &mut _| size(value, best, &mut wrong);
+    rounded(number.right, Tried { value, left }, range, size).map(Some)
 }
 
 /// The number whose estimate explains most, with the best value near it.
@@ -195,7 +219,8 @@ fn narrowed(
             at_b = size(b, &mut best)?;
         }
     }
-    rounded(right, best, (high - low).abs(), size)
+    let range = (high - low).abs().at_least(0.01 * right.abs());
+    rounded(right, best, range, size)
 }
 
 /// The best value, or a shorter one beside it that leaves nothing wrong: people choose short numbers.
@@ -205,7 +230,6 @@ fn rounded(
     range: f64,
     mut size: impl FnMut(f64, &mut Tried) -> Result<f64>,
 ) -> Result<Tried> {
-    let range = range.at_least(0.01 * right.abs());
     for by in [1.0, 10.0, 100.0, 1000.0] {
         let value = (best.value * by).round() / by;
         if (value - best.value).abs() > range || value == right {
