@@ -152,9 +152,12 @@ impl<'a> Whole<'a> {
 
     /// Whether a surfel of an object is drawn.
     pub(super) fn draws(&self, object: u32, surfel: u32) -> bool {
-        let objects = self.scene.objects.as_ref();
-        let drawn = objects.and_then(|objects| objects.drawn(object));
-        drawn.is_none_or(|drawn| drawn.has(surfel as usize))
+        self.mask(object).is_none_or(|drawn| drawn.has(surfel as usize))
+    }
+
+    /// The surfels of an object that are drawn, if not all are.
+    fn mask(&self, object: u32) -> Option<&Mask> {
+        self.scene.objects.as_ref()?.drawn(object)
     }
 
     /// The unit of epsilon.
@@ -163,6 +166,13 @@ impl<'a> Whole<'a> {
             Some(objects) => objects.median_radius(),
             None => self.scene.surfels.median_radius(),
         }
+    }
+
+    /// Whether the surfels of the scene are drawn as they stand: in their places and in their colours.
+    pub(super) fn is_plain(&self) -> bool {
+        let surfels = &self.scene.surfels;
+        let plain = self.scene.objects.is_none() && surfels.mipmap().is_none();
+        plain && self.has_colors() == surfels.color().is_some()
     }
 
     /// The surfels of ascending ids in their places.
@@ -191,10 +201,16 @@ impl<'a> Whole<'a> {
     /// The ids of the surfels of ranges that pass 1 draws, ascending as the ranges do.
     pub(super) fn first(&self, mut ranges: Vec<(u32, std::ops::Range<u32>)>) -> Vec<u64> {
         ranges.retain(|(object, _)| !self.leaves_out(*object));
-        let mut ids = Vec::new();
+        let mut ids = Vec::with_capacity(ranges.iter().map(|(_, range)| range.len()).sum());
         for (object, range) in ranges {
-            let drawn = range.filter(|&surfel| self.draws(object, surfel));
-            ids.extend(drawn.map(|surfel| self.ids.id(object, surfel)));
+            let end = range.end;
+            match self.mask(object) {
+                None => ids.extend(self.ids.id(object, range.start)..self.ids.id(object, end)),
+                Some(mask) => {
+                    let drawn = range.filter(|&surfel| mask.has(surfel as usize));
+                    ids.extend(drawn.map(|surfel| self.ids.id(object, surfel)));
+                }
+            }
         }
         ids
     }
@@ -301,6 +317,10 @@ impl Part {
     /// The ids of the surfels, ascending.
     pub(crate) fn ids(&self) -> &[u64] {
         &self.ids
+    }
+
+    pub(super) fn into_ids(self) -> Vec<u64> {
+        self.ids
     }
 
     /// The id of the surfel with this index; [`super::visibility::NONE`] if there is no such

@@ -14,7 +14,7 @@ use super::clock::{Clock, Stopwatch};
 use super::prepare::Prepared;
 use crate::frame::{Framebuffer, Rect};
 use crate::splat::SplatSettings;
-use crate::splat::batch;
+use crate::splat::batch::{self, Enlarged};
 use tile::{Record, Surface, Tile};
 
 /// Projects the splats and sorts them into tiles.
@@ -29,6 +29,33 @@ pub(super) fn prepare(job: &Job<'_>, settings: &SplatSettings) -> Prepared<f32, 
         |projector, range, records| {
             batch::splats_f32(projector, surfels, range, |splat| {
                 records.push(Record::new(&splat, Surface::new(&splat, surfels.normal(), colors)));
+            })
+        },
+        Record::bounds,
+    )
+}
+
+/// The same for the surfels of a scene with these indices, which ascend. A record has the place of its
+/// surfel in the list.
+pub(super) fn prepare_some(
+    job: &Job<'_>,
+    settings: &SplatSettings,
+    indices: &[u64],
+) -> Prepared<f32, Record> {
+    let surfels = &job.scene.surfels;
+    let colors = surfels.color();
+    Prepared::new(
+        job,
+        &job.strips(),
+        settings,
+        indices.len(),
+        |projector, range, records| {
+            let item = |&i: &u64| Enlarged { surfel: i as u32, scale: 1.0, times: 1 };
+            let list: Vec<_> = indices[range.clone()].iter().map(item).collect();
+            batch::enlarged_f32(projector, surfels, &list, |place, splat| {
+                let surfel = (range.start + place) as u32;
+                let surface = Surface::new(&splat, surfels.normal(), colors);
+                records.push(Record { surfel, ..Record::new(&splat, surface) });
             })
         },
         Record::bounds,

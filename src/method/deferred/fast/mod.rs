@@ -9,8 +9,8 @@ mod points;
 mod ranks;
 
 use super::Settings;
-use super::part::{Part, Whole};
-use super::picture::{UNSHADED, flagged, unseen, whole};
+use super::part::Whole;
+use super::picture::{UNSHADED, flagged, whole};
 use super::polygons::Polygons;
 use super::queries::Limits;
 use super::visibility::POLYGON;
@@ -22,7 +22,7 @@ use crate::method::Job;
 use crate::method::clock::{Clock, Stopwatch, Work, spend};
 use crate::method::fast::fragments::touches;
 use crate::method::fast::tile::{Record, SIDE, Tile};
-use crate::method::fast::{draw, prepare};
+use crate::method::fast::{draw, prepare, prepare_some};
 use crate::method::prepare::Prepared;
 use crate::number::lanes::LANES;
 use crate::splat::{Shared, SplatSettings, Tally};
@@ -40,11 +40,8 @@ pub(super) fn render(
     let grid = job.strips();
     let mut clock = Clock::of_stages(&UNSHADED);
     let polygons = Polygons::draw(job, settings, &whole)?;
-    let flagged = whole.part(flagged(&whole, &before)?, job.exec);
-    clock.lap("visibility");
-    let flagged = flagged.filtered(job);
-    clock.lap("attributes");
-    let flagged = Projected::new(job, splats, flagged);
+    let flagged = flagged(&whole, &before)?;
+    let flagged = Projected::new(job, splats, &whole, flagged, &mut clock, "visibility");
     // The tiles of pass 1 share the time from here on.
     clock.lap("visibility");
     let mut first = First::draw(job, &flagged.splats, &mut clock);
@@ -59,15 +56,12 @@ pub(super) fn render(
     let now = Seen::from_selected(whole.ids(), settings.flags, &list);
     clock.lap("indices");
 
-    let fresh = whole.part(unseen(&whole, &before, &list), job.exec);
-    clock.lap("difference");
-    let fresh = fresh.filtered(job);
-    clock.lap("attributes");
-    let fresh = Projected::new(job, splats, fresh);
+    let (kept, fresh) = ranks::compared(&flagged.ids, &list);
+    let fresh = Projected::new(job, splats, &whole, fresh, &mut clock, "difference");
     clock.lap("difference");
 
-    let ranks = Ranks::new(flagged.part.ids(), fresh.part.ids(), &list);
-    let tally = flagged.tally(job, splats, &whole, &ranks).plus(&fresh.splats.tally);
+    let ranks = Ranks::new(&flagged.ids, kept, &fresh.ids);
+    let tally = flagged.tally(job, splats, &whole, &ranks, &mut clock).plus(&fresh.splats.tally);
     let shared = &flagged.splats.shared;
     clock.lap("attributes");
 
@@ -97,38 +91,56 @@ pub(super) fn render(
     Ok((now, tally, clock))
 }
 
-/// Surfels in the colours of pass 4, and their splats.
+/// The ids of surfels, and their splats in the colours of pass 4.
 struct Projected {
-    part: Part,
+    ids: Vec<u64>,
     splats: Prepared<f32, Record>,
 }
 
 impl Projected {
-    fn new(job: &Job<'_>, settings: &SplatSettings, part: Part) -> Self {
+    /// Projects surfels. The time of making a scene of them belongs to `stage`, and that of their colours to
+    /// pass 4.
+    fn new(
+        job: &Job<'_>,
+        settings: &SplatSettings,
+        whole: &Whole<'_>,
+        ids: Vec<u64>,
+        clock: &mut Clock,
+        stage: &'static str,
+    ) -> Self {
+        if whole.is_plain() {
+            let splats = prepare_some(job, settings, &ids);
+            return Self { ids, splats };
+        }
+        let part = whole.part(ids, job.exec);
+        clock.lap(stage);
+        let part = part.filtered(job);
+        clock.lap("attributes");
         let splats = prepare(&part.job(job), settings);
-        Self { part, splats }
+        Self { ids: part.into_ids(), splats }
     }
 
-    /// The fates of the surfels of pass 1 that pass 4 draws too. Those without a splat are few, and are
-    /// projected again to learn why they have none.
+    /// The fates of the surfels of pass 1 that pass 4 draws too. A surfel has one splat at most. Those
+    /// without a splat are few, and are projected again to learn why they have none.
     fn tally(
         &self,
         job: &Job<'_>,
         settings: &SplatSettings,
         whole: &Whole<'_>,
         ranks: &Ranks,
+        clock: &mut Clock,
     ) -> Tally {
-        let mut missing = vec![true; self.part.ids().len()];
-        self.splats.records().for_each(|splat| missing[splat.surfel as usize] = false);
-        let kept = (0..).zip(self.part.ids()).filter(|(index, _)| ranks.keeps(*index));
-        let (without, with): (Vec<_>, Vec<_>) =
-            kept.partition(|(index, _)| missing[*index as usize]);
-        let visible = Tally { visible: with.len() as u64, ..Tally::default() };
-        if without.is_empty() {
+        let drawn = || self.splats.records().filter(|splat| ranks.keeps(splat.surfel));
+        let visible = Tally { visible: drawn().count() as u64, ..Tally::default() };
+        if visible.visible == ranks.kept() {
             return visible;
         }
-        let part = whole.part(without.into_iter().map(|(_, &id)| id).collect(), job.exec);
-        visible.plus(&Self::new(job, settings, part).splats.tally)
+        let mut missing: Vec<bool> = (0..).zip(&self.ids).map(|(i, _)| ranks.keeps(i)).collect();
+        drawn().for_each(|splat| missing[splat.surfel as usize] = false);
+        let without = self.ids.iter().zip(missing).filter(|(_, missing)| *missing);
+        let without = without.map(|(&id, _)| id).collect();
+        let again = Self::new(job, settings, whole, without, clock, "attributes");
+        visible.plus(&again.splats.tally)
     }
 }
 
@@ -160,6 +172,9 @@ fn gather(
     }
     tile.empty(rect, shared.empty());
 }
+
+/// How many pixels one job takes in a pass over finished planes.
+const PIXELS: usize = 1 << 14;
 
 /// The output of pass 1: nearness and, for the flagged surfels, the index of the nearest.
 struct First {
@@ -197,12 +212,15 @@ impl First {
     fn limits(&self, epsilon: f32, exec: &Exec) -> Limits {
         spend(Work::Indices);
         let (nearness, ids) = (self.target.depth.values(), self.target.id.values());
-        let depth = |i: usize| match ids[i] {
-            NO_ID => f32::INFINITY,
-            _ => self.shared.depth(nearness[i]),
-        };
-        let mut values = Vec::with_capacity(ids.len());
-        exec.extend(&mut values, ids.len(), |i| decide::limit(depth(i), epsilon));
+        let mut values = vec![f32::INFINITY; ids.len()];
+        let pixels = nearness.chunks(PIXELS).zip(ids.chunks(PIXELS));
+        let parts = values.chunks_mut(PIXELS).zip(pixels).collect();
+        exec.ordered(parts, |(values, (nearness, ids)): (&mut [f32], (&[f32], &[u32]))| {
+            for ((value, nearness), id) in values.iter_mut().zip(nearness).zip(ids) {
+                let depth = self.shared.depth(*nearness);
+                *value = decide::limit(if *id == NO_ID { f32::INFINITY } else { depth }, epsilon);
+            }
+        });
         Limits { width: self.target.width, values }
     }
 

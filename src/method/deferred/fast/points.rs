@@ -12,6 +12,7 @@ use super::super::part::{Range, Whole};
 use super::super::queries::{Limits, Queries};
 use super::super::visibility::NONE;
 use crate::composite::decide;
+use crate::frame::Exec;
 use crate::method::Job;
 use crate::method::clock::{Work, spend};
 use crate::method::projection::surfels::{PlacedPoint, PointProjector};
@@ -55,9 +56,29 @@ pub(super) fn selected(
         });
         nearest.filter(|&id| id != NONE).collect::<Vec<_>>()
     });
-    let mut ids = parts.concat();
-    job.exec.sort(&mut ids);
-    ids
+    ascending(parts, limits.values.len(), job.exec)
+}
+
+/// Ids, each of which is there once, in ascending order.
+fn ascending(parts: Vec<Vec<u64>>, pixels: usize, exec: &Exec) -> Vec<u64> {
+    let ids = || parts.iter().flatten().copied();
+    let end = ids().max().map_or(0, |last| last + 1);
+    if end > 64 * pixels as u64 {
+        let mut ids = parts.concat();
+        exec.sort(&mut ids);
+        return ids;
+    }
+    // A bit for each id, in no more words than there are pixels.
+    let mut words = vec![0_u64; end.div_ceil(64) as usize];
+    ids().for_each(|id| words[(id / 64) as usize] |= 1 << (id % 64));
+    let mut sorted = Vec::with_capacity(parts.iter().map(Vec::len).sum());
+    for (first, mut word) in (0..).step_by(64).zip(words) {
+        while word != 0 {
+            sorted.push(first + u64::from(word.trailing_zeros()));
+            word &= word - 1;
+        }
+    }
+    sorted
 }
 
 /// How many pixels one job joins.
@@ -134,4 +155,25 @@ fn faces(points: &PointProjector<f32>, range: &Range<'_>, i: usize) -> bool {
     let n = points.view.direction(Vector3::from_glam(normal));
     let g = points.facing(&placed, n);
     g.is_finite() && !(points.cull && g >= 0.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    proptest! {
+        #[test]
+        fn ids_ascend_with_bits_and_by_sorting(
+            ids in prop::collection::hash_set(0..20_000_u64, 0..400), parts in 1..9_usize,
+        ) {
+            let ids: Vec<u64> = ids.into_iter().collect();
+            let mut sorted = ids.clone();
+            sorted.sort_unstable();
+            for pixels in [0, 300, 313] {
+                let parts = ids.chunks(ids.len().div_ceil(parts).max(1)).map(<[u64]>::to_vec);
+                prop_assert_eq!(&ascending(parts.collect(), pixels, &Exec::sequential()), &sorted);
+            }
+        }
+    }
 }

@@ -17,34 +17,51 @@ pub(super) struct Ranks {
     kept: Vec<bool>,
 }
 
+/// Whether pass 4 draws each surfel of pass 1, and the ids of pass 4 that pass 1 did not draw. All lists
+/// of ids ascend.
+pub(super) fn compared(flagged: &[u64], selected: &[u64]) -> (Vec<bool>, Vec<u64>) {
+    spend(Work::Difference);
+    let (mut kept, mut fresh) = (vec![false; flagged.len()], Vec::new());
+    let mut at = 0;
+    for &id in selected {
+        while at < flagged.len() && flagged[at] < id {
+            at += 1;
+        }
+        if flagged.get(at) == Some(&id) {
+            kept[at] = true;
+        } else {
+            fresh.push(id);
+        }
+    }
+    (kept, fresh)
+}
+
 impl Ranks {
-    /// Merges the ids of passes 1 and 3, which have none in common. `selected` are the ids of pass
-    /// 4. All three ascend.
-    pub(super) fn new(flagged: &[u64], fresh: &[u64], selected: &[u64]) -> Self {
+    /// Merges the ids of passes 1 and 3, which have none in common and ascend.
+    pub(super) fn new(flagged: &[u64], kept: Vec<bool>, fresh: &[u64]) -> Self {
         spend(Work::Rank);
         let most = flagged.len() + fresh.len();
-        let mut ranks = Self {
-            ids: Vec::with_capacity(most),
-            of_flagged: Vec::with_capacity(flagged.len()),
-            of_fresh: Vec::with_capacity(fresh.len()),
-            kept: Vec::with_capacity(flagged.len()),
-        };
-        let (mut fresh, mut selected) = (fresh.iter().peekable(), selected.iter().peekable());
-        for &id in flagged {
-            while let Some(&before) = fresh.next_if(|&&other| other < id) {
-                ranks.of_fresh.push(ranks.ids.len() as u32);
-                ranks.ids.push(before);
-            }
-            while selected.next_if(|&&other| other < id).is_some() {}
-            ranks.kept.push(selected.peek() == Some(&&id));
-            ranks.of_flagged.push(ranks.ids.len() as u32);
-            ranks.ids.push(id);
-        }
+        let mut ids = Vec::with_capacity(most);
+        let mut of_flagged = Vec::with_capacity(flagged.len());
+        let mut of_fresh = Vec::with_capacity(fresh.len());
+        let mut rest = flagged;
         for &id in fresh {
-            ranks.of_fresh.push(ranks.ids.len() as u32);
-            ranks.ids.push(id);
+            let before = rest.iter().take_while(|&&other| other < id).count();
+            let (run, others) = rest.split_at(before);
+            rest = others;
+            of_flagged.extend(ids.len() as u32..(ids.len() + run.len()) as u32);
+            ids.extend_from_slice(run);
+            of_fresh.push(ids.len() as u32);
+            ids.push(id);
         }
-        ranks
+        of_flagged.extend(ids.len() as u32..most as u32);
+        ids.extend_from_slice(rest);
+        Self { ids, of_flagged, of_fresh, kept }
+    }
+
+    /// How many surfels of pass 1 pass 4 draws.
+    pub(super) fn kept(&self) -> u64 {
+        self.kept.iter().filter(|kept| **kept).count() as u64
     }
 
     /// The rank of a surfel of pass 1.
@@ -83,7 +100,9 @@ mod tests {
             // Pass 4 draws what pass 3 draws, and some of what pass 1 draws.
             let draws = |id: &&u64| id.is_multiple_of(dense) || id.is_multiple_of(kept);
             let selected: Vec<u64> = all.iter().filter(draws).copied().collect();
-            let ranks = Ranks::new(&flagged, &fresh, &selected);
+            let (keeps, new) = compared(&flagged, &selected);
+            prop_assert_eq!(&new, &fresh);
+            let ranks = Ranks::new(&flagged, keeps, &fresh);
             for (rank, id) in (0..).zip(&all) {
                 prop_assert_eq!(ranks.id(rank), *id);
                 let own = match flagged.binary_search(id) {
