@@ -53,12 +53,7 @@ pub(super) fn numbers<'a>(case: &'a Case<'_, '_>) -> Vec<Number<'a>> {
         all.extend(of_sizes(case));
         all.extend(of_clamps(case));
     }
-    // The centres of another camera lie in other pixels.
-    if is_in(&SHAPES) || is_in(&["indices"]) {
-        let moved = cameras::moved(case.session, case.camera, case.client);
-        all.extend(of_lens(case.camera, moved));
-        all.extend(of_place(case.camera, moved));
-    }
+    all.extend(numbers_of_camera(case));
     if is_in(&SUMS) {
         all.extend(of_epsilon(case));
     }
@@ -73,6 +68,17 @@ pub(super) fn numbers<'a>(case: &'a Case<'_, '_>) -> Vec<Number<'a>> {
         });
     }
     all
+}
+
+/// The numbers of the camera, if the first wrong stage shows where surfels are.
+pub(super) fn numbers_of_camera<'a>(case: &'a Case<'_, '_>) -> Vec<Number<'a>> {
+    // The centres of another camera lie in other pixels.
+    let tells = |stage: &&str| SHAPES.contains(stage) || *stage == "indices";
+    if !case.stages.iter().any(|stage| tells(stage)) {
+        return Vec::new();
+    }
+    let moved = cameras::moved(case.session, case.camera, case.client);
+    of_lens(case.camera, moved).into_iter().chain(of_place(case.camera, moved)).collect()
 }
 
 /// The numbers that are settings.

@@ -2,9 +2,9 @@
 //! farther off a value is, the larger are the errors, so that a search finds the best one.
 
 use super::depths::digits;
-use super::numbers::{Number, numbers};
-use super::shown::{Fitted, Shown};
-use super::{Case, Explanation, FEWEST, MOST_LEFT, Wrong, sample};
+use super::numbers::{Number, numbers, numbers_of_camera};
+use super::shown::Shown;
+use super::{Case, Explanation, FEWEST, MOST_LEFT, Wrong};
 use crate::error::Result;
 use crate::number::Real;
 
@@ -31,16 +31,6 @@ pub(super) fn best(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
     }
     let (cameras, others): (Vec<_>, Vec<_>) =
         numbers(case).into_iter().partition(|number| number.is_of_camera);
-    let shown = Shown::new(case.session, case.camera, case.client);
-    if let Some(Fitted::Number(number, value)) = shown.as_ref().map(|shown| shown.fit(&cameras))
-        && keep(case, number, near(case, number, value)?, &mut best)
-    {
-        return Ok(best);
-    }
-    // Where trials judge the whole of a large picture, a search takes too long.
-    if case.client.part.is_none() && sample::is_large(case) {
-        return Ok(best);
-    }
     for number in &others {
         keep(case, number, found(case, number)?, &mut best);
         if best.as_ref().is_some_and(|best| best.left.all == 0) {
@@ -48,7 +38,7 @@ pub(super) fn best(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
         }
     }
     // The pixels have shown that the camera is right, or wrong in another way.
-    if shown.is_some() {
+    if Shown::new(case.session, case.camera, case.client).is_some() {
         return Ok(best);
     }
     // Another camera moves splats so far that a few pixels show no way to it, so that each value is
@@ -64,6 +54,24 @@ pub(super) fn best(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
         if best.as_ref().is_some_and(|best| best.left.all == 0) {
             break;
         }
+    }
+    Ok(best)
+}
+
+/// The number of the camera that the client's pixels show to be wrong, if it explains the wrong pixels. Half
+/// a pixel is left to the mistake of this name.
+///
+/// # Errors
+/// As [`crate::method::Session::verify`].
+pub(super) fn of_camera(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
+    let mut best = None;
+    let numbers: Vec<_> = numbers_of_camera(case);
+    let shown = Shown::new(case.session, case.camera, case.client);
+    if let Some((number, value)) = shown.as_ref().and_then(|shown| shown.fit(&numbers))
+        && (value.abs() - 0.5).abs() > 1e-3
+        && case.all.near >= FEWEST
+    {
+        keep(case, number, near(case, number, value)?, &mut best);
     }
     Ok(best)
 }

@@ -52,14 +52,6 @@ struct Pixel {
     depth: f64,
 }
 
-/// What the pixels say about the camera.
-pub(super) enum Fitted<'n, 'c> {
-    /// No single number of it is wrong.
-    None,
-    /// This number has this value.
-    Number(&'n Number<'c>, f64),
-}
-
 impl<'a> Shown<'a> {
     /// The pixels of a client; none if it does not say both, or if the method's depths are not those of planes.
     pub(super) fn new(
@@ -75,17 +67,17 @@ impl<'a> Shown<'a> {
         Some(Self { surfels, camera, pixels: found? })
     }
 
-    /// The number that the pixels show to be wrong.
-    pub(super) fn fit<'n, 'c>(&self, numbers: &'n [Number<'c>]) -> Fitted<'n, 'c> {
+    /// The number that the pixels show to be wrong, and its value. None if the camera is right, or if no
+    /// single number is wrong.
+    pub(super) fn fit<'n, 'c>(&self, numbers: &'n [Number<'c>]) -> Option<(&'n Number<'c>, f64)> {
         let right = median_size(&self.errors(self.camera));
-        let mut best = Fitted::None;
-        let mut least = LEAST_LEFT * right;
+        let (mut best, mut least) = (None, LEAST_LEFT * right);
         if right <= RIGHT {
             return best;
         }
         for number in numbers {
             if let Some((value, left)) = self.value(number).filter(|(_, left)| *left <= least) {
-                (best, least) = (Fitted::Number(number, value), left);
+                (best, least) = (Some((number, value)), left);
             }
         }
         best
@@ -101,7 +93,6 @@ impl<'a> Shown<'a> {
         for _ in 0..TURNS {
             let (now, beside) = (errors(value)?, errors(value + 0.1 * number.step)?);
             let left = median_size(&now);
-
             if best.is_none_or(|(_, least)| left < least) {
                 best = Some((value, left));
             }
@@ -186,10 +177,8 @@ mod tests {
         let client = Client::from(&session.define::<f32>(by, true).unwrap().frame);
         let numbers: Vec<_> =
             of_lens(camera, None).into_iter().chain(of_place(camera, None)).collect();
-        match Shown::new(session, camera, &client)?.fit(&numbers) {
-            Fitted::Number(number, value) => Some(((number.in_words)(value), value)),
-            Fitted::None => None,
-        }
+        let shown = Shown::new(session, camera, &client)?;
+        shown.fit(&numbers).map(|(number, value)| ((number.in_words)(value), value))
     }
 
     #[test]
