@@ -74,7 +74,7 @@ pub(super) fn numbers<'a>(case: &'a Case<'_, '_>) -> Vec<Number<'a>> {
 pub(super) fn numbers_of_camera<'a>(case: &'a Case<'_, '_>) -> Vec<Number<'a>> {
     // The centres of another camera lie in other pixels.
     let tells = |stage: &&str| SHAPES.contains(stage) || *stage == "indices";
-    if !case.stages.iter().any(|stage| tells(stage)) {
+    if !case.stages.iter().any(tells) {
         return Vec::new();
     }
     let moved = cameras::moved(case.session, case.camera, case.client);

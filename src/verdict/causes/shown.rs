@@ -161,7 +161,6 @@ fn median_move(pixels: &[(f64, f64)]) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    use super::super::cameras::moved;
     use super::super::numbers::{of_lens, of_place};
     use super::*;
     use crate::frame::Exec;
