@@ -225,6 +225,12 @@ mod tests {
         let wide = Camera { fx: 0.9 * camera.fx, fy: 0.9 * camera.fy, ..camera };
         let lens = named(right.into(), (&scene, right.into()), &wide);
         assert!(lens.starts_with("another field of view"), "{lens}");
+        for (by, name) in
+            [(-0.5, "the picture is -0.5 px too far right"), (0.5, "half a pixel to the right")]
+        {
+            let moved = Camera { cx: camera.cx + by, ..camera };
+            assert_eq!(named(right.into(), (&scene, right.into()), &moved), name);
+        }
         // The whole of a large picture is judged for `deferred`, so numbers are not searched.
         let method = Method::by_name("deferred").unwrap();
         for by in [0.9, 1.001] {

@@ -59,16 +59,16 @@ pub(super) fn best(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
 }
 
 /// The number of the camera that the client's pixels show to be wrong, if it explains the wrong pixels. Half
-/// a pixel is left to the mistake of this name.
+/// a pixel to the right or down is left to the mistakes of these names.
 ///
 /// # Errors
 /// As [`crate::method::Session::verify`].
 pub(super) fn of_camera(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
     let mut best = None;
-    let numbers: Vec<_> = numbers_of_camera(case);
+    let numbers = numbers_of_camera(case);
     let shown = Shown::new(case.session, case.camera, case.client);
     if let Some((number, value)) = shown.as_ref().and_then(|shown| shown.fit(&numbers))
-        && (value.abs() - 0.5).abs() > 1e-3
+        && (value - 0.5).abs() > 1e-3
         && case.all.near >= FEWEST
     {
         keep(case, number, near(case, number, value)?, &mut best);
