@@ -13,26 +13,18 @@ use super::algorithm::Job;
 use super::clock::{Clock, Stopwatch};
 use super::prepare::Prepared;
 use crate::frame::{Framebuffer, Rect};
-use crate::splat::SplatSettings;
+use crate::scene::Surfels;
 use crate::splat::batch::{self, Enlarged};
+use crate::splat::{Projector, Splat, SplatSettings, Tally};
+use std::ops::Range;
 use tile::{Record, Surface, Tile};
 
 /// Projects the splats and sorts them into tiles.
 pub(super) fn prepare(job: &Job<'_>, settings: &SplatSettings) -> Prepared<f32, Record> {
     let surfels = &job.scene.surfels;
-    let colors = surfels.color();
-    Prepared::new(
-        job,
-        &job.strips(),
-        settings,
-        surfels.len(),
-        |projector, range, records| {
-            batch::splats_f32(projector, surfels, range, |splat| {
-                records.push(Record::new(&splat, Surface::new(&splat, surfels.normal(), colors)));
-            })
-        },
-        Record::bounds,
-    )
+    prepared(job, settings, surfels.len(), |projector, range, records| {
+        batch::splats_f32(projector, surfels, range, |splat| records.push(record(&splat, surfels)))
+    })
 }
 
 /// The same for the surfels of a scene with these indices, which ascend. A record has the place of its
@@ -43,23 +35,29 @@ pub(super) fn prepare_some(
     indices: &[u64],
 ) -> Prepared<f32, Record> {
     let surfels = &job.scene.surfels;
-    let colors = surfels.color();
-    Prepared::new(
-        job,
-        &job.strips(),
-        settings,
-        indices.len(),
-        |projector, range, records| {
-            let item = |&i: &u64| Enlarged { surfel: i as u32, scale: 1.0, times: 1 };
-            let list: Vec<_> = indices[range.clone()].iter().map(item).collect();
-            batch::enlarged_f32(projector, surfels, &list, |place, splat| {
-                let surfel = (range.start + place) as u32;
-                let surface = Surface::new(&splat, surfels.normal(), colors);
-                records.push(Record { surfel, ..Record::new(&splat, surface) });
-            })
-        },
-        Record::bounds,
-    )
+    prepared(job, settings, indices.len(), |projector, range, records| {
+        let first = range.start;
+        let item = |&i: &u64| Enlarged { surfel: i as u32, scale: 1.0, times: 1 };
+        let list: Vec<_> = indices[range].iter().map(item).collect();
+        batch::enlarged_f32(projector, surfels, &list, |place, splat| {
+            records.push(Record { surfel: (first + place) as u32, ..record(&splat, surfels) });
+        })
+    })
+}
+
+/// The splats of `count` surfels in the tiles of a picture.
+fn prepared(
+    job: &Job<'_>,
+    settings: &SplatSettings,
+    count: usize,
+    project: impl Fn(&Projector<f32>, Range<usize>, &mut Vec<Record>) -> Tally + Sync + Send,
+) -> Prepared<f32, Record> {
+    Prepared::new(job, &job.strips(), settings, count, project, Record::bounds)
+}
+
+#[inline(always)]
+fn record(splat: &Splat<f32>, surfels: &Surfels) -> Record {
+    Record::new(splat, Surface::new(splat, surfels.normal(), surfels.color()))
 }
 
 /// Draws every tile of a framebuffer. The stages with these names get their shares of the time since

@@ -109,12 +109,16 @@ fn depth_of_16_bits(case: &Case<'_, '_>) -> Mistakes {
     [steps, buffer].into_iter().flat_map(changes).collect()
 }
 
+/// Half a pixel along one axis.
+pub(super) const HALF_RIGHT: &str = "half a pixel to the right";
+pub(super) const HALF_DOWN: &str = "half a pixel down";
+
 /// The ways in which pictures are moved by half a pixel.
 pub(super) const HALVES: [(&str, f32, f32); 4] = [
     ("half a pixel to the right and down", 0.5, 0.5),
     ("half a pixel to the left and up", -0.5, -0.5),
-    ("half a pixel to the right", 0.5, 0.0),
-    ("half a pixel down", 0.0, 0.5),
+    (HALF_RIGHT, 0.5, 0.0),
+    (HALF_DOWN, 0.0, 0.5),
 ];
 
 /// The picture moved by half a pixel.

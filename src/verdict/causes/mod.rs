@@ -42,6 +42,7 @@ use crate::error::{Error, Result};
 use crate::method::Session;
 use crate::scene::Camera;
 use change::Change;
+use shown::Shown;
 use std::cell::OnceCell;
 
 /// The client, what the verdict says about it, and the stages in which its mistake may lie.
@@ -273,7 +274,11 @@ pub fn likely(
 /// The mistakes that explain the wrong pixels of a case.
 fn explanations(case: &Case<'_, '_>) -> Result<Vec<Explanation>> {
     let Case { session, wrong, all, .. } = *case;
-    let mut found: Vec<_> = search::of_camera(case)?.into_iter().collect();
+    let shown = Shown::new(session, case.camera, case.client);
+    let mut found = Vec::new();
+    if let Some(shown) = &shown {
+        found.extend(search::of_camera(case, shown)?);
+    }
     // The depths of many pixels do not fit by chance, so nothing else is tried.
     if !found.is_empty() {
         return Ok(found);
@@ -291,7 +296,8 @@ fn explanations(case: &Case<'_, '_>) -> Result<Vec<Explanation>> {
     }
     // Where trials judge the whole of a large picture, a search takes too long.
     if found.is_empty() && (case.client.part.is_some() || !sample::is_large(case)) {
-        found.extend(search::best(case)?);
+        // If pixels show the camera, it is right, or wrong in another way.
+        found.extend(search::best(case, shown.is_none())?);
     }
     if found.is_empty() {
         found.extend(coarse::promised(case)?);

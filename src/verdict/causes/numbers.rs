@@ -3,7 +3,7 @@
 use super::cameras::{self, Moved};
 use super::change::Change;
 use super::depths::digits;
-use super::mistakes::{SHAPES, SUMS};
+use super::mistakes::{HALF_DOWN, HALF_RIGHT, SHAPES, SUMS};
 use super::{Case, Wrong, epsilon, surfels};
 use crate::error::Result;
 use crate::number::Real;
@@ -23,7 +23,6 @@ pub(super) struct Number<'a> {
     pub(super) in_words: Box<dyn Fn(f64) -> String + 'a>,
     /// A number of the camera, estimated from the surfels that the client shows.
     pub(super) estimate: Option<f64>,
-    pub(super) is_of_camera: bool,
 }
 
 impl Number<'_> {
@@ -41,7 +40,7 @@ impl Number<'_> {
     }
 }
 
-/// The numbers that may be wrong in the first wrong stage.
+/// The numbers that may be wrong in the first wrong stage, but for those of the camera.
 pub(super) fn numbers<'a>(case: &'a Case<'_, '_>) -> Vec<Number<'a>> {
     let is_in = |some: &[&str]| case.stages.iter().any(|stage| some.contains(stage));
     let mut all = Vec::new();
@@ -53,7 +52,6 @@ pub(super) fn numbers<'a>(case: &'a Case<'_, '_>) -> Vec<Number<'a>> {
         all.extend(of_sizes(case));
         all.extend(of_clamps(case));
     }
-    all.extend(numbers_of_camera(case));
     if is_in(&SUMS) {
         all.extend(of_epsilon(case));
     }
@@ -62,7 +60,6 @@ pub(super) fn numbers<'a>(case: &'a Case<'_, '_>) -> Vec<Number<'a>> {
             right: 1.0,
             step: 0.02,
             estimate: None,
-            is_of_camera: false,
             change: Box::new(|gamma| (gamma > 0.1).then_some(Change::Power(gamma))),
             in_words: Box::new(|gamma| format!("the picture is encoded with a gamma of {gamma}")),
         });
@@ -99,7 +96,6 @@ fn of_settings<'a>(case: &'a Case<'_, '_>) -> impl Iterator<Item = Number<'a>> {
         right,
         step,
         estimate: None,
-        is_of_camera: false,
         change,
         in_words: Box::new(move |found| {
             format!("the low-pass filter has another variance: {found} px^2, not {right}")
@@ -109,7 +105,6 @@ fn of_settings<'a>(case: &'a Case<'_, '_>) -> impl Iterator<Item = Number<'a>> {
         right,
         step,
         estimate: None,
-        is_of_camera: false,
         change,
         in_words: Box::new(move |found| format!("the cut-off is {found}, not {right}")),
     });
@@ -122,7 +117,6 @@ fn of_sizes<'a>(case: &'a Case<'_, '_>) -> impl Iterator<Item = Number<'a>> {
         right: 1.0,
         step: 0.01,
         estimate: None,
-        is_of_camera: false,
         change: Box::new(|by| {
             let by = by as f32;
             let in_range = (0.4..2.5).contains(&by);
@@ -134,7 +128,6 @@ fn of_sizes<'a>(case: &'a Case<'_, '_>) -> impl Iterator<Item = Number<'a>> {
         right: 1.0,
         step: -0.01,
         estimate: None,
-        is_of_camera: false,
         change: Box::new(|by| {
             (0.4..2.5).contains(&by).then_some(Change::Supposed(Supposed::Quads(by)))
         }),
@@ -144,7 +137,6 @@ fn of_sizes<'a>(case: &'a Case<'_, '_>) -> impl Iterator<Item = Number<'a>> {
         right: 1.0,
         step: 0.01,
         estimate: None,
-        is_of_camera: false,
         change: Box::new(|by| {
             (0.4..2.5).contains(&by).then_some(Change::Supposed(Supposed::Limit(by)))
         }),
@@ -163,7 +155,6 @@ fn of_clamps<'a>(case: &'a Case<'_, '_>) -> impl Iterator<Item = Number<'a>> {
         right: largest,
         step: -0.02 * largest,
         estimate: None,
-        is_of_camera: false,
         change: Box::new(move |most| {
             let most = most as f32;
             let in_range = most > 0.0;
@@ -175,7 +166,6 @@ fn of_clamps<'a>(case: &'a Case<'_, '_>) -> impl Iterator<Item = Number<'a>> {
         right: largest,
         step: -0.02 * largest,
         estimate: None,
-        is_of_camera: false,
         change: Box::new(|most| {
             (most > 0.5).then_some(Change::Supposed(Supposed::QuadsAtMost(most)))
         }),
@@ -203,7 +193,6 @@ pub(super) fn of_lens<'a>(camera: &'a Camera, moved: Option<Moved>) -> [Number<'
         right: fy,
         step: 0.01 * fy,
         estimate: estimate(|moved| 0.5 * (moved.x.x + moved.y.y)).map(|by| fy * by),
-        is_of_camera: true,
         change: Box::new(move |value| {
             let by = (value / fy) as f32;
             let camera = Camera { fx: camera.fx * by, fy: value as f32, ..*camera };
@@ -218,7 +207,6 @@ pub(super) fn of_lens<'a>(camera: &'a Camera, moved: Option<Moved>) -> [Number<'
         right: 1.0,
         step: 0.01,
         estimate: estimate(|moved| moved.x.x),
-        is_of_camera: true,
         change: Box::new(move |by| {
             let camera = Camera { fx: (fx * by) as f32, ..*camera };
             (0.4..2.5).contains(&by).then_some(Change::Camera(camera))
@@ -231,19 +219,22 @@ pub(super) fn of_lens<'a>(camera: &'a Camera, moved: Option<Moved>) -> [Number<'
 /// The numbers that move or turn the picture.
 pub(super) fn of_place<'a>(camera: &'a Camera, moved: Option<Moved>) -> [Number<'a>; 3] {
     let estimate = |of: fn(&Moved) -> f64| moved.as_ref().map(of);
-    let shift = |estimate, way: &'a str, shifted: fn(&Camera, f32) -> Camera| Number {
-        right: 0.0,
-        step: 0.02,
-        estimate,
-        is_of_camera: true,
-        change: Box::new(move |by| Some(Change::Camera(shifted(camera, by as f32)))),
-        in_words: Box::new(move |by| format!("the picture is {by} px too far {way}")),
-    };
-    let across = shift(estimate(|moved| moved.x.z), "right", |camera, by| Camera {
+    let shift =
+        |estimate, way: &'a str, half: &'a str, shifted: fn(&Camera, f32) -> Camera| Number {
+            right: 0.0,
+            step: 0.02,
+            estimate,
+            change: Box::new(move |by| Some(Change::Camera(shifted(camera, by as f32)))),
+            in_words: Box::new(move |by| match by {
+                0.5 => half.to_owned(),
+                _ => format!("the picture is {by} px too far {way}"),
+            }),
+        };
+    let across = shift(estimate(|moved| moved.x.z), "right", HALF_RIGHT, |camera, by| Camera {
         cx: camera.cx + by,
         ..*camera
     });
-    let down = shift(estimate(|moved| moved.y.z), "down", |camera, by| Camera {
+    let down = shift(estimate(|moved| moved.y.z), "down", HALF_DOWN, |camera, by| Camera {
         cy: camera.cy + by,
         ..*camera
     });
@@ -253,7 +244,6 @@ pub(super) fn of_place<'a>(camera: &'a Camera, moved: Option<Moved>) -> [Number<
         estimate: estimate(|moved| {
             libm::atan2(moved.x.y - moved.y.x, moved.x.x + moved.y.y).to_degrees()
         }),
-        is_of_camera: true,
         change: Box::new(move |degrees| {
             let turn = Mat4::from_axis_angle(Vec3::Z, (degrees as f32).to_radians());
             let view_from_world = turn * camera.view_from_world;
@@ -272,7 +262,6 @@ fn of_epsilon<'a>(case: &'a Case<'_, '_>) -> Option<Number<'a>> {
         right: 1.0,
         step: 0.01,
         estimate: None,
-        is_of_camera: false,
         change: Box::new(move |by| {
             let mut changed = *method;
             changed.set("epsilon", &epsilon::scaled(method, by as f32)?).ok()?;

@@ -231,6 +231,11 @@ mod tests {
             let moved = Camera { cx: camera.cx + by, ..camera };
             assert_eq!(named(right.into(), (&scene, right.into()), &moved), name);
         }
+        // Half a degree is not half a pixel.
+        let turn = glam::Mat4::from_rotation_z(0.5_f32.to_radians());
+        let tilted = Camera { view_from_world: turn * camera.view_from_world, ..camera };
+        let tilt = named(right.into(), (&scene, right.into()), &tilted);
+        assert_eq!(tilt, "the camera is tilted by 0.5 degrees");
         // The whole of a large picture is judged for `deferred`, so numbers are not searched.
         let method = Method::by_name("deferred").unwrap();
         for by in [0.9, 1.001] {

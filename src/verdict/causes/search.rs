@@ -20,27 +20,25 @@ const LEAST_LEFT: f64 = 0.9;
 /// The part of the errors that the first step must take away.
 const LEAST_GAIN: f64 = 1e-6;
 
-/// The number with another value that explains most.
+/// The number with another value that explains most. With `cameras`, it may be one of the camera.
 ///
 /// # Errors
 /// As [`crate::method::Session::verify`].
-pub(super) fn best(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
+pub(super) fn best(case: &Case<'_, '_>, cameras: bool) -> Result<Option<Explanation>> {
     let mut best: Option<Explanation> = None;
     if case.all.near < FEWEST {
         return Ok(best);
     }
-    let (cameras, others): (Vec<_>, Vec<_>) =
-        numbers(case).into_iter().partition(|number| number.is_of_camera);
-    for number in &others {
+    for number in &numbers(case) {
         keep(case, number, found(case, number)?, &mut best);
         if best.as_ref().is_some_and(|best| best.left.all == 0) {
             return Ok(best);
         }
     }
-    // The pixels have shown that the camera is right, or wrong in another way.
-    if Shown::new(case.session, case.camera, case.client).is_some() {
+    if !cameras {
         return Ok(best);
     }
+    let cameras = numbers_of_camera(case);
     // Another camera moves splats so far that a few pixels show no way to it, so that each value is
     // tried on the whole part.
     if let Some((number, tried)) = estimated(case, &cameras)?
@@ -58,17 +56,13 @@ pub(super) fn best(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
     Ok(best)
 }
 
-/// The number of the camera that the client's pixels show to be wrong, if it explains the wrong pixels. Half
-/// a pixel to the right or down is left to the mistakes of these names.
+/// The number of the camera that the client's pixels show to be wrong, if it explains the wrong pixels.
 ///
 /// # Errors
 /// As [`crate::method::Session::verify`].
-pub(super) fn of_camera(case: &Case<'_, '_>) -> Result<Option<Explanation>> {
-    let mut best = None;
-    let numbers = numbers_of_camera(case);
-    let shown = Shown::new(case.session, case.camera, case.client);
-    if let Some((number, value)) = shown.as_ref().and_then(|shown| shown.fit(&numbers))
-        && (value - 0.5).abs() > 1e-3
+pub(super) fn of_camera(case: &Case<'_, '_>, shown: &Shown<'_>) -> Result<Option<Explanation>> {
+    let (mut best, numbers) = (None, numbers_of_camera(case));
+    if let Some((number, value)) = shown.fit(&numbers)
         && case.all.near >= FEWEST
     {
         keep(case, number, near(case, number, value)?, &mut best);

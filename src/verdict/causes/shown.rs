@@ -126,17 +126,18 @@ impl<'a> Shown<'a> {
 /// Pixels of a plane of depths, spread evenly. None if too few show a surfel.
 fn pixels(frame: &Frame<f64>, name: &str, surfels: usize) -> Option<Vec<Pixel>> {
     let (depths, ids) = (frame.scalar(name).ok()?, frame.index(&name.replace('Z', "id")).ok()?);
-    let (width, both) =
-        (ids.width() as usize, ids.values().iter().zip(depths.values()).enumerate());
-    let shown = both.filter(|(_, (id, depth))| (**id as usize) < surfels && depth.is_finite());
+    let is_shown =
+        |(_, (id, depth)): &(usize, (&u32, &f64))| (**id as usize) < surfels && depth.is_finite();
+    let shown = || ids.values().iter().zip(depths.values()).enumerate().filter(is_shown);
+    // Counted first, because a list of all pixels of a large picture takes gigabytes.
+    let count = shown().count();
+    let width = ids.width() as usize;
     let pixel = |(i, (id, depth)): (usize, (&u32, &f64))| Pixel {
         surfel: *id as usize,
         at: [i % width, i / width].map_inline(|at| at as u32),
         depth: *depth,
     };
-    let all: Vec<_> = shown.collect();
-    let step = all.len().div_ceil(MOST).max(1);
-    (all.len() >= FEWEST).then(|| all.into_iter().step_by(step).map(pixel).collect())
+    (count >= FEWEST).then(|| shown().step_by(count.div_ceil(MOST)).map(pixel).collect())
 }
 
 /// The median of the errors' sizes. An error that is no number is the largest.

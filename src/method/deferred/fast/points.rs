@@ -11,6 +11,7 @@ use super::super::indices::Kept;
 use super::super::part::{Range, Whole};
 use super::super::queries::{Limits, Queries};
 use super::super::visibility::NONE;
+use super::PIXELS;
 use crate::composite::decide;
 use crate::frame::Exec;
 use crate::method::Job;
@@ -80,9 +81,6 @@ fn ascending(parts: Vec<Vec<u64>>, pixels: usize, exec: &Exec) -> Vec<u64> {
     }
     sorted
 }
-
-/// How many pixels one job joins.
-const PIXELS: usize = 1 << 14;
 
 /// Draws neighbouring surfels of an object, in ascending order.
 fn draw(points: &PointProjector<f32>, range: &Range<'_>, limits: &Limits, kept: &mut [Kept<f32>]) {
