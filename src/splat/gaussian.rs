@@ -135,7 +135,7 @@ pub struct GaussianShape<R> {
 
 impl<R: Real> GaussianShape<R> {
     /// The shape of Gaussian `i`.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn of_gaussian(gaussians: &Gaussians, i: usize) -> Self {
         let axes = rotation(gaussians.rotation()[i].map_inline(R::from_f32));
@@ -153,7 +153,7 @@ impl<R: Real> GaussianShape<R> {
     }
 
     /// The shape of surfel `i`, which is k standard deviations wide.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn of_surfel(surfels: &Surfels, i: usize, k: f32) -> Self {
         let k = R::from_f32(k);
@@ -330,7 +330,7 @@ impl<R: Real> GaussianProjector<R> {
     }
 
     /// Projects a Gaussian; the numbers mean nothing if it is behind or degenerate.
-    #[inline]
+    #[inline(always)]
     #[must_use]
     pub fn project(&self, shape: &GaussianShape<R>) -> ProjectedGaussian<R> {
         let View { fx, fy, cx, cy, perspective, .. } = self.view;

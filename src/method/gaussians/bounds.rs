@@ -21,6 +21,7 @@ impl<R: Real> Source<'_, R> {
         let least = f64::from(self.settings.least_alpha);
         match (alpha < least, least > 0.0) {
             (true, _) => f64::NEG_INFINITY,
+            (_, true) if alpha == 1.0 => self.opaque_reach,
             (_, true) => elementary::ln(alpha / least),
             _ => f64::INFINITY,
         }
@@ -28,6 +29,7 @@ impl<R: Real> Source<'_, R> {
 
     /// The pixels that a splat of this [`Self::reach`] may touch; from ranges of its numbers, those
     /// that it may touch for any of them.
+    #[inline(always)]
     pub(crate) fn bounds(
         &self,
         center: [[f64; 2]; 2],
@@ -186,6 +188,7 @@ enum Cover {
 
 /// The pixels of a picture that an extent covers, around a range of centres: (least, greatest) for x
 /// and y.
+#[inline(always)]
 fn rect(center: [[f64; 2]; 2], extent: [f64; 2], size: [u32; 2], cover: Cover) -> Rect {
     let side = |axis: usize| {
         let [low, high] = [center[axis][0] - extent[axis], center[axis][1] + extent[axis]];

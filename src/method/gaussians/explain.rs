@@ -9,6 +9,7 @@ use crate::method::Job;
 use crate::method::decisions::Place;
 use crate::number::{Exact, MapInline, Real};
 use crate::splat::ray_disc::{RayDisc, RayFragment};
+use std::collections::HashSet;
 use std::fmt;
 
 /// The replay of one pixel.
@@ -63,15 +64,13 @@ pub fn explain<R: Exact>(
         let met = projected.disc.map(|disc| disc.fragment(&source.projector.rays, pixel));
         FragmentAt { index, weight, projected, look, fragment: *fragment, met }
     };
-    let (mut drawn, mut seen) = (Vec::new(), vec![false; places.len()]);
+    let (mut drawn, mut seen) = (Vec::new(), HashSet::new());
     let pixel_after = blending.pixel(&places, pixel, |place, fragment, weight| {
-        if let Ok(i) = places.binary_search(&place) {
-            seen[i] = true;
-        }
+        seen.insert(place);
         drawn.push(at(place, fragment, weight));
     });
-    let skipped = places.iter().zip(&seen).filter(|(_, seen)| !**seen);
-    let skipped = skipped.map(|(&place, _)| {
+    let skipped = places.iter().filter(|place| !seen.contains(place));
+    let skipped = skipped.map(|&place| {
         let mut fragment = blending.fragment(place, pixel);
         fragment.depth = blending.depth(place, &fragment, pixel);
         at(place, &fragment, None)

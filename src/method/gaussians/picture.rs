@@ -29,7 +29,8 @@ pub(super) fn define<R: Exact>(job: &Job<'_>, settings: &Settings, stages: bool)
     let color = blended.plane(|pixel| pixel.blend.color);
     let through = blended.plane(|pixel| pixel.blend.through);
     clock.lap(STAGES[1].name);
-    planes.extend(display(job, &source, &color, &through));
+    let copies = (color.clone(), through.clone());
+    planes.extend(display(job, &source, (&color, &through), copies));
     clock.lap(STAGES[2].name);
     let (frame, timings) = (job.frame(planes), clock.into_laps());
     Picture { frame, tally: splats.tally, timings, seen: None }
@@ -45,15 +46,15 @@ fn blend<R: Exact>(
     Tiled::new(job, |tile, rect| blending.tile(tile, rect))
 }
 
-/// The planes of the picture: the layers before the surface or the environment, as linear light.
+/// The planes of the picture: the layers before the surface or the environment, as linear light. They are
+/// given as copies of the planes of blending.
 pub(super) fn display<R: Exact>(
     job: &Job<'_>,
     source: &Source<'_, R>,
-    color: &Plane<[R; 3]>,
-    through: &Plane<R>,
+    (color, through): (&Plane<[R; 3]>, &Plane<R>),
+    (mut shown, mut alpha): (Plane<[R; 3]>, Plane<R>),
 ) -> [NamedPlane<R>; 2] {
     spend(Work::Display);
-    let mut shown = color.clone();
     // A power a number is enough work to run in parallel.
     let Rect { x0, y0, .. } = job.window;
     let (environment, surface) = (&job.scene.environment, source.surface());
@@ -73,7 +74,8 @@ pub(super) fn display<R: Exact>(
         }
     });
     let closed = environment.is_some();
-    let mut alpha = through.map(|&through| if closed { R::ONE } else { R::ONE - through });
+    let values = alpha.values_mut().iter_mut();
+    values.for_each(|alpha| *alpha = if closed { R::ONE } else { R::ONE - *alpha });
     if let Some(surface) = surface {
         for (x, y) in pixels(job.window) {
             let Some((_, light)) = surface.at(x, y) else { continue };
@@ -120,7 +122,8 @@ pub(super) fn stage<R: Exact>(
         "display" => {
             let color = given.triple(&GaussianPixel::<R>::COLOR.row, 0)?;
             let through = given.scalar(&GaussianPixel::<R>::THROUGH.row, 0)?;
-            Ok(display(job, &source, color, through).into())
+            let copies = (color.clone(), through.clone());
+            Ok(display(job, &source, (color, through), copies).into())
         }
         _ => Err(unknown(stage)),
     }

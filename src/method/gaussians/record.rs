@@ -277,7 +277,7 @@ pub fn project_records(job: &Job<'_>, settings: &Settings) -> (Vec<GaussianRecor
         let bounds = [b.x0, b.y0, b.x1, b.y1];
         GaussianRecord::new(splat.index, &projected, splat.key, splat.color, bounds)
     };
-    ((0..splats.len()).map(record).collect(), splats.tally)
+    (splats.all_places().into_iter().map(record).collect(), splats.tally)
 }
 
 #[cfg(test)]

@@ -57,6 +57,8 @@ pub(crate) struct Source<'a, R> {
     pub(super) size: [u32; 2],
     /// The space of blending.
     pub(crate) space: Encoding,
+    /// The reach of an opaque splat: all splats of most surfels.
+    pub(super) opaque_reach: f64,
 }
 
 /// An item, projected.
@@ -97,6 +99,7 @@ impl<'a, R: Real> Source<'a, R> {
             BlendSpace::Linear => Encoding::Linear,
             BlendSpace::Srgb => Encoding::Srgb,
         };
+        let least = f64::from(settings.least_alpha);
         Self {
             scene,
             settings,
@@ -104,6 +107,7 @@ impl<'a, R: Real> Source<'a, R> {
             eye: Vector3::from_glam(camera.eye().as_vec3()),
             size: camera.size(),
             space,
+            opaque_reach: elementary::ln(1.0 / least),
         }
     }
 
@@ -119,7 +123,7 @@ impl<'a, R: Real> Source<'a, R> {
     }
 
     /// The shape of an item.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn shape(&self, i: usize) -> GaussianShape<R> {
         match &self.scene.gaussians {
             Some(gaussians) => GaussianShape::of_gaussian(gaussians, i),
@@ -128,13 +132,13 @@ impl<'a, R: Real> Source<'a, R> {
     }
 
     /// Projects an item.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn project(&self, i: usize) -> Projected<R> {
         self.project_as(i, self.shape(i))
     }
 
     /// Projects an item as if it had this shape.
-    #[inline]
+    #[inline(always)]
     pub(crate) fn project_as(&self, i: usize, shape: GaussianShape<R>) -> Projected<R> {
         let on_screen = self.projector.project(&shape);
         let perspective = self.projector.view.perspective;
@@ -268,7 +272,7 @@ impl<R: Exact> Source<'_, R> {
     }
 
     /// An item as a splat, and whether it is drawn.
-    #[inline]
+    #[inline(always)]
     pub(super) fn splat(&self, i: usize) -> (GaussianSplat<R>, Fate) {
         let projected = self.project(i);
         let Projected { on_screen, alpha, disc, .. } = projected;

@@ -68,7 +68,11 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
     });
     clock.lap(planes::STAGES[1].name);
     let mut left = Vec::new();
-    let shown = display(job, &blending.source, &target.color, &target.through);
+    let (mut shown, mut alpha) = (pool.triple(job.size()), pool.scalar(job.size()));
+    shown.values_mut().copy_from_slice(target.color.values());
+    alpha.values_mut().copy_from_slice(target.through.values());
+    let (color, through) = (&target.color, &target.through);
+    let shown = display(job, &blending.source, (color, through), (shown, alpha));
     left.extend(target.planes());
     left.extend(shown);
     clock.lap(planes::STAGES[2].name);

@@ -1,6 +1,6 @@
 use super::super::Support;
 use super::*;
-use crate::frame::{Exec, Frame};
+use crate::frame::{Exec, Frame, Rect};
 use crate::method::buffer_formats::{DepthBuffer, Formats};
 use crate::method::{Method, Session};
 use crate::number::Real;
@@ -151,5 +151,28 @@ fn a_depth_buffer_of_few_digits_draws_what_it_cannot_tell_apart() {
         scene.surface = Some(Surface::new(depths, colors).unwrap());
         let all = [DepthBuffer::F32, DepthBuffer::Unorm16].map(|format| draw(&scene, format));
         assert_eq!(all.map(|frame| drawn(&frame)), expected, "{nearer}");
+    }
+}
+
+/// Only some of the splats touch the region; what its fragments need beside a splat is still that of the splat.
+#[test]
+fn a_region_has_the_bits_of_the_picture_for_every_order_and_disc() {
+    let (camera, exec) = (cameras().remove(1), Exec::sequential());
+    let scene = scene(300, 1, 4);
+    let region = Rect { x0: 20, y0: 30, x1: 61, y1: 50 };
+    for (_, order) in Order::WORDS {
+        for (_, disc) in DiscRule::WORDS {
+            let kernel = GaussianKernel { disc: *disc, ..Settings::INRIA.kernel };
+            let settings = Settings { order: *order, kernel, ..Settings::INRIA };
+            let mut session = Session::new(&scene, Method::Gaussians(settings), &exec).unwrap();
+            let whole = session.render(&camera).unwrap().frame.scalar("Z").unwrap().clone();
+            session.set_region(Some(region)).unwrap();
+            let part = session.render(&camera).unwrap().frame.scalar("Z").unwrap();
+            for (y, row) in (region.y0..).zip(part.values().chunks(41)) {
+                for (x, depth) in (region.x0..).zip(row) {
+                    assert!(depth == whole.at(x, y), "{order:?} {disc:?} {x} {y}");
+                }
+            }
+        }
     }
 }
