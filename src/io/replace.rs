@@ -144,7 +144,8 @@ const RANDOM: usize = 12;
 /// The folders that this process has looked at for abandoned files.
 static LOOKED_AT: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
-/// The partial files of this process. Hold the lock to create, rename or remove a file.
+/// The partial files of this process, and the folders that it made for them. Hold the lock to create,
+/// rename or remove a file.
 static PARTIAL_FILES: Mutex<Vec<PathBuf>> = Mutex::new(Vec::new());
 
 fn partial_files() -> MutexGuard<'static, Vec<PathBuf>> {
@@ -152,17 +153,48 @@ fn partial_files() -> MutexGuard<'static, Vec<PathBuf>> {
     PARTIAL_FILES.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
-/// Removes the partial files of this process. Call it when the program is about to end early, for
-/// example after a signal. While the returned guard is held, no other partial file is created, and
+/// Removes the partial files of this process, and folders that it made for them and that are empty. Call
+/// it when the program is about to end early, for example after a signal. While the returned guard is held, no other partial file is created, and
 /// none is put in its place.
 #[must_use = "others may write again when it goes"]
 pub fn remove_partial_files() -> impl Sized {
     let mut files = partial_files();
-    for path in files.drain(..) {
+    // A folder was made before its files.
+    for path in files.drain(..).rev() {
         // Ignore the error, because the program is about to end.
-        let _ = fs::remove_file(path);
+        let _ = fs::remove_file(&path).or_else(|_| fs::remove_dir(&path));
     }
     files
+}
+
+/// A folder for files to be written. If it was made here, it goes with this guard, and by
+/// [`remove_partial_files`], unless something is in it.
+#[derive(Debug)]
+pub(crate) struct NewFolder(Option<PathBuf>);
+
+impl NewFolder {
+    /// Makes the folder, unless it is there.
+    pub(crate) fn make(path: &Path) -> Result<Self> {
+        let mut files = partial_files();
+        match fs::create_dir(path) {
+            Ok(()) => {
+                files.push(path.to_owned());
+                Ok(Self(Some(path.to_owned())))
+            }
+            Err(_) if path.is_dir() => Ok(Self(None)),
+            Err(error) => Err(Error::io(path, error)),
+        }
+    }
+}
+
+impl Drop for NewFolder {
+    fn drop(&mut self) {
+        if let Some(path) = self.0.take() {
+            partial_files().retain(|other| *other != path);
+            // Fails if it is not empty.
+            let _ = fs::remove_dir(path);
+        }
+    }
 }
 
 /// A file beside its final place, removed on drop. The open file keeps its lock.

@@ -50,6 +50,23 @@ fn a_signal_leaves_no_partial_file() {
     }
 }
 
+/// A folder is made before the surfels are sorted into it.
+#[test]
+fn a_signal_leaves_no_empty_folder() {
+    let at = TempDir::new().unwrap();
+    let cloud = splatref::source::Shape::Torus.surfels(1_000_000, 0).unwrap().into_cloud();
+    splatref::io::ply::write(&at.path().join("torus.ply"), &cloud).unwrap();
+    let mut program = Command::new(env!("CARGO_BIN_EXE_splatref"));
+    let tile = program.current_dir(at.path()).args(["tile", "torus.ply", "-o", "torus"]);
+    let mut child = tile.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    while !at.path().join("torus").exists() {
+        assert_eq!(child.try_wait().unwrap(), None, "it has ended");
+    }
+    send(15, &child);
+    assert_eq!(child.wait().unwrap().signal(), Some(15));
+    assert_eq!(names(at.path()), ["torus.ply"]);
+}
+
 /// `ulimit -f` stands for a full disk, which a test cannot have without rights of its own.
 #[test]
 fn a_file_that_cannot_grow_is_an_error_and_leaves_nothing() {

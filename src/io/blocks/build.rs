@@ -10,7 +10,7 @@ use crate::frame::Exec;
 use crate::index::grouping::interleaved;
 use crate::io::hierarchy::Hierarchy;
 use crate::io::hierarchy::bytes::{Reader, Writer};
-use crate::io::replace::write_atomically;
+use crate::io::replace::{NewFolder, write_atomically};
 use crate::io::{Reason, checksum};
 use crate::memory;
 use crate::number::{MapInline, Real};
@@ -18,7 +18,7 @@ use crate::progress::Progress;
 use crate::scene::{Sphere, hash};
 use glam::Vec3;
 use sha2::Sha256;
-use std::fs::{self, File};
+use std::fs::File;
 use std::io::{self, BufWriter, Seek, SeekFrom, Write};
 use std::path::Path;
 
@@ -53,17 +53,8 @@ pub(in crate::io) fn build(
         let what = format!("{} surfels, but ids have 32 bits: split the scene", whole.count);
         return Err(Error::Invalid(what));
     }
-    let existed = match fs::create_dir(folder) {
-        Ok(()) => false,
-        Err(_) if folder.is_dir() => true,
-        Err(error) => return Err(Error::io(folder, error)),
-    };
-    let report = sort_into(input, whole, folder, exec, progress);
-    if report.is_err() && !existed {
-        // Another process may have put its blocks there; then the folder stays.
-        let _ = fs::remove_dir(folder);
-    }
-    report.map(Some)
+    let _goes_if_empty = NewFolder::make(folder)?;
+    sort_into(input, whole, folder, exec, progress).map(Some)
 }
 
 /// Sorts the surfels in a temporary file in the folder, and writes the blocks.
