@@ -21,7 +21,7 @@
 
 pub mod rotation;
 
-use crate::number::{Real, Vector3};
+use crate::number::{MapInline, Real, Vector3};
 use crate::scene::gaussians;
 
 /// The greatest number of coefficients: those of degree 3.
@@ -30,7 +30,7 @@ pub const MAX_COEFFICIENTS: usize = 16;
 /// The values of the first (degree + 1)^2 functions in a unit direction; the others are 0.
 ///
 /// The products are computed as the [module](self) writes them.
-#[inline]
+#[inline(always)]
 pub fn basis<R: Real>(degree: u32, direction: Vector3<R>) -> [R; MAX_COEFFICIENTS] {
     let mut b = [R::ZERO; MAX_COEFFICIENTS];
     let c = R::from_f32;
@@ -70,17 +70,17 @@ pub fn basis<R: Real>(degree: u32, direction: Vector3<R>) -> [R; MAX_COEFFICIENT
 /// A colour in a direction: the sum of coefficients times functions in ascending order, plus 1/2.
 ///
 /// `coefficients` are those of one colour; those beyond `degree` are not read.
-#[inline]
+#[inline(always)]
 pub fn color<R: Real>(degree: u32, coefficients: &[glam::Vec3], direction: Vector3<R>) -> [R; 3] {
     let basis = basis(degree, direction);
     let count = gaussians::coefficients(degree);
-    let mut sum = [R::ZERO; 3];
-    for (function, coefficient) in basis.iter().zip(coefficients).take(count) {
-        for (sum, part) in sum.iter_mut().zip(coefficient.to_array()) {
-            *sum = *sum + *function * R::from_f32(part);
-        }
+    let [mut red, mut green, mut blue] = [R::ZERO; 3];
+    for (function, own) in basis.iter().zip(coefficients).take(count) {
+        red = red + *function * R::from_f32(own.x);
+        green = green + *function * R::from_f32(own.y);
+        blue = blue + *function * R::from_f32(own.z);
     }
-    sum.map(|sum| sum + R::from_f32(0.5))
+    [red, green, blue].map_inline(|sum| sum + R::from_f32(0.5))
 }
 
 #[cfg(test)]

@@ -60,7 +60,7 @@ pub fn explain<R: Exact>(
     let at = |place: usize, fragment: &GaussianFragment<R>, weight| {
         let index = splats.at(place).index;
         let projected = source.project(index as usize);
-        let look = source.look(index as usize, &projected.shape);
+        let look = source.look(index as usize, projected.shape.position);
         let met = projected.disc.map(|disc| disc.fragment(&source.projector.rays, pixel));
         FragmentAt { index, weight, projected, look, fragment: *fragment, met }
     };

@@ -61,6 +61,12 @@ vectorized_avx2!(
                 splats.push(splat);
             }
         }
+        // Coefficients are far apart in memory. A short loop waits for those of several splats at once, and
+        // most splats of a capture are out of sight and need none.
+        for splat in &mut splats {
+            let i = splat.index as usize;
+            splat.color = source.look(i, source.position(i)).1;
+        }
         (splats, tally)
     }
 );

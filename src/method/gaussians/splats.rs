@@ -122,6 +122,16 @@ impl<'a, R: Real> Source<'a, R> {
         count(self.scene)
     }
 
+    /// The centre of an item.
+    #[inline(always)]
+    pub(super) fn position(&self, i: usize) -> Vector3<R> {
+        let positions = match &self.scene.gaussians {
+            Some(gaussians) => gaussians.position(),
+            None => self.scene.surfels.position(),
+        };
+        Vector3::from_glam(positions[i])
+    }
+
     /// The shape of an item.
     #[inline(always)]
     pub(crate) fn shape(&self, i: usize) -> GaussianShape<R> {
@@ -165,15 +175,15 @@ impl<'a, R: Real> Source<'a, R> {
         self.projector.ray_disc(Vector3::from_glam(position), &axes, k)
     }
 
-    /// The colour of an item: in the scene's encoding before it is bounded, and as it is blended.
-    #[inline]
-    pub(crate) fn look(&self, i: usize, shape: &GaussianShape<R>) -> ([R; 3], [R; 3]) {
+    /// The colour of an item at a position: in the scene's encoding before it is bounded, and as it is blended.
+    #[inline(always)]
+    pub(crate) fn look(&self, i: usize, position: Vector3<R>) -> ([R; 3], [R; 3]) {
         let surfels = &self.scene.surfels;
         let raw = match &self.scene.gaussians {
             Some(gaussians) => {
                 let degree = self.settings.degree.min(gaussians.degree());
                 let direction = if self.projector.view.perspective {
-                    (shape.position - self.eye).normalized()
+                    (position - self.eye).normalized()
                 } else {
                     let [x, y, z, _] = self.projector.view.rows[2];
                     -Vector3::new(x, y, z)
@@ -271,7 +281,7 @@ impl<R: Exact> Source<'_, R> {
         if small { f32::INFINITY } else { (reach * (1.0 + margin) + margin) as f32 }
     }
 
-    /// An item as a splat, and whether it is drawn.
+    /// An item as a splat without its colour, and whether it is drawn.
     #[inline(always)]
     pub(super) fn splat(&self, i: usize) -> (GaussianSplat<R>, Fate) {
         let projected = self.project(i);
@@ -297,15 +307,13 @@ impl<R: Exact> Source<'_, R> {
             (_, _, true) => Fate::Outside,
             _ => Fate::Visible,
         };
-        // Most splats of a capture are out of sight, and need no colour.
-        let color = if bounds.is_empty() { [R::ZERO; 3] } else { self.look(i, &projected.shape).1 };
         let splat = GaussianSplat {
             index: i as u32,
             bounds,
             center,
             conic,
             alpha: projected.alpha,
-            color,
+            color: [R::ZERO; 3],
             depth: place.z,
             key: projected.key(self.settings.order),
             reach: self.beyond(reach),

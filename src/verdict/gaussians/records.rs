@@ -111,7 +111,7 @@ fn truth<P: Profile>(
     keys: &Keys<P>,
 ) -> GaussianRecord<Ball<P>> {
     let key = keys.key(index, own, source.settings.order);
-    let color = source.look(index as usize, &own.shape).1;
+    let color = source.look(index as usize, own.shape.position).1;
     GaussianRecord::new(index, own, key, color, [0; 4])
 }
 

@@ -182,7 +182,7 @@ fn possible<P: Profile>(
         center: on_screen.center,
         conic: on_screen.conic,
         alpha,
-        color: source.look(i, &shape).1,
+        color: source.look(i, shape.position).1,
         depth: place.z,
         key: projected.key(source.settings.order),
         reach: f32::INFINITY,
