@@ -7,7 +7,7 @@ use crate::method::blue::squares::{Square, Squares};
 use crate::method::clock::{Work, spend};
 use crate::method::fast::store::clear;
 use crate::method::fragment::facing;
-use crate::number::lanes::{LANES, vectorized};
+use crate::number::lanes::{LANES, Lanes, each, mask, select, select_u32, vectorized};
 use crate::scene::Scene;
 use crate::splat::View;
 
@@ -115,6 +115,39 @@ fn positive([x, y, z]: [f32; 3]) -> [f32; 3] {
     [x + 0.0, y + 0.0, z + 0.0]
 }
 
+/// a and b of the pixels of the window that begins here.
+#[inline(always)]
+fn rays(a: &[f32], b: &[f32], [x, y]: [usize; 2]) -> (Lanes, Lanes) {
+    let row: [f32; SIDE] = a[x..x + SIDE].as_chunks().0[0];
+    let column: [f32; SIDE] = b[y..y + SIDE].as_chunks().0[0];
+    let (mut a, mut b) = ([0.0; LANES], [0.0; LANES]);
+    let rows = a.as_chunks_mut::<SIDE>().0.iter_mut().zip(b.as_chunks_mut::<SIDE>().0);
+    for ((a, b), own) in rows.zip(column) {
+        (*a, *b) = (row, [own; SIDE]);
+    }
+    (a, b)
+}
+
+/// The window of a plane whose first pixel is `first`.
+#[inline(always)]
+fn window<T: Copy + Default>(plane: &[T], first: usize, stride: usize) -> [T; LANES] {
+    let mut lanes = [T::default(); LANES];
+    for (k, row) in lanes.as_chunks_mut::<SIDE>().0.iter_mut().enumerate() {
+        let at = first + k * stride;
+        *row = plane[at..at + SIDE].as_chunks().0[0];
+    }
+    lanes
+}
+
+/// Overwrites what [`window`] reads.
+#[inline(always)]
+fn put_window<T: Copy>(plane: &mut [T], first: usize, stride: usize, lanes: &[T; LANES]) {
+    for (k, row) in lanes.as_chunks::<SIDE>().0.iter().enumerate() {
+        let at = first + k * stride;
+        plane[at..at + SIDE].as_chunks_mut().0[0] = *row;
+    }
+}
+
 vectorized!(
     fn draw<const PERSPECTIVE: bool>(tile: &mut TileOfDiscs, near: f32) {
         let (rect, stride) = (tile.rect, tile.stride());
@@ -126,29 +159,27 @@ vectorized!(
             let (y0, y1) = ((inner.y0 - rect.y0) as usize, (inner.y1 - rect.y0) as usize);
             for y in (y0..y1).step_by(SIDE) {
                 for x in (x0..x1).step_by(SIDE) {
-                    let (a, b) = (&a[x..x + SIDE], &b[y..y + SIDE]);
-                    let (mut ts, mut holds) = ([0.0; LANES], [0_u32; LANES]);
+                    // -- The fragments of the window
+                    let (a, b) = rays(a, b, [x, y]);
+                    let (mut ts, mut offsets) = ([0.0; LANES], [0.0; LANES]);
                     for i in 0..LANES {
-                        let ray = [a[i % SIDE], b[i / SIDE]];
-                        let fragment = disc.at(ray, PERSPECTIVE);
-                        let DiscFragment { t, .. } = fragment;
-                        let inside = (x + i % SIDE < x1) & (y + i / SIDE < y1);
-                        ts[i] = t + 0.0;
-                        holds[i] = u32::from(inside & disc.holds(&fragment, near)).wrapping_neg();
+                        let DiscFragment { t, offset } = disc.at([a[i], b[i]], PERSPECTIVE);
+                        (ts[i], offsets[i]) = (t, offset);
                     }
+                    let holds = mask(|i| {
+                        let inside = (i % SIDE < x1 - x) & (i / SIDE < y1 - y);
+                        inside & disc.holds(&DiscFragment { t: ts[i], offset: offsets[i] }, near)
+                    });
+                    // -- Keep the nearest
                     let first = y * stride + x;
-                    for k in 0..SIDE {
-                        let at = first + k * stride;
-                        let (depth, discs) = (&mut depth[at..at + SIDE], &mut discs[at..at + SIDE]);
-                        for i in 0..SIDE {
-                            let t = ts[k * SIDE + i];
-                            let kept = holds[k * SIDE + i]
-                                & u32::from(decide::before(t, depth[i])).wrapping_neg();
-                            let bits = (t.to_bits() & kept) | (depth[i].to_bits() & !kept);
-                            depth[i] = f32::from_bits(bits);
-                            discs[i] = (place & kept) | (discs[i] & !kept);
-                        }
-                    }
+                    let (kept, ids) = (window(depth, first, stride), window(discs, first, stride));
+                    let nearer = mask(|i| decide::before(ts[i], kept[i]));
+                    let takes = each(|i| holds[i] & nearer[i]);
+                    // Adding 0 turns -0 into +0.
+                    let kept = select(&takes, &each(|i| ts[i] + 0.0), &kept);
+                    let ids = select_u32(&takes, &[place; LANES], &ids);
+                    put_window(depth, first, stride, &kept);
+                    put_window(discs, first, stride, &ids);
                 }
             }
         }
