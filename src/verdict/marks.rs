@@ -55,6 +55,17 @@ impl Marks {
         Self { log: self.log.as_ref().map(|_| Vec::new()), ..Self::new(rect) }
     }
 
+    /// The findings of some parts in a row.
+    fn in_a_row(parts: Vec<Self>) -> Self {
+        let mut row = Self::new(Rect { x0: 0, y0: 0, x1: 0, y1: 1 });
+        for part in parts {
+            row.found.extend(part.found);
+            keep_worse(&mut row.worst, part.worst);
+        }
+        row.rect.x1 = row.found.len() as u32;
+        row
+    }
+
     /// All recorded checks.
     pub(crate) fn checks(self, stage: &'static str) -> impl Iterator<Item = Check> {
         let log = self.log.into_iter().flatten();
@@ -292,6 +303,25 @@ impl Watch {
         }
     }
 
+    /// The parts of the job's picture to judge, or of the one part of it that is judged.
+    pub(crate) fn pieces(self, job: &Job<'_>) -> Vec<(usize, Rect)> {
+        match (self, job.part) {
+            (Self::All, Some(part)) => part.pieces.to_vec(),
+            _ => self.parts(&job.grid()),
+        }
+    }
+
+    /// The marks of all parts as one. If only a part of the picture is judged, its pixels are one
+    /// row, one piece after the other.
+    pub(crate) fn together(self, job: &Job<'_>, parts: Vec<Marks>) -> Marks {
+        if job.part.is_some() {
+            return Marks::in_a_row(parts);
+        }
+        let mut marks = self.picture(job);
+        parts.into_iter().for_each(|part| marks.put(part));
+        marks
+    }
+
     /// Empty marks for a part.
     pub(crate) fn marks(self, rect: Rect) -> Marks {
         match self {
@@ -362,11 +392,7 @@ pub(crate) fn verdict<const N: usize>(
     budget: f64,
     judge: impl Fn(TilePart, &mut [Marks; N]) -> Counts + Sync + Send,
 ) -> Verdict {
-    let tiles = match job.part {
-        Some(part) => part.pieces.to_vec(),
-        None => job.grid().rects().into_iter().enumerate().collect(),
-    };
-    let found = job.exec.ordered(tiles, |(tile, rect)| {
+    let found = job.exec.ordered(Watch::All.pieces(job), |(tile, rect)| {
         let mut marks = [(); N].map(|()| Marks::new(rect));
         let counts = judge(TilePart { tile, rect }, &mut marks);
         (marks, counts)

@@ -91,7 +91,7 @@ mod selection;
 mod tests;
 
 use crate::composite::decide;
-use crate::error::Result;
+use crate::error::{Error, Result};
 use crate::frame::raster::Snap;
 use crate::frame::{Exec, NO_ID, Rect};
 use crate::memory;
@@ -101,7 +101,7 @@ use crate::method::deferred::indices::Kept;
 use crate::method::deferred::part::{Part, Whole};
 use crate::method::deferred::picture::whole;
 use crate::method::record::rows;
-use crate::method::tiled::Tiled;
+use crate::method::tiled::{Tiled, pixels};
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
 use crate::scene::Surfels;
@@ -121,8 +121,9 @@ use polygons::{Ground, PolygonTile, Polygons, front};
 /// Judges the planes of a client. Its ids are ranks: the number of ids that are less.
 ///
 /// # Errors
-/// [`crate::Error::Invalid`] if the flags belong to another scene, or if the process may not hold
-/// the surfels.
+/// [`crate::Error::Invalid`] if the flags belong to another scene, if the process may not hold
+/// the surfels, or if a part of the picture is to be judged alone and the client does not say which
+/// surfels it has selected.
 pub(super) fn verify<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
@@ -151,6 +152,10 @@ fn judge<P: Profile>(
     client: &Client,
     watch: Watch,
 ) -> Result<(MethodMarks<4>, Counts)> {
+    if job.part.is_some() && !lists_surfels(client) {
+        // What is selected elsewhere is drawn here too.
+        return Err(Error::Invalid("a part needs the ids of the selected surfels".into()));
+    }
     let (whole, before) = whole(job, settings)?;
     let ground = Ground::new(job, &whole)?;
     let cull = settings.splats.cull;
@@ -196,12 +201,19 @@ fn judge<P: Profile>(
         surfels: scene.surfels(),
         visible: &visible,
     };
-    let (tiles, counts) = judge.tiles(job.exec, watch.parts(&job.grid()), watch);
+    let (tiles, counts) = judge.tiles(job.exec, watch.pieces(job), watch);
     let [(_, names), ..] = first.stages();
     let levels = vec![("visibility", names, visibility), indices];
     let [nearest, sums, averages, shading] = client_planes.stages();
     let stages = [("difference", nearest.1), sums, averages, shading];
     Ok((MethodMarks { levels, stages, tiles }, counts))
+}
+
+/// Whether the client says which surfels it has selected. Then each part of its picture can be judged
+/// alone.
+pub(super) fn lists_surfels(client: &Client) -> bool {
+    let [_, id, _] = rows(&Kept::<f32>::PLANES);
+    client.index(&id).is_some()
 }
 
 /// Bytes for a surfel that pass 1 draws, placed and projected in balls, and once more for pass 3.
@@ -265,21 +277,15 @@ impl<'a, P: Profile> Scenery<'a, P> {
             );
             (found, marks)
         };
-        let grid = job.grid();
-        let found = job.exec.ordered(Watch::All.parts(&grid), |(tile, rect)| {
+        let found = job.exec.ordered(Watch::All.pieces(job), |(tile, rect)| {
             judge(TilePart { tile, rect }, Marks::new(rect))
         });
-        let (tiles, all): (Vec<_>, Vec<_>) = found.into_iter().unzip();
-        let mut marks = watch.picture(job);
-        match watch {
-            Watch::All => all.into_iter().for_each(|part| marks.put(part)),
-            Watch::One(_) => {
-                for (tile, rect) in watch.parts(&grid) {
-                    marks.put(judge(TilePart { tile, rect }, watch.marks(rect)).1);
-                }
-            }
+        let (found, mut marks): (Vec<_>, Vec<_>) = found.into_iter().unzip();
+        if let Watch::One(_) = watch {
+            let again = |(tile, rect)| judge(TilePart { tile, rect }, watch.marks(rect)).1;
+            marks = watch.pieces(job).into_iter().map(again).collect();
         }
-        (Tiled::from_tiles(grid, tiles), marks)
+        (in_place(job, found), watch.together(job, marks))
     }
 
     /// Judges pass 2, where `limits` are the greatest depths that pass at each pixel. Returns B(i)
@@ -293,9 +299,7 @@ impl<'a, P: Profile> Scenery<'a, P> {
         let (job, cull) = (self.flat.job(self.job), self.settings.splats.cull);
         let [depth, id, _] = rows(&Kept::<f32>::PLANES);
         let planes = SamplePlanes::of_nearest(client, job.scene, [depth, id]);
-        let everything = |_| true;
-        let points =
-            AllPossible::<P>::drawn_where(&job, cull, Snap::default(), Some(limits), everything);
+        let points = AllPossible::<P>::new(&job, cull, Snap::default(), Some(limits));
         let names = planes.names();
         let marks = match names.is_empty() {
             true => watch.picture(&job),
@@ -308,6 +312,24 @@ impl<'a, P: Profile> Scenery<'a, P> {
         };
         (("indices", names, marks), selected)
     }
+}
+
+/// Puts what was found in the judged pieces of a picture into their places. Nothing is known of the
+/// pixels beside them.
+fn in_place<P: Profile>(job: &Job<'_>, found: Vec<Vec<Nearest<P>>>) -> Tiled<Nearest<P>> {
+    let grid = job.grid();
+    let Some(part) = job.part else { return Tiled::from_tiles(grid, found) };
+    let (rects, mut tiles) = (grid.rects(), vec![Vec::new(); grid.len()]);
+    for (tile, _) in part.pieces {
+        tiles[*tile] = vec![Nearest { depth: anything(), id: None }; rects[*tile].pixels()];
+    }
+    let mut placed = Tiled::from_tiles(grid, tiles);
+    for ((_, rect), found) in part.pieces.iter().zip(found) {
+        for ((x, y), nearest) in pixels(*rect).zip(found) {
+            *placed.at_mut(x, y) = nearest;
+        }
+    }
+    placed
 }
 
 /// The polygons that may lie in a tile.

@@ -9,11 +9,13 @@ use crate::verdict::projection::{AllPossible, SamplePlanes};
 
 /// The surfels that a plane of ids lists, out of `total`. All of them are certain.
 pub(super) fn listed(ids: &Plane<u32>, total: u64) -> Vec<(u32, bool)> {
-    let known = ids.values().iter().filter(|&&rank| u64::from(rank) < total);
-    let mut listed: Vec<_> = known.map(|&rank| (rank, true)).collect();
-    listed.sort_unstable();
-    listed.dedup();
-    listed
+    let mut listed = vec![false; total as usize];
+    for rank in ids.values() {
+        if let Some(listed) = listed.get_mut(*rank as usize) {
+            *listed = true;
+        }
+    }
+    (0..).zip(listed).filter_map(|(rank, listed)| listed.then_some((rank, true))).collect()
 }
 
 /// The surfels that may be selected if there is no such plane.

@@ -104,12 +104,7 @@ pub(crate) fn verify_part<P: Profile>(
     budget: f64,
 ) -> Verdict {
     let planes = SamplePlanes::new(client, job.scene);
-    let drawn = client.projection(job);
-    let nearby = part.is_small().then(|| Nearby::new(part, drawn.camera, 1.0));
-    let position = drawn.scene.surfels.position();
-    let is_near =
-        |i: usize| nearby.is_none_or(|nearby| nearby.holds(Vector3::from_glam(position[i]), 0.0));
-    let possible = AllPossible::<P>::drawn_where(&drawn, cull, snap, None, is_near);
+    let possible = AllPossible::<P>::new(&client.projection(job), cull, snap, None);
     let found = job.exec.ordered(part.pieces.to_vec(), |(tile, rect)| {
         [possible.judge(&planes, TilePart { tile, rect }, Marks::new(rect))]
     });
@@ -119,24 +114,20 @@ pub(crate) fn verify_part<P: Profile>(
 }
 
 impl<'a, P: Profile> AllPossible<'a, P> {
+    /// Where only a few pieces of the picture are judged, the surfels near them alone.
     pub(crate) fn new(
         job: &Job<'a>,
         cull: bool,
         snap: Snap,
         limits: Option<&'a Tiled<Ball<P>>>,
     ) -> Self {
-        Self::drawn_where(job, cull, snap, limits, |_| true)
-    }
-
-    /// Only those surfels whose indices `draws` accepts.
-    pub(crate) fn drawn_where(
-        job: &Job<'a>,
-        cull: bool,
-        snap: Snap,
-        limits: Option<&'a Tiled<Ball<P>>>,
-        draws: impl Fn(usize) -> bool + Sync + Send,
-    ) -> Self {
         let (scene, grid) = (job.scene, job.grid());
+        let part = job.part.filter(Part::is_small);
+        let nearby = part.map(|part| Nearby::new(part, job.camera, 1.0));
+        let position = scene.surfels.position();
+        let draws = |i: usize| {
+            nearby.is_none_or(|nearby| nearby.holds(Vector3::from_glam(position[i]), 0.0))
+        };
         let of = &scene.surfels;
         let projector = SceneProjector::new(scene, job.camera, cull, snap);
         let ranges = (0..of.len()).step_by(8192);
@@ -161,12 +152,10 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         planes: &SamplePlanes<'_>,
         watch: Watch,
     ) -> Marks {
-        let mut marks = watch.picture(job);
-        let found = job.exec.ordered(watch.parts(&job.grid()), |(tile, rect)| {
+        let found = job.exec.ordered(watch.pieces(job), |(tile, rect)| {
             self.judge(planes, TilePart { tile, rect }, watch.marks(rect))
         });
-        found.into_iter().for_each(|part| marks.put(part));
-        marks
+        watch.together(job, found)
     }
 
     /// The surfels or primitives that a client without ids may have at the pixels of a tile. Each
