@@ -358,29 +358,35 @@ impl Surfels {
         let (low, high) = self.bounds();
         let center = (low.as_dvec3() + high.as_dvec3()) / 2.0;
         let firsts = (0..self.len()).step_by(CHUNK).collect();
-        let far = exec
-            .ordered(firsts, |first| self.reach_of(first..self.len().min(first + CHUNK), center));
+        let far = exec.ordered(firsts, |first| {
+            self.reach_of_some(first..self.len().min(first + CHUNK), center)
+        });
         let radius = far.into_iter().fold(0.0, |most, far| if far > most { far } else { most });
         Sphere { center, radius }
     }
 
     /// The largest distance from a point to a surfel plus its reach; 0 if there is none.
     pub(crate) fn reach(&self, center: DVec3) -> f64 {
-        self.reach_of(0..self.len(), center)
+        self.reach_of_some(0..self.len(), center)
+    }
+
+    /// How far a surfel reaches from its centre at most.
+    #[inline]
+    pub(crate) fn reach_of(&self, i: usize) -> f64 {
+        match &self.tangents {
+            None => f64::from(self.radius[i]),
+            Some(tangents) => {
+                let [u, v] = tangents[i].map_inline(Vec3::as_dvec3);
+                (u.length_squared() + v.length_squared()).sqrt()
+            }
+        }
     }
 
     /// [`Surfels::reach`] for a range of surfels.
-    fn reach_of(&self, surfels: Range<usize>, center: DVec3) -> f64 {
+    fn reach_of_some(&self, surfels: Range<usize>, center: DVec3) -> f64 {
         let mut most = 0.0;
         for i in surfels {
-            let reach = match &self.tangents {
-                None => f64::from(self.radius[i]),
-                Some(tangents) => {
-                    let [u, v] = tangents[i].map_inline(Vec3::as_dvec3);
-                    (u.length_squared() + v.length_squared()).sqrt()
-                }
-            };
-            let far = (self.position[i].as_dvec3() - center).length() + reach;
+            let far = (self.position[i].as_dvec3() - center).length() + self.reach_of(i);
             most = if far > most { far } else { most };
         }
         most

@@ -6,7 +6,7 @@ use crate::method::Job;
 use crate::method::part::{Nearby, Part};
 use crate::method::prepare::Prepared;
 use crate::number::ball::{Common, Profile};
-use crate::number::{Ball, Truth};
+use crate::number::{Ball, Real, Truth, Vector3};
 use crate::scene::Surfels;
 use crate::splat::project::project_each;
 use crate::splat::{Disc, Projector, Splat, Tally, View, batch, enclosed};
@@ -40,7 +40,9 @@ pub(crate) fn project_into<P: Profile, S: Copy + Send>(
     let common = Projector::new(View::new(job.camera), &settings.kernel, settings.cull);
     let part = job.part.filter(Part::is_small);
     let kernel = &settings.kernel;
-    let skirt = f64::from(kernel.cutoff) * f64::from(kernel.low_pass).sqrt();
+    // A client may add the filter to the radius.
+    let filter = f64::from(kernel.low_pass);
+    let skirt = f64::from(kernel.cutoff) * filter.sqrt().at_least(filter);
     let nearby = part.map(|part| Nearby::new(part, job.camera, skirt));
     Prepared::new(
         job,
@@ -60,8 +62,8 @@ pub(crate) fn project_into<P: Profile, S: Copy + Send>(
             };
             let list = nearby.as_ref().map(|nearby| {
                 let near = |surfel: &usize| {
-                    let disc = batch::disc::<f64>(surfels, *surfel);
-                    nearby.holds(disc.position, disc.reach())
+                    let position = Vector3::from_glam(surfels.position()[*surfel]);
+                    nearby.holds(position, surfels.reach_of(*surfel))
                 };
                 range.clone().filter(near).collect::<Vec<_>>()
             });

@@ -142,7 +142,10 @@ impl Supposed {
     /// How many times as far as its surfel a splat may reach.
     pub(crate) fn spread(self) -> f64 {
         match self {
-            Self::Transposed | Self::Spread(_) | Self::FilterOnRadius => f64::INFINITY,
+            Self::Spread(by) => by.at_least(1.0),
+            // Sides are exchanged. One is at most 1 + tan(a/2) times as long as the other, in a
+            // field of view a that is at most 143 degrees.
+            Self::Transposed => 4.0,
             _ => 1.0,
         }
     }
