@@ -188,8 +188,12 @@ fn of_means(points: &[[f64; 2]]) -> [f64; 2] {
 
 /// The median; NaN of nothing.
 pub(super) fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+    let middle = values.len() / 2;
+    if values.is_empty() {
+        f64::NAN
+    } else {
+        *values.select_nth_unstable_by(middle, f64::total_cmp).1
+    }
 }
 
 #[cfg(test)]

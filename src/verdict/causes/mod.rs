@@ -10,7 +10,7 @@
 //!
 //! The search goes from the usual to the unusual, and ends as soon as nothing stays wrong:
 //!
-//! 1. a number of the camera, if the pixels show it;
+//! 1. a number of the camera, or several together, if the pixels show it;
 //! 2. mistakes that authors of renderers make often;
 //! 3. rarer ones;
 //! 4. other numbers, which are estimated: see [`search`](self);
@@ -29,8 +29,10 @@ mod fields;
 mod gaussians;
 mod mistakes;
 mod numbers;
+mod off_planes;
 mod plain;
 mod planes;
+mod pose;
 mod sample;
 mod search;
 mod shown;
@@ -42,7 +44,7 @@ use crate::error::{Error, Result};
 use crate::method::Session;
 use crate::scene::Camera;
 use change::Change;
-use shown::Shown;
+use shown::{Pixel, Shown};
 use std::cell::OnceCell;
 
 /// The client, what the verdict says about it, and the stages in which its mistake may lie.
@@ -61,6 +63,8 @@ struct Case<'a, 's> {
     pilot: Option<(&'a Client, Wrong)>,
     /// The client's depths beside the right ones, once they are asked for.
     depths: OnceCell<Option<Vec<(f64, f64)>>>,
+    /// The pixels that show surfel and depth, once they are asked for.
+    plane_depths: OnceCell<Option<Vec<Pixel>>>,
 }
 
 /// The wrong pixels of a verdict.
@@ -102,8 +106,11 @@ impl Case<'_, '_> {
         self.judge_client(change, self.client)
     }
 
-    /// As [`Case::judge`]; none, too, if a few pixels show that the change explains nothing.
+    /// As [`Case::judge`]; none, too, if depths or a few pixels show that the change explains nothing.
     fn judge_twice(&self, change: &Change) -> Result<Option<Wrong>> {
+        if off_planes::rejects(self, change) {
+            return Ok(None);
+        }
         if let Some((pilot, all)) = self.pilot {
             let left = self.judge_client(change, pilot)?;
             if left.is_none_or(|left| left.is_hopeless(all)) {
@@ -127,6 +134,11 @@ impl Case<'_, '_> {
     fn depths(&self) -> Option<&Vec<(f64, f64)>> {
         let pairs = || depths::pairs(self.session, self.camera, self.client);
         self.depths.get_or_init(pairs).as_ref()
+    }
+
+    /// The pixels that show surfel and depth, see [`off_planes`].
+    fn plane_depths(&self) -> Option<&Vec<Pixel>> {
+        self.plane_depths.get_or_init(|| off_planes::in_part(self)).as_ref()
     }
 
     /// Whether at least one in so many covered pixels is wrong.
@@ -259,8 +271,9 @@ pub fn likely(
     let unseen = before.filter(|stage| stage.planes.is_empty()).chain([wrong]);
     let stages = unseen.map(|stage| stage.stage).collect();
     let all = Wrong::of(verdict, wrong.stage);
-    let (pilot, depths) = (None, OnceCell::new());
-    let case = Case { session, camera, client, verdict, wrong, stages, all, pilot, depths };
+    let (pilot, depths, plane_depths) = (None, OnceCell::new(), OnceCell::new());
+    let case =
+        Case { session, camera, client, verdict, wrong, stages, all, pilot, depths, plane_depths };
     if let Some(plain) = plain::plain(&case) {
         return Ok(Some(plain.into()));
     }

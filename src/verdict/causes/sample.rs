@@ -14,6 +14,7 @@ use crate::method::tiled::pixels;
 use crate::number::MapInline;
 use crate::verdict::StageVerdict;
 use crate::verdict::client::Client;
+use crate::verdict::deferred::lists_surfels;
 use crate::verdict::supposed::Supposed;
 use std::cell::OnceCell;
 use std::cmp::Reverse;
@@ -30,10 +31,11 @@ pub(super) fn is_large(case: &Case<'_, '_>) -> bool {
 }
 
 /// Whether a verdict can judge some tiles alone. The passes of `deferred` choose surfels from the whole
-/// picture. Where a method has levels of the whole picture, its projection alone is judged.
+/// picture, so that its client must list them. Where a method has levels of the whole picture, its
+/// projection alone is judged.
 fn has_tiles(case: &Case<'_, '_>) -> bool {
     match case.session.method() {
-        Method::Deferred(_) => false,
+        Method::Deferred(_) => lists_surfels(case.client),
         method => !method.projects_regions() || case.wrong.stage == "projection",
     }
 }
@@ -91,7 +93,7 @@ pub(super) fn parts(case: &Case<'_, '_>) -> Option<Parts> {
 }
 
 /// The first wrong stage and the next one.
-fn near<'a>(case: &'a Case<'_, '_>) -> impl Iterator<Item = &'a StageVerdict> {
+pub(super) fn near<'a>(case: &'a Case<'_, '_>) -> impl Iterator<Item = &'a StageVerdict> {
     case.verdict.stages.iter().skip_while(|stage| stage.stage != case.wrong.stage).take(2)
 }
 
@@ -189,8 +191,11 @@ pub(super) fn in_part(
     let stages = whole.stages.clone();
     let at_first = Wrong::of(&at_first, wrong.stage);
     let pilot = (at_first.near >= FEWEST).then_some((pilot, at_first));
-    let (client, verdict, depths) = (part, &verdict, OnceCell::new());
-    search(&Case { session, camera, client, verdict, wrong, stages, all, pilot, depths })
+    let (client, verdict) = (part, &verdict);
+    let (depths, plane_depths) = (OnceCell::new(), OnceCell::new());
+    let of_part =
+        Case { session, camera, client, verdict, wrong, stages, all, pilot, depths, plane_depths };
+    search(&of_part)
 }
 
 #[cfg(test)]
@@ -236,7 +241,6 @@ mod tests {
         let tilted = Camera { view_from_world: turn * camera.view_from_world, ..camera };
         let tilt = named(right.into(), (&scene, right.into()), &tilted);
         assert_eq!(tilt, "the camera is tilted by 0.5 degrees");
-        // The whole of a large picture is judged for `deferred`, so numbers are not searched.
         let method = Method::by_name("deferred").unwrap();
         for by in [0.9, 1.001] {
             let wrong = Camera { fx: by * camera.fx, fy: by * camera.fy, ..camera };
@@ -284,6 +288,41 @@ mod tests {
             }
         }
         assert!(wrong > 1000, "{wrong}");
+    }
+
+    #[test]
+    fn a_part_of_deferred_is_judged_as_in_the_whole_picture() {
+        let exec = Exec::new(2, 32).unwrap();
+        let scene = Scene::unlit("", Shape::Torus.surfels(600, 3).unwrap());
+        let camera = camera(Shape::Torus, [112, 96], None);
+        let moved = Camera { cx: camera.cx + 0.7, ..camera };
+        let method = Method::by_name("deferred").unwrap();
+        let mut session = Session::new(&scene, method, &exec).unwrap();
+        // In the second frame, pass 1 draws what the first one has seen.
+        session.render(&camera).unwrap();
+        let client = Client::from(&session.define::<f32>(&moved, true).unwrap().frame);
+        let all: Vec<_> = exec.grid(112, 96).rects().into_iter().enumerate().collect();
+        let inner =
+            |(tile, rect): (usize, Rect)| (tile, Rect { x0: rect.x0 + 5, y1: rect.y1 - 9, ..rect });
+        let mut wrong = [0; 6];
+        for part in [all.clone(), all.iter().step_by(5).copied().map(inner).collect()] {
+            let judged = |part| {
+                let client = Client { part, ..client.clone() };
+                session.verify_as(&method, &camera, &client, 1.0).unwrap()
+            };
+            let (whole, own) = (judged(None), judged(Some(part.clone().into())));
+            for (i, (whole, own)) in whole.stages.iter().zip(&own.stages).enumerate() {
+                let at = part.iter().flat_map(|(_, rect)| pixels(*rect));
+                let errors: Vec<_> = at.map(|(x, y)| *whole.errors.at(x, y)).collect();
+                assert_eq!(own.errors.values(), errors, "{}", own.stage);
+                wrong[i] += own.wrong;
+            }
+        }
+        // Visibility, indices, difference and sums.
+        assert!(wrong[..4].iter().all(|wrong| *wrong > 50), "{wrong:?}");
+        let unlisted = client.with_planes(|name| name != "indices.id");
+        let unlisted = Client { part: Some(all.into()), ..unlisted };
+        assert!(session.verify_as(&method, &camera, &unlisted, 1.0).is_err());
     }
 
     #[test]

@@ -4,7 +4,7 @@
 use super::depths::digits;
 use super::numbers::{Number, numbers, numbers_of_camera};
 use super::shown::Shown;
-use super::{Case, Explanation, FEWEST, MOST_LEFT, Wrong};
+use super::{Case, Explanation, FEWEST, MOST_LEFT, Wrong, off_planes, pose};
 use crate::error::Result;
 use crate::number::Real;
 
@@ -56,18 +56,23 @@ pub(super) fn best(case: &Case<'_, '_>, cameras: bool) -> Result<Option<Explanat
     Ok(best)
 }
 
-/// The number of the camera that the client's pixels show to be wrong, if it explains the wrong pixels.
+/// The number of the camera that the client's pixels show to be wrong, or several numbers, if they
+/// explain the wrong pixels.
 ///
 /// # Errors
 /// As [`crate::method::Session::verify`].
 pub(super) fn of_camera(case: &Case<'_, '_>, shown: &Shown<'_>) -> Result<Option<Explanation>> {
     let (mut best, numbers) = (None, numbers_of_camera(case));
-    if let Some((number, value)) = shown.fit(&numbers)
-        && case.all.near >= FEWEST
-    {
-        keep(case, number, near(case, number, value)?, &mut best);
+    // Where surfels are right, the camera is.
+    if numbers.is_empty() || case.all.near < FEWEST {
+        return Ok(best);
     }
-    Ok(best)
+    for (number, value) in shown.fit(&numbers) {
+        if keep(case, number, near(case, number, value)?, &mut best) {
+            return Ok(best);
+        }
+    }
+    pose::fitted(case, shown)
 }
 
 /// A value that was fitted, or a shorter one beside it.
@@ -129,6 +134,10 @@ struct Tried {
 /// The value of a number that explains most, and the pixels that stay wrong.
 fn found(case: &Case<'_, '_>, number: &Number<'_>) -> Result<Option<Tried>> {
     let Number { right, step, .. } = *number;
+    // No value of these numbers moves the planes of surfels.
+    if (number.change)(right + step).is_some_and(|change| off_planes::rejects(case, &change)) {
+        return Ok(None);
+    }
     let judge = |value: f64, client| number.judge(case, value, client);
     let in_part = || search(right, step, case.all, false, |value| judge(value, case.client));
     let pilot = case.pilot;

@@ -27,6 +27,7 @@ use crate::number::{MapInline, Real, Vector3};
 use crate::scene::{Camera, Surfels};
 use crate::splat::View;
 use crate::verdict::client::Client;
+use glam::DVec3;
 
 /// The most pixels that a number is fitted to, and the fewest.
 const MOST: usize = 16384;
@@ -34,9 +35,11 @@ const FEWEST: usize = 64;
 /// How often a number is moved.
 const TURNS: usize = 6;
 /// What may be left of the median error for a number to explain it.
-const LEAST_LEFT: f64 = 0.05;
+pub(super) const LEAST_LEFT: f64 = 0.05;
+/// Fits that leave at most so many times the least error are as good.
+pub(super) const AS_WELL: f64 = 2.0;
 /// The median error of the right camera, in parts of a depth: roundings are smaller.
-const RIGHT: f64 = 1e-6;
+pub(super) const RIGHT: f64 = 1e-6;
 
 /// Pixels in which the client shows a surfel at a depth.
 pub(super) struct Shown<'a> {
@@ -46,10 +49,45 @@ pub(super) struct Shown<'a> {
 }
 
 /// A pixel: its surfel, its column and row, and the depth there.
-struct Pixel {
-    surfel: usize,
-    at: [u32; 2],
-    depth: f64,
+pub(super) struct Pixel {
+    pub(super) surfel: usize,
+    pub(super) at: [u32; 2],
+    pub(super) depth: f64,
+}
+
+impl Pixel {
+    /// The ray through the middle of the pixel, for each unit of depth or at every depth.
+    fn ray(&self, view: &View<f64>) -> [f64; 2] {
+        let [x, y] = self.at.map_inline(|at| f64::from(at) + 0.5);
+        [(x - view.cx) / view.fx, -((y - view.cy) / view.fy)]
+    }
+
+    /// How far the ray of the pixel meets the plane of the surfel from the surfel's centre.
+    pub(super) fn distance(&self, surfels: &Surfels, view: &View<f64>) -> f64 {
+        let p = view.point(Vector3::from_glam(surfels.position()[self.surfel]));
+        let ([x, y], error) = (self.ray(view), self.error(surfels, view));
+        let met = if view.perspective {
+            let t = self.depth / (1.0 + error);
+            DVec3::new(x * t, y * t, -t)
+        } else {
+            DVec3::new(x, y, -self.depth * (1.0 - error))
+        };
+        met.distance(DVec3::new(p.x, p.y, p.z))
+    }
+
+    /// The error r of the pixel.
+    pub(super) fn error(&self, surfels: &Surfels, view: &View<f64>) -> f64 {
+        let p = view.point(Vector3::from_glam(surfels.position()[self.surfel]));
+        let n = view.direction(Vector3::from_glam(surfels.normal()[self.surfel]));
+        let [x, y] = self.ray(view);
+        if view.perspective {
+            let nearness = (n.x * x + n.y * y - n.z) / (n.x * p.x + n.y * p.y + n.z * p.z);
+            nearness * self.depth - 1.0
+        } else {
+            let depth = (n.x * (x - p.x) + n.y * (y - p.y)) / n.z - p.z;
+            1.0 - depth / self.depth
+        }
+    }
 }
 
 impl<'a> Shown<'a> {
@@ -67,26 +105,27 @@ impl<'a> Shown<'a> {
         Some(Self { surfels, camera, pixels: found? })
     }
 
-    /// The number that the pixels show to be wrong, and its value. None if the camera is right, or if no
+    /// The number that the pixels show to be wrong, and its value; several, the best one first, if they
+    /// fit about as well, as where most pixels show one plane. None if the camera is right, or if no
     /// single number is wrong.
-    pub(super) fn fit<'n, 'c>(&self, numbers: &'n [Number<'c>]) -> Option<(&'n Number<'c>, f64)> {
-        let right = median_size(&self.errors(self.camera));
-        let (mut best, mut least) = (None, LEAST_LEFT * right);
+    pub(super) fn fit<'n, 'c>(&self, numbers: &'n [Number<'c>]) -> Vec<(&'n Number<'c>, f64)> {
+        let right = median_size(&self.errors(&View::new(self.camera)));
         if right <= RIGHT {
-            return best;
+            return Vec::new();
         }
-        for number in numbers {
-            if let Some((value, left)) = self.value(number).filter(|(_, left)| *left <= least) {
-                (best, least) = (Some((number, value)), left);
-            }
-        }
-        best
+        let fit = |number| self.value(number).map(|(value, left)| (number, value, left));
+        let mut found: Vec<_> = numbers.iter().filter_map(fit).collect();
+        found.retain(|(_, _, left)| *left <= LEAST_LEFT * right);
+        found.sort_by(|(_, _, a), (_, _, b)| a.total_cmp(b));
+        let least = found.first().map_or(0.0, |(_, _, left)| *left);
+        found.retain(|(_, _, left)| *left <= AS_WELL * least);
+        found.into_iter().map(|(number, value, _)| (number, value)).collect()
     }
 
     /// The value of a number with which depths fit best, and the median error that it leaves.
     fn value(&self, number: &Number<'_>) -> Option<(f64, f64)> {
         let errors = |value: f64| match (number.change)(value)? {
-            Change::Camera(camera) => Some(self.errors(&camera)),
+            Change::Camera(camera) => Some(self.errors(&View::new(&camera))),
             _ => None,
         };
         let (mut value, mut best) = (number.estimate.unwrap_or(number.right), None);
@@ -102,24 +141,14 @@ impl<'a> Shown<'a> {
         best
     }
 
-    /// The error of each pixel with a camera.
-    fn errors(&self, camera: &Camera) -> Vec<f64> {
-        let view = View::<f64>::new(camera);
-        self.pixels.iter().map(|pixel| self.error(&view, pixel)).collect()
+    /// The median depth.
+    pub(super) fn depth(&self) -> f64 {
+        median(self.pixels.iter().map(|pixel| pixel.depth).collect())
     }
 
-    fn error(&self, view: &View<f64>, pixel: &Pixel) -> f64 {
-        let p = view.point(Vector3::from_glam(self.surfels.position()[pixel.surfel]));
-        let n = view.direction(Vector3::from_glam(self.surfels.normal()[pixel.surfel]));
-        let [x, y] = pixel.at.map_inline(|at| f64::from(at) + 0.5);
-        let (x, y) = ((x - view.cx) / view.fx, -((y - view.cy) / view.fy));
-        if view.perspective {
-            let nearness = (n.x * x + n.y * y - n.z) / (n.x * p.x + n.y * p.y + n.z * p.z);
-            nearness * pixel.depth - 1.0
-        } else {
-            let depth = (n.x * (x - p.x) + n.y * (y - p.y)) / n.z - p.z;
-            1.0 - depth / pixel.depth
-        }
+    /// The error of each pixel with a camera.
+    pub(super) fn errors(&self, view: &View<f64>) -> Vec<f64> {
+        self.pixels.iter().map(|pixel| pixel.error(self.surfels, view)).collect()
     }
 }
 
@@ -141,7 +170,7 @@ fn pixels(frame: &Frame<f64>, name: &str, surfels: usize) -> Option<Vec<Pixel>> 
 }
 
 /// The median of the errors' sizes. An error that is no number is the largest.
-fn median_size(errors: &[f64]) -> f64 {
+pub(super) fn median_size(errors: &[f64]) -> f64 {
     median(errors.iter().map(|error| error.abs()).collect())
 }
 
@@ -178,7 +207,8 @@ mod tests {
         let numbers: Vec<_> =
             of_lens(camera, None).into_iter().chain(of_place(camera, None)).collect();
         let shown = Shown::new(session, camera, &client)?;
-        shown.fit(&numbers).map(|(number, value)| ((number.in_words)(value), value))
+        let first = shown.fit(&numbers).into_iter().next();
+        first.map(|(number, value)| ((number.in_words)(value), value))
     }
 
     #[test]
