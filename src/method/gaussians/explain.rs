@@ -9,7 +9,7 @@ use crate::method::Job;
 use crate::method::decisions::Place;
 use crate::number::{Exact, MapInline, Real};
 use crate::splat::ray_disc::{RayDisc, RayFragment};
-use std::collections::HashSet;
+use std::collections::BTreeSet;
 use std::fmt;
 
 /// The replay of one pixel.
@@ -64,7 +64,7 @@ pub fn explain<R: Exact>(
         let met = projected.disc.map(|disc| disc.fragment(&source.projector.rays, pixel));
         FragmentAt { index, weight, projected, look, fragment: *fragment, met }
     };
-    let (mut drawn, mut seen) = (Vec::new(), HashSet::new());
+    let (mut drawn, mut seen) = (Vec::new(), BTreeSet::new());
     let pixel_after = blending.pixel(&places, pixel, |place, fragment, weight| {
         seen.insert(place);
         drawn.push(at(place, fragment, weight));
