@@ -154,8 +154,8 @@ fn partial_files() -> MutexGuard<'static, Vec<PathBuf>> {
 }
 
 /// Removes the partial files of this process, and folders that it made for them and that are empty. Call
-/// it when the program is about to end early, for example after a signal. While the returned guard is held, no other partial file is created, and
-/// none is put in its place.
+/// it when the program is about to end early, for example after a signal. While the returned guard is
+/// held, no other partial file is created, and none is put in its place.
 #[must_use = "others may write again when it goes"]
 pub fn remove_partial_files() -> impl Sized {
     let mut files = partial_files();

@@ -4,7 +4,7 @@ use super::bytes::{Hash, Writer};
 use super::index::similarity;
 use crate::error::{Error, Result};
 use crate::io::input;
-use crate::io::replace::write_atomically;
+use crate::io::replace::{NewFolder, write_atomically};
 use crate::scene::Object;
 use crate::source::candidates::Directions;
 use crate::source::hierarchy::{Sampler, Settings, Traversal};
@@ -12,7 +12,7 @@ use crate::source::sampler::Schedule;
 use glam::Vec3;
 use sha2::{Digest, Sha256};
 use std::fs;
-use std::io::{self, Write};
+use std::io::Write;
 use std::path::Path;
 
 const MAGIC: &str = "splatref hierarchy 1\n";
@@ -72,11 +72,7 @@ pub(super) fn of_all(plan: &Hash, geometries: &[Hash]) -> Hash {
 /// Makes a folder for a plan, unless it is already there; returns whether it was.
 pub(super) fn begin(folder: &Path, plan: &Hash) -> Result<bool> {
     let io = |source| Error::io(folder, source);
-    match fs::create_dir(folder) {
-        Ok(()) => {}
-        Err(error) if error.kind() == io::ErrorKind::AlreadyExists => {}
-        Err(error) => return Err(io(error)),
-    }
+    let _goes_if_empty = NewFolder::make(folder)?;
     let path = folder.join("plan");
     let digits: String = plan.iter().map(|byte| format!("{byte:02x}")).collect();
     let text = format!("{MAGIC}{digits}\n");

@@ -35,19 +35,24 @@ struct Batch<R> {
 }
 
 impl<R: Exact> Batch<R> {
-    /// Leaves out what the window does not show, and sorts the rest into tiles.
-    fn in_tiles(mut self, job: &Job<'_>, grid: &Grid, source: &Source<'_, R>) -> Self {
-        let Self { splats, beside, bins } = &mut self;
-        job.keep_touching(splats, |splat| splat.bounds);
-        let found = |splat: &GaussianSplat<R>| source.beside(splat.index as usize);
-        *beside = splats.iter().map_while(found).collect();
-        *bins = Bins::new(grid, splats.len(), |i| splats[i].bounds);
-        self
+    /// Leaves out what the window does not show, gives the rest their colours and sorts them into tiles.
+    fn new(
+        job: &Job<'_>,
+        grid: &Grid,
+        source: &Source<'_, R>,
+        mut splats: Vec<GaussianSplat<R>>,
+    ) -> Self {
+        job.keep_touching(&mut splats, |splat| splat.bounds);
+        color(source, &mut splats);
+        let beside = |splat: &GaussianSplat<R>| source.beside(splat.index as usize);
+        let beside = splats.iter().map_while(beside).collect();
+        let bins = Bins::new(grid, splats.len(), |i| splats[i].bounds);
+        Self { splats, beside, bins }
     }
 }
 
 vectorized_avx2!(
-    /// The splats of a run of items, and what became of all of them.
+    /// The splats of a run of items without their colours, and what became of all items.
     fn projected<R: Exact>(
         source: &Source<'_, R>,
         range: Range<usize>,
@@ -61,13 +66,19 @@ vectorized_avx2!(
                 splats.push(splat);
             }
         }
-        // Coefficients are far apart in memory. A short loop waits for those of several splats at once, and
-        // most splats of a capture are out of sight and need none.
-        for splat in &mut splats {
+        (splats, tally)
+    }
+);
+
+vectorized_avx2!(
+    /// Finds the colours. Coefficients are far apart in memory, and this short loop waits for those of
+    /// several splats at once.
+    fn color<R: Exact>(source: &Source<'_, R>, splats: &mut [GaussianSplat<R>]) {
+        let source = *source;
+        for splat in splats {
             let i = splat.index as usize;
             splat.color = source.look(i, source.position(i)).1;
         }
-        (splats, tally)
     }
 );
 
@@ -78,22 +89,26 @@ impl<R: Exact> Splats<R> {
         let shift = batch_size(grid, count).next_power_of_two().ilog2();
         let size = 1 << shift;
         let ranges = (0..count).step_by(size).map(|first| first..count.min(first + size));
-        let steps = source.settings.order == Order::Steps;
-        let (mut batches, tallies): (Vec<_>, Vec<_>) = exec
-            .ordered(ranges.collect(), |range| {
-                spend(Work::Project);
-                let (splats, tally) = projected(source, range);
-                let batch = Batch { splats, beside: Vec::new(), bins: Bins::default() };
-                (if steps { batch } else { batch.in_tiles(job, grid, source) }, tally)
-            })
-            .into_iter()
-            .unzip();
-        let tally = tallies.into_iter().fold(Tally::default(), |sum, tally| sum.plus(&tally));
-        if steps {
+        let ranges = ranges.collect();
+        let project = |range| {
+            spend(Work::Project);
+            projected(source, range)
+        };
+        let batch = |splats| Batch::new(job, grid, source, splats);
+        let (batches, tallies): (Vec<_>, Vec<_>) = if source.settings.order == Order::Steps {
+            let projected = exec.ordered(ranges, project).into_iter();
+            let (mut all, tallies): (Vec<_>, Vec<_>) = projected.unzip();
             // The steps are between the least and the greatest key of the picture.
-            set_steps(&mut batches);
-            batches = exec.ordered(batches, |batch| batch.in_tiles(job, grid, source));
-        }
+            set_steps(&mut all);
+            (exec.ordered(all, batch), tallies)
+        } else {
+            let both = |range| {
+                let (splats, tally) = project(range);
+                (batch(splats), tally)
+            };
+            exec.ordered(ranges, both).into_iter().unzip()
+        };
+        let tally = tallies.into_iter().fold(Tally::default(), |sum, tally| sum.plus(&tally));
         Self { tally, batches, shift, own: source.settings.order == Order::Pixel }
     }
 
@@ -125,7 +140,8 @@ impl<R: Exact> Splats<R> {
     /// The places of the splats that may touch a rectangle in a tile, in their order.
     pub(crate) fn places(&self, tile: usize, rect: Rect) -> Vec<usize> {
         spend(Work::Gather);
-        let mut found = Vec::new();
+        let most = self.batches.iter().map(|batch| batch.bins.count(tile)).sum();
+        let mut found = Vec::with_capacity(most);
         for (batch, first) in self.batches.iter().zip((0_u32..).step_by(1 << self.shift)) {
             batch.bins.for_each(tile, |i| {
                 let splat = &batch.splats[i as usize];
@@ -160,13 +176,13 @@ fn in_order(mut ranked: Vec<(i64, u32)>) -> Vec<usize> {
 }
 
 /// Replaces each key by its step: floor(((key - least) / (most - least)) 65535); 0 if all are equal.
-fn set_steps<R: Exact>(batches: &mut [Batch<R>]) {
-    let keys = || batches.iter().flat_map(|batch| &batch.splats).map(|splat| splat.key);
+fn set_steps<R: Exact>(batches: &mut [Vec<GaussianSplat<R>>]) {
+    let keys = || batches.iter().flatten().map(|splat| splat.key);
     let least = keys().reduce(|a, b| a.at_most(b));
     let most = keys().reduce(|a, b| a.at_least(b));
     let (Some(least), Some(most)) = (least, most) else { return };
     let range = most - least;
-    for splat in batches.iter_mut().flat_map(|batch| &mut batch.splats) {
+    for splat in batches.iter_mut().flatten() {
         let share = (splat.key - least) / range;
         let step = (share * R::from_f32(65_535.0)).floor();
         splat.key = if range > R::ZERO { step } else { R::ZERO };

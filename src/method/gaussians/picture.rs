@@ -46,8 +46,8 @@ fn blend<R: Exact>(
     Tiled::new(job, |tile, rect| blending.tile(tile, rect))
 }
 
-/// The planes of the picture: the layers before the surface or the environment, as linear light. They are
-/// given as copies of the planes of blending.
+/// The planes of the picture: the layers before the surface or the environment, as linear light. `shown` and
+/// `alpha` come as copies of `color` and `through`, in memory that the caller chooses.
 pub(super) fn display<R: Exact>(
     job: &Job<'_>,
     source: &Source<'_, R>,
