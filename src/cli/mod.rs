@@ -44,7 +44,7 @@ mod walk;
 mod words;
 
 use clap::error::ErrorKind;
-use clap::{Parser, Subcommand};
+use clap::{ArgMatches, FromArgMatches, Parser, Subcommand};
 use ending::{Ended, Ending};
 use splatref::Error;
 use splatref::scene::Cloud;
@@ -81,39 +81,63 @@ Exit codes: 0 success, 1 different or failed, 2 wrong usage; of verify, suite an
 #[derive(Subcommand)]
 enum Command {
     /// Render a scene into an EXR with every plane and a PNG
-    Render(render::Args),
+    Render(Late<render::Args>),
     /// Join the parts of a picture that `render --region` wrote
-    Assemble(assemble::Args),
+    Assemble(Late<assemble::Args>),
     /// Store the surfels of a scene in spatial order, to draw scenes larger than memory
-    Tile(tile::Args),
+    Tile(Late<tile::Args>),
     /// Check that the pictures under golden/ are reproduced, bit for bit
-    Golden(golden::Args),
+    Golden(Late<golden::Args>),
     /// Compare two pictures, plane by plane: EXR, PNG or NPY
-    Compare(compare::Args),
+    Compare(Late<compare::Args>),
     /// Judge the planes of another renderer, stage by stage
-    Verify(verify::Args),
+    Verify(Late<verify::Args>),
     /// Run a renderer on the suite of a method: a scene and a verdict for each rule
-    Conformance(conformance::Args),
+    Conformance(Late<conformance::Args>),
     /// Pool the verdicts of several scenes, to find thresholds that are slightly wrong
-    Suite(suite::Args),
+    Suite(Late<suite::Args>),
     /// Print every decision at one pixel
-    Explain(explain::Args),
+    Explain(Late<explain::Args>),
     /// Divide a scene into groups of splats that do not overlap, and write a PLY
-    Group(group::Args),
+    Group(Late<group::Args>),
     /// Order points so that every prefix covers the surface, for a model or a whole scene
-    Surfels(surfels::Args),
+    Surfels(Late<surfels::Args>),
     /// Chart the speed and the accuracy of every method and setting for a scene
-    Study(study::Args),
+    Study(Late<study::Args>),
     /// Choose the fastest method and settings within an error, or the most accurate within a time
-    Plan(plan::Args),
+    Plan(Late<plan::Args>),
     /// Measure how evenly the prefixes of ordered points cover the surface, with a chart
-    Quality(quality::Args),
+    Quality(Late<quality::Args>),
     /// Write the visible splats as records for a backend to upload
-    Project(project::Args),
+    Project(Late<project::Args>),
     /// Convert 3D Gaussians to PLY or GLB, from these, a .splat or an .spz
-    Convert(convert::Args),
+    Convert(Late<convert::Args>),
     /// Describe a model, a scene file, an EXR or a folder of surfels
-    Info(info::Args),
+    Info(Late<info::Args>),
+}
+
+/// Arguments that are described only if their command is run: to describe those of all commands takes
+/// as long as to start the program.
+struct Late<A>(A);
+
+impl<A: clap::Args> clap::Args for Late<A> {
+    fn augment_args(command: clap::Command) -> clap::Command {
+        command.defer(A::augment_args)
+    }
+
+    fn augment_args_for_update(command: clap::Command) -> clap::Command {
+        command.defer(A::augment_args_for_update)
+    }
+}
+
+impl<A: FromArgMatches> FromArgMatches for Late<A> {
+    fn from_arg_matches(matches: &ArgMatches) -> Result<Self, clap::Error> {
+        A::from_arg_matches(matches).map(Self)
+    }
+
+    fn update_from_arg_matches(&mut self, matches: &ArgMatches) -> Result<(), clap::Error> {
+        self.0.update_from_arg_matches(matches)
+    }
 }
 
 /// Runs the program.
@@ -133,23 +157,23 @@ pub(crate) fn run() -> ExitCode {
     interrupt::watch();
     memory::limit(cli.memory);
     let outcome = match cli.command {
-        Command::Render(args) => render::run(&args),
-        Command::Assemble(args) => assemble::run(&args),
-        Command::Tile(args) => tile::run(&args),
-        Command::Golden(args) => golden::run(&args),
-        Command::Compare(args) => compare::run(&args),
-        Command::Verify(args) => verify::run(&args),
-        Command::Conformance(args) => conformance::run(&args),
-        Command::Suite(args) => suite::run(&args),
-        Command::Explain(args) => explain::run(&args),
-        Command::Group(args) => group::run(&args),
-        Command::Surfels(args) => surfels::run(&args),
-        Command::Study(args) => study::run(&args),
-        Command::Plan(args) => plan::run(&args),
-        Command::Quality(args) => quality::run(&args),
-        Command::Project(args) => project::run(&args),
-        Command::Convert(args) => convert::run(&args),
-        Command::Info(args) => info::run(&args),
+        Command::Render(Late(args)) => render::run(&args),
+        Command::Assemble(Late(args)) => assemble::run(&args),
+        Command::Tile(Late(args)) => tile::run(&args),
+        Command::Golden(Late(args)) => golden::run(&args),
+        Command::Compare(Late(args)) => compare::run(&args),
+        Command::Verify(Late(args)) => verify::run(&args),
+        Command::Conformance(Late(args)) => conformance::run(&args),
+        Command::Suite(Late(args)) => suite::run(&args),
+        Command::Explain(Late(args)) => explain::run(&args),
+        Command::Group(Late(args)) => group::run(&args),
+        Command::Surfels(Late(args)) => surfels::run(&args),
+        Command::Study(Late(args)) => study::run(&args),
+        Command::Plan(Late(args)) => plan::run(&args),
+        Command::Quality(Late(args)) => quality::run(&args),
+        Command::Project(Late(args)) => project::run(&args),
+        Command::Convert(Late(args)) => convert::run(&args),
+        Command::Info(Late(args)) => info::run(&args),
     };
     match outcome.and_then(|ending| printed().map(|()| ending)) {
         Ok(Ending::Good) => ExitCode::SUCCESS,

@@ -100,12 +100,27 @@ impl<'a> Nearby<'a> {
     /// covers no pixel in exact numbers, except on the line itself. With cast rays the nearness of its
     /// plane is rounding noise in `f32`; what it then draws beyond three times its own length is not
     /// looked for.
-    pub(crate) fn holds_any(&self, [low, high]: [Vec3; 2], reach: f64) -> bool {
-        let corner = |i: usize| {
-            let pick = |axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] };
-            Vec3::new(pick(0), pick(1), pick(2))
+    pub(crate) fn holds_any(&self, bounds: [Vec3; 2], reach: f64) -> bool {
+        self.holds_hull(corners(bounds), reach)
+    }
+
+    /// Whether the camera sees all of a box of the world in one piece of the part. Then to ask for each
+    /// splat there only takes time.
+    pub(crate) fn covers(&self, bounds: [Vec3; 2]) -> bool {
+        let Self { part, view, .. } = self;
+        let corners = corners(bounds).map_inline(|p| view.point(Vector3::from_glam(p)));
+        // The corners span a convex set, before the eye if they are.
+        let scale = |p: &Vector3<f64>| if view.perspective { -1.0 / p.z } else { 1.0 };
+        let is_before = !view.perspective || corners.iter().all(|p| -p.z > 0.0);
+        let is_in = |rect: &Rect| {
+            corners.iter().all(|p| {
+                let (x, y) =
+                    (view.cx + view.fx * p.x * scale(p), view.cy - view.fy * p.y * scale(p));
+                let inside = |at: f64, from: u32, to: u32| at >= from.into() && at <= to.into();
+                inside(x, rect.x0, rect.x1) && inside(y, rect.y0, rect.y1)
+            })
         };
-        self.holds_hull(std::array::from_fn::<_, 8, _>(corner), reach)
+        is_before && part.pieces.iter().any(|(_, rect)| is_in(rect))
     }
 
     /// [`Nearby::holds_any`] for one splat.
@@ -153,6 +168,16 @@ impl<'a> Nearby<'a> {
             !(x1 < left || x0 > right || y1 < top || y0 > bottom)
         })
     }
+}
+
+/// The corners of a box.
+#[inline]
+fn corners([low, high]: [Vec3; 2]) -> [Vec3; 8] {
+    let corner = |i: usize| {
+        let pick = |axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] };
+        Vec3::new(pick(0), pick(1), pick(2))
+    };
+    std::array::from_fn(corner)
 }
 
 /// The least and the greatest number; NaN if there is one.
@@ -292,5 +317,12 @@ mod tests {
         let corner = Rect { x0: 0, y0: 0, x1: 8, y1: 8 };
         assert!(!holds(corner, Vec3::ZERO) && holds(corner, Vec3::new(-1.4, 0.9, 0.0)));
         assert!(holds(corner, Vec3::NAN), "nobody knows where it is");
+        let covers = |middle: Vec3| {
+            let pieces = [(0, whole)];
+            let part = Part { pieces: &pieces, spread: 1.0 };
+            Nearby::new(part, &camera, 1.0).covers([middle - 0.1, middle + 0.1])
+        };
+        assert!(covers(Vec3::ZERO) && !covers(1.9 * Vec3::X), "partly beside");
+        assert!(!covers(Vec3::new(0.0, 0.0, 4.5)) && !covers(Vec3::NAN));
     }
 }

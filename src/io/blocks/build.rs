@@ -1,17 +1,17 @@
 //! Write a file of blocks; see the [module](super).
 
 use super::SURFELS;
-use super::index::{Block, Index, Kind, Record};
+use super::index::{Block, Index, Kind, NOWHERE, widened};
 use super::input::Input;
 use super::read::Blocks;
 use super::sort::Sorter;
 use crate::error::{Error, Result};
 use crate::frame::Exec;
 use crate::index::grouping::interleaved;
+use crate::io::checksum;
 use crate::io::hierarchy::Hierarchy;
-use crate::io::hierarchy::bytes::{Reader, Writer};
+use crate::io::hierarchy::bytes::Writer;
 use crate::io::replace::{NewFolder, write_atomically};
-use crate::io::{Reason, checksum};
 use crate::memory;
 use crate::number::{MapInline, Real};
 use crate::progress::Progress;
@@ -261,7 +261,7 @@ fn write(
     let blocks = &mut index.blocks;
     let mut end = |block: &mut Vec<u8>| {
         progress("writing", (blocks.len() * SURFELS) as u64, index.count.into());
-        blocks.push(around(block, kind).map_err(io::Error::other)?);
+        blocks.push(around(block, kind));
         to.write_all(block)?;
         to.write_all(&checksum::of(block))?;
         block.clear();
@@ -279,14 +279,11 @@ fn write(
 }
 
 /// The bounds of the surfels of a block.
-fn around(bytes: &[u8], kind: Kind) -> Reason<Block> {
-    let mut block = Block { count: 0, bounds: [Vec3::INFINITY, Vec3::NEG_INFINITY], reach: 0.0 };
-    for surfel in bytes.chunks_exact(kind.size()) {
-        let record = Record::read(&mut Reader(surfel), kind)?;
-        let [low, high] = block.bounds;
-        block.bounds = [low.min(record.position), high.max(record.position)];
-        block.reach = block.reach.at_least((record.reach() as f32).next_up());
-        block.count += 1;
-    }
-    Ok(block)
+fn around(bytes: &[u8], kind: Kind) -> Block {
+    let none = Block { count: 0, bounds: NOWHERE, reach: 0.0 };
+    kind.records(bytes).fold(none, |block, one| Block {
+        count: block.count + 1,
+        bounds: widened(block.bounds, one.position()),
+        reach: block.reach.at_least((one.reach() as f32).next_up()),
+    })
 }

@@ -158,6 +158,26 @@ impl Kind {
         surfels.tangents().into_iter().flat_map(|all| all[i]).for_each(|half| to.vector(half));
     }
 
+    /// The surfels in these bytes; a part of one at the end is left out.
+    pub(super) fn records(self, bytes: &[u8]) -> impl Iterator<Item = Record<'_>> {
+        let words = bytes.as_chunks().0.chunks_exact(self.size() / 4);
+        words.map(move |words| Record { words, kind: self })
+    }
+
+    /// Appends the surfels in these bytes to the arrays that `cloud` has, one array after the other, and
+    /// their indices to `ids`.
+    pub(super) fn append(self, bytes: &[u8], cloud: &mut Cloud, ids: &mut Vec<u32>) {
+        let all = || self.records(bytes);
+        let opacity = 8 + 3 * usize::from(self.color);
+        ids.extend(all().map(Record::id));
+        cloud.position.extend(all().map(Record::position));
+        cloud.normal.iter_mut().for_each(|to| to.extend(all().map(|one| one.vector(4))));
+        cloud.radius.iter_mut().for_each(|to| to.extend(all().map(Record::radius)));
+        cloud.color.iter_mut().for_each(|to| to.extend(all().map(|one| one.vector(8))));
+        cloud.opacity.iter_mut().for_each(|to| to.extend(all().map(|one| one.float(opacity))));
+        cloud.tangents.iter_mut().for_each(|to| to.extend(all().map(Record::tangents)));
+    }
+
     /// Arrays for surfels of this kind, with room for `count`.
     pub(super) fn arrays(self, count: usize) -> Cloud {
         Cloud {
@@ -172,49 +192,63 @@ impl Kind {
     }
 }
 
-/// A surfel of a block.
-pub(super) struct Record {
-    pub(super) id: u32,
-    pub(super) position: Vec3,
-    normal: Vec3,
-    radius: f32,
-    color: Option<Vec3>,
-    opacity: Option<f32>,
-    tangents: Option<[Vec3; 2]>,
+/// The bounds of no surfel.
+pub(super) const NOWHERE: [Vec3; 2] = [Vec3::INFINITY, Vec3::NEG_INFINITY];
+
+/// Bounds around a position, too.
+#[inline]
+pub(super) fn widened([low, high]: [Vec3; 2], position: Vec3) -> [Vec3; 2] {
+    [low.min(position), high.max(position)]
 }
 
-impl Record {
-    /// Reads a surfel of this kind.
-    pub(super) fn read(from: &mut Reader<'_>, kind: Kind) -> Reason<Self> {
-        Ok(Self {
-            id: from.word()?,
-            position: from.vector()?,
-            normal: from.vector()?,
-            radius: from.float()?,
-            color: kind.color.then(|| from.vector()).transpose()?,
-            opacity: kind.opacity.then(|| from.float()).transpose()?,
-            tangents: match kind.tangents {
-                true => Some([from.vector()?, from.vector()?]),
-                false => None,
-            },
-        })
+/// A surfel of a block: numbers of four bytes.
+#[derive(Clone, Copy)]
+pub(super) struct Record<'a> {
+    words: &'a [[u8; 4]],
+    kind: Kind,
+}
+
+impl Record<'_> {
+    #[inline]
+    fn float(self, at: usize) -> f32 {
+        f32::from_le_bytes(self.words[at])
+    }
+
+    #[inline]
+    fn vector(self, at: usize) -> Vec3 {
+        Vec3::new(self.float(at), self.float(at + 1), self.float(at + 2))
+    }
+
+    #[inline]
+    fn id(self) -> u32 {
+        u32::from_le_bytes(self.words[0])
+    }
+
+    #[inline]
+    pub(super) fn position(self) -> Vec3 {
+        self.vector(1)
+    }
+
+    #[inline]
+    fn radius(self) -> f32 {
+        self.float(7)
+    }
+
+    #[inline]
+    fn tangents(self) -> [Vec3; 2] {
+        let at = self.words.len() - 6;
+        [self.vector(at), self.vector(at + 3)]
     }
 
     /// How far it reaches in any method: some draw an ellipse as a disc.
-    pub(super) fn reach(&self) -> f64 {
-        let radius = f64::from(self.radius);
-        let Some([u, v]) = self.tangents else { return radius };
+    #[inline]
+    pub(super) fn reach(self) -> f64 {
+        let radius = f64::from(self.radius());
+        if !self.kind.tangents {
+            return radius;
+        }
+        let [u, v] = self.tangents();
         let [u, v] = [u.as_dvec3(), v.as_dvec3()];
         radius.at_least((u.length_squared() + v.length_squared()).sqrt())
-    }
-
-    /// Appends the surfel to the arrays that `cloud` has.
-    pub(super) fn append(&self, cloud: &mut Cloud) {
-        cloud.position.push(self.position);
-        cloud.normal.iter_mut().for_each(|all| all.push(self.normal));
-        cloud.radius.iter_mut().for_each(|all| all.push(self.radius));
-        cloud.color.iter_mut().for_each(|all| all.extend(self.color));
-        cloud.opacity.iter_mut().for_each(|all| all.extend(self.opacity));
-        cloud.tangents.iter_mut().for_each(|all| all.extend(self.tangents));
     }
 }

@@ -1,9 +1,8 @@
 //! Read a file of blocks; see the [module](super).
 
-use super::index::{Block, DAMAGED, Index, Record, START};
+use super::index::{Block, DAMAGED, Index, Kind, NOWHERE, Record, START, widened};
 use crate::error::{Error, Result};
 use crate::frame::{Exec, Rect};
-use crate::io::hierarchy::bytes::Reader;
 use crate::io::{checksum, input};
 use crate::memory;
 use crate::method::part::{Nearby, Part};
@@ -177,13 +176,10 @@ impl Blocks {
                     _ => Error::io(&self.path, source),
                 })?;
                 let surfels = checksum::open(&bytes).ok_or_else(|| format(DAMAGED))?;
-                for surfel in surfels.chunks_exact(kind.size()) {
-                    let one =
-                        Record::read(&mut Reader(surfel), *kind).map_err(|what| format(&what))?;
-                    if nearby.is_none_or(|near| near.holds_one(one.position, one.reach())) {
-                        one.append(&mut cloud);
-                        ids.push(one.id);
-                    }
+                let put = &mut |some: &[u8]| kind.append(some, &mut cloud, &mut ids);
+                match nearby {
+                    Some(nearby) => choose(nearby, surfels, block, *kind, put),
+                    None => put(surfels),
                 }
             }
             at += size;
@@ -221,6 +217,35 @@ impl Blocks {
 /// Whether a block may hold surfels that are near.
 fn may_hold(nearby: Option<&Nearby<'_>>, block: &Block) -> bool {
     nearby.is_none_or(|near| near.holds_any(block.bounds, block.reach.into()))
+}
+
+/// How many surfels of a block are looked at together; they lie near each other.
+const RUN: usize = 64;
+
+/// Puts the surfels of a block that are near, and more: surfels one by one only where a run of them is
+/// neither inside nor beside the region.
+fn choose(
+    nearby: &Nearby<'_>,
+    surfels: &[u8],
+    block: &Block,
+    kind: Kind,
+    put: &mut dyn FnMut(&[u8]),
+) {
+    if nearby.covers(block.bounds) {
+        return put(surfels);
+    }
+    let size = kind.size();
+    for run in surfels.chunks(RUN * size) {
+        let positions = kind.records(run).map(Record::position);
+        let bounds = positions.fold(NOWHERE, widened);
+        if nearby.covers(bounds) {
+            put(run);
+        } else if nearby.holds_any(bounds, block.reach.into()) {
+            let records = kind.records(run).zip(run.chunks(size));
+            let near = records.filter(|(one, _)| nearby.holds_one(one.position(), one.reach()));
+            near.for_each(|(_, bytes)| put(bytes));
+        }
+    }
 }
 
 /// Sorts surfels by their indices, one array after the other.

@@ -5,7 +5,7 @@ use exr::meta::header::Header;
 use exr::prelude::Vec2;
 
 /// Small blocks share a batch of about this many bytes: enough to keep all threads busy.
-const BYTES: u64 = 4 << 20;
+const BYTES: u64 = 1 << 20;
 /// Blocks of a batch for each thread, at least; enough that threads rarely wait for each other.
 const BLOCKS_A_THREAD: u64 = 4;
 /// A batch of more than one block has at most this many bytes, because 16 lines of the widest

@@ -202,13 +202,18 @@ impl Srgb {
     const FIRST: f32 = 1.0 / 4096.0;
 
     /// Finds each code's smallest value by bisection over the bits of `f32` in [0, 1], which
-    /// ascend.
+    /// ascend; first near the inverse, because each step computes a power.
     fn new() -> Self {
+        let exact_of = |bits: u32| usize::from(exact(f32::from_bits(bits)));
         let least = std::array::from_fn(|i| {
-            let (mut below, mut above) = (0.0_f32.to_bits(), 1.0_f32.to_bits());
+            let near = srgb::to_linear((i as f64 + 0.5) / 255.0) as f32;
+            let (mut below, mut above) = (near.to_bits() - 4, near.to_bits() + 4);
+            if !(exact_of(below) <= i && i < exact_of(above)) {
+                (below, above) = (0.0_f32.to_bits(), 1.0_f32.to_bits());
+            }
             while above - below > 1 {
                 let middle = below + (above - below) / 2;
-                if usize::from(exact(f32::from_bits(middle))) > i {
+                if exact_of(middle) > i {
                     above = middle;
                 } else {
                     below = middle;
