@@ -10,12 +10,11 @@
 mod common;
 
 use common::report::{Arguments, Table};
-use common::sphere::{Workload, cell, sphere};
-use glam::DVec3;
+use common::sphere::{Workload, camera_of, cell, sphere};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::method::{Session, ewa};
-use splatref::scene::{Camera, Lens, Pose, Scene};
+use splatref::scene::Scene;
 use std::time::Duration;
 
 /// At the nearest point of the sphere a world unit is 2533 px.
@@ -51,8 +50,7 @@ fn main() -> Result<()> {
 
 /// The times of frames by the side of a tile.
 fn measure(scene: &Scene, threads: usize) -> Result<[Vec<Duration>; 4]> {
-    let pose = Pose { eye: DVec3::new(0.0, 0.0, 4.0), target: DVec3::ZERO, up: DVec3::Y };
-    let camera = Camera::new(4096, 4096, pose, Lens::Focal(7600.0))?;
+    let camera = camera_of(4096);
     let execs = SIDES.map(|side| Exec::new(threads, side));
     let mut sessions = Vec::new();
     for exec in &execs {

@@ -19,9 +19,11 @@ const WIDTH: f64 = 760.0;
 const HEIGHT: f64 = 440.0;
 /// Left, top, right and bottom of the plot.
 const PLOT: [f64; 4] = [70.0, 40.0, 570.0, 385.0];
-/// Colours that differ in lightness as well as in hue [Okabe, Ito 2008].
-pub(crate) const COLORS: [&str; 6] =
-    ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+/// Colours that differ in lightness as well as in hue, the first six of [Okabe, Ito 2008].
+pub(crate) const COLORS: [&str; 10] = [
+    "#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9", "#8c6d31", "#7b61c9",
+    "#808080", "#a3a81c",
+];
 pub(crate) const STYLE: &str = "\
 .page { fill: #ffffff } .text { fill: #24292f; font: 13px sans-serif } .grid { stroke: #d0d7de }
 @media (prefers-color-scheme: dark) {

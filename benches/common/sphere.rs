@@ -22,8 +22,14 @@ pub(crate) const STANDARD: [Workload; 3] = [
 
 /// The camera of all workloads, 1024 x 1024.
 pub(crate) fn camera() -> Camera {
+    camera_of(1024)
+}
+
+/// The same view in this many pixels a side.
+pub(crate) fn camera_of(side: u32) -> Camera {
     let pose = Pose { eye: DVec3::new(0.0, 0.0, 4.0), target: DVec3::ZERO, up: DVec3::Y };
-    Camera::new(1024, 1024, pose, Lens::Focal(1900.0)).expect("a camera")
+    let focal = 1900.0 * f64::from(side) / 1024.0;
+    Camera::new(side, side, pose, Lens::Focal(focal)).expect("a camera")
 }
 
 /// Median and minimum in milliseconds, the minimum in brackets.

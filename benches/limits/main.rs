@@ -20,22 +20,23 @@ mod operations;
 mod roofs;
 
 use common::report::{Arguments, Table};
-use common::sphere::{STANDARD, Workload, camera, sphere};
+use common::sphere::{STANDARD, Workload, camera, camera_of, sphere};
 use counted::Counted;
-use glam::DVec3;
 use operations::Operations;
 use roofs::Roofs;
 use splatref::Result;
 use splatref::composite::decide;
 use splatref::frame::{Exec, Frame, Samples};
 use splatref::method::{Method, Session, Stage};
-use splatref::scene::{Camera, Lens, Pose, Scene, Surfels};
+use splatref::scene::{Scene, Surfels};
 use splatref::splat::gaussian::{GaussianProjector, GaussianShape};
 use splatref::splat::{Projector, Shared, SplatSettings, View, batch, fragment, project};
 use std::time::{Duration, Instant};
 
 /// How many times as many surfels and pixels are drawn as are counted.
 const PART: usize = 16;
+/// The side of a picture with a part of the pixels.
+const SMALL: u32 = 256;
 /// Position, normal, radius and colour.
 const SURFEL_BYTES: f64 = 40.0;
 
@@ -152,7 +153,7 @@ impl Work {
 /// What each stage does in a picture of a part of the scene, times the parts.
 fn work(scene: &Scene, method: Method, exec: &Exec) -> Result<Vec<(&'static str, Work)>> {
     let session = Session::new(scene, method, exec)?;
-    let camera = small_camera()?;
+    let camera = camera_of(SMALL);
     let frame = session.define::<Counted>(&camera, true)?.frame;
     let shown = session.define::<Counted>(&camera, false)?.frame;
     let projection = projected(&scene.surfels, &method);
@@ -193,16 +194,9 @@ fn written(stage: &Stage, shown: &Frame<Counted>) -> f64 {
     stage.leaves.iter().map(|row| bytes(row.name)).sum::<usize>() as f64
 }
 
-/// The camera of the standard workloads, a sixteenth of its pixels.
-fn small_camera() -> Result<Camera> {
-    let pose = Pose { eye: DVec3::new(0.0, 0.0, 4.0), target: DVec3::ZERO, up: DVec3::Y };
-    Camera::new(256, 256, pose, Lens::Focal(475.0))
-}
-
 /// What the projection of all surfels to splats or Gaussians does.
 fn projected(surfels: &Surfels, method: &Method) -> Operations {
-    let Ok(camera) = small_camera() else { return Operations::default() };
-    let view = View::<Counted>::new(&camera);
+    let view = View::<Counted>::new(&camera_of(SMALL));
     let work = || match (method, method.splats()) {
         (Method::Gaussians(settings), _) => {
             let projector = GaussianProjector::new(view, &settings.kernel);
