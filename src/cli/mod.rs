@@ -43,6 +43,7 @@ mod verify;
 mod walk;
 mod words;
 
+use clap::builder::Resettable;
 use clap::error::ErrorKind;
 use clap::{ArgMatches, FromArgMatches, Parser, Subcommand};
 use ending::{Ended, Ending};
@@ -122,12 +123,18 @@ struct Late<A>(A);
 
 impl<A: clap::Args> clap::Args for Late<A> {
     fn augment_args(command: clap::Command) -> clap::Command {
-        command.defer(A::augment_args)
+        command.defer(|command| named(command, A::augment_args))
     }
 
     fn augment_args_for_update(command: clap::Command) -> clap::Command {
-        command.defer(A::augment_args_for_update)
+        command.defer(|command| named(command, A::augment_args_for_update))
     }
+}
+
+/// Describes arguments; what they say about themselves does not replace what the command says.
+fn named(command: clap::Command, describe: fn(clap::Command) -> clap::Command) -> clap::Command {
+    let [about, long] = [command.get_about(), command.get_long_about()].map(|text| text.cloned());
+    describe(command).about(Resettable::from(about)).long_about(Resettable::from(long))
 }
 
 impl<A: FromArgMatches> FromArgMatches for Late<A> {
