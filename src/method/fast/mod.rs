@@ -12,7 +12,7 @@ pub(super) mod tile;
 use super::algorithm::Job;
 use super::clock::{Clock, Stopwatch};
 use super::prepare::Prepared;
-use crate::frame::{Framebuffer, Rect};
+use crate::frame::{Framebuffer, FramebufferTile};
 use crate::scene::Surfels;
 use crate::splat::batch::{self, Enlarged};
 use crate::splat::{Projector, Splat, SplatSettings, Tally};
@@ -63,7 +63,8 @@ fn record(splat: &Splat<f32>, surfels: &Surfels) -> Record {
 /// Draws every tile of a framebuffer. The stages with these names get their shares of the time since
 /// the last lap of the clock.
 ///
-/// `gather` starts a tile: its splats, in the order of their surfels, and its empty blocks. `stages`
+/// `gather` starts a tile: its splats, in the order of their surfels, and its blocks, empty or with what
+/// the pixels held before. `stages`
 /// leaves depths, averages and directions in the blocks of a tile that has splats. It ends a lap
 /// after each stage but the last. The first lap includes gathering the splats, unless `gather` ends
 /// another lap. The last lap includes storing the pixels.
@@ -72,13 +73,13 @@ pub(super) fn draw<const N: usize>(
     target: &mut Framebuffer<f32>,
     clock: &mut Clock,
     names: [&'static str; N],
-    gather: impl Fn(&mut Tile, usize, Rect, &mut Stopwatch<N>) + Sync + Send,
+    gather: impl Fn(&mut Tile, &mut FramebufferTile<'_, f32>, &mut Stopwatch<N>) + Sync + Send,
     stages: impl Fn(&mut Tile, &mut Stopwatch<N>) + Sync + Send,
 ) {
     let times = job.exec.ordered(target.cut(&job.strips(), job.exec), |mut pixels| {
         let mut watch = Stopwatch::start();
         let mut tile = Tile::new([pixels.normal.is_some(), pixels.color.is_some()]);
-        gather(&mut tile, pixels.depth.index, pixels.depth.rect, &mut watch);
+        gather(&mut tile, &mut pixels, &mut watch);
         if tile.splats.is_empty() {
             watch.lap(0);
             store::clear(&mut pixels);

@@ -16,7 +16,7 @@ use super::queries::Limits;
 use super::visibility::POLYGON;
 use crate::composite::decide;
 use crate::error::Result;
-use crate::frame::{Exec, Framebuffer, NO_ID, Rect, Wanted};
+use crate::frame::{Exec, Framebuffer, FramebufferTile, NO_ID, Plane, Rect};
 use crate::index::seen::Seen;
 use crate::method::Job;
 use crate::method::clock::{Clock, Stopwatch, Work, spend};
@@ -44,15 +44,17 @@ pub(super) fn render(
     let flagged = Projected::new(job, splats, &whole, flagged, &mut clock, "visibility");
     // The tiles of pass 1 share the time from here on.
     clock.lap("visibility");
-    let mut first = First::draw(job, &flagged.splats, &mut clock);
+    first(job, &flagged.splats, target, &mut clock);
     if let Some(polygons) = &polygons {
-        first.add(polygons, job.exec);
+        add(polygons, target, job.exec);
     }
     clock.lap("visibility");
 
-    let epsilon = splats.epsilon.in_units(whole.median_radius());
-    let limits = first.limits(epsilon, job.exec);
+    let (shared, epsilon) =
+        (&flagged.splats.shared, splats.epsilon.in_units(whole.median_radius()));
+    let limits = limits(shared, target, epsilon, job.exec);
     let list = points::selected(job, settings, &whole, &limits);
+    target.weight = Plane::from_values(target.width, target.height, limits.values);
     let now = Seen::from_selected(whole.ids(), settings.flags, &list);
     clock.lap("indices");
 
@@ -62,18 +64,18 @@ pub(super) fn render(
 
     let ranks = Ranks::new(&flagged.ids, kept, &fresh.ids);
     let tally = flagged.tally(job, splats, &whole, &ranks, &mut clock).plus(&fresh.splats.tally);
-    let shared = &flagged.splats.shared;
     clock.lap("attributes");
 
     let names = ["difference", "attributes", "normalization"];
-    let gather = |tile: &mut Tile, index, rect, watch: &mut Stopwatch<3>| {
-        gather(tile, index, rect, [&flagged, &fresh], &ranks);
-        // Pass 4 needs the depth of pass 1 even where pass 3 draws nothing.
-        if !tile.splats.is_empty() {
-            first.load(&ranks, tile);
-        }
-        watch.lap(1);
-    };
+    let gather =
+        |tile: &mut Tile, pixels: &mut FramebufferTile<'_, f32>, watch: &mut Stopwatch<3>| {
+            gather(tile, pixels.depth.index, pixels.depth.rect, [&flagged, &fresh], &ranks);
+            // Pass 4 needs the depth of pass 1 even where pass 3 draws nothing.
+            if !tile.splats.is_empty() {
+                load(pixels, &ranks, tile);
+            }
+            watch.lap(1);
+        };
     draw(job, target, &mut clock, names, gather, |tile, watch| {
         let index = grid.place(tile.grid.rect.x0, tile.grid.rect.y0).0;
         more(tile, &fresh.splats, &ranks, index);
@@ -176,72 +178,76 @@ fn gather(
 /// How many pixels one job takes in a pass over finished planes.
 const PIXELS: usize = 1 << 14;
 
-/// The output of pass 1: nearness and, for the flagged surfels, the index of the nearest.
-struct First {
-    shared: Shared<f32>,
-    target: Framebuffer<f32>,
+/// Runs pass 1: leaves nearness and, of the flagged surfels, the index of the nearest in the planes of
+/// the picture, which pass 4 replaces tile by tile.
+fn first(
+    job: &Job<'_>,
+    flagged: &Prepared<f32, Record>,
+    target: &mut Framebuffer<f32>,
+    clock: &mut Clock,
+) {
+    let shared = &flagged.shared;
+    let attributes = (target.normal.take(), target.color.take());
+    let gather = |tile: &mut Tile, pixels: &mut FramebufferTile<'_, f32>, _: &mut _| {
+        tile.gather(flagged, pixels.depth.index, pixels.depth.rect);
+    };
+    draw(job, target, clock, ["visibility"], gather, |tile, _| tile.visibility(shared));
+    (target.normal, target.color) = attributes;
 }
 
-impl First {
-    fn draw(job: &Job<'_>, flagged: &Prepared<f32, Record>, clock: &mut Clock) -> Self {
-        let shared = flagged.shared;
-        let wanted = Wanted { normal: false, color: false, observed: false };
-        let [width, height] = job.camera.size();
-        let mut target = Framebuffer::new(width, height, shared.empty(), wanted);
-        let gather = |tile: &mut Tile, index, rect, _: &mut _| tile.gather(flagged, index, rect);
-        draw(job, &mut target, clock, ["visibility"], gather, |tile, _| tile.visibility(&shared));
-        Self { shared, target }
-    }
-
-    /// Puts polygons where no surfel is as near.
-    fn add(&mut self, polygons: &Polygons<f32>, exec: &Exec) {
-        spend(Work::Polygons);
-        let Framebuffer { depth, id, .. } = &mut self.target;
-        let rows = (0..).zip(depth.rows_mut().zip(id.rows_mut()));
-        exec.ordered(rows.collect(), |(y, (depth, ids)): (u32, (&mut [f32], &mut [u32]))| {
-            for (x, (nearest, id)) in (0..).zip(depth.iter_mut().zip(ids)) {
-                let polygon = polygons.nearest(x, y);
-                if polygon.id == POLYGON && (*id == NO_ID || polygon.nearness > *nearest) {
-                    (*nearest, *id) = (polygon.nearness, ranks::POLYGON);
-                }
+/// Puts polygons where no surfel is as near.
+fn add(polygons: &Polygons<f32>, target: &mut Framebuffer<f32>, exec: &Exec) {
+    spend(Work::Polygons);
+    let Framebuffer { depth, id, .. } = target;
+    let rows = (0..).zip(depth.rows_mut().zip(id.rows_mut()));
+    exec.ordered(rows.collect(), |(y, (depth, ids)): (u32, (&mut [f32], &mut [u32]))| {
+        for (x, (nearest, id)) in (0..).zip(depth.iter_mut().zip(ids)) {
+            let polygon = polygons.nearest(x, y);
+            if polygon.id == POLYGON && (*id == NO_ID || polygon.nearness > *nearest) {
+                (*nearest, *id) = (polygon.nearness, ranks::POLYGON);
             }
-        });
-    }
+        }
+    });
+}
 
-    /// The greatest depth of pass 2 at each pixel.
-    fn limits(&self, epsilon: f32, exec: &Exec) -> Limits {
-        spend(Work::Indices);
-        let (nearness, ids) = (self.target.depth.values(), self.target.id.values());
-        let mut values = vec![f32::INFINITY; ids.len()];
-        let pixels = nearness.chunks(PIXELS).zip(ids.chunks(PIXELS));
-        let parts = values.chunks_mut(PIXELS).zip(pixels).collect();
-        exec.ordered(parts, |(values, (nearness, ids)): (&mut [f32], (&[f32], &[u32]))| {
-            for ((value, nearness), id) in values.iter_mut().zip(nearness).zip(ids) {
-                let depth = self.shared.depth(*nearness);
-                *value = decide::limit(if *id == NO_ID { f32::INFINITY } else { depth }, epsilon);
+/// The greatest depth of pass 2 at each pixel, in the memory of the weights, which pass 4 writes anew.
+fn limits(
+    shared: &Shared<f32>,
+    target: &mut Framebuffer<f32>,
+    epsilon: f32,
+    exec: &Exec,
+) -> Limits {
+    spend(Work::Indices);
+    let mut values = std::mem::replace(&mut target.weight, Plane::filled(0, 0, 0.0)).into_values();
+    let (nearness, ids) = (target.depth.values(), target.id.values());
+    let pixels = nearness.chunks(PIXELS).zip(ids.chunks(PIXELS));
+    let parts = values.chunks_mut(PIXELS).zip(pixels).collect();
+    exec.ordered(parts, |(values, (nearness, ids)): (&mut [f32], (&[f32], &[u32]))| {
+        for ((value, nearness), id) in values.iter_mut().zip(nearness).zip(ids) {
+            let depth = shared.depth(*nearness);
+            *value = decide::limit(if *id == NO_ID { f32::INFINITY } else { depth }, epsilon);
+        }
+    });
+    Limits { width: target.width, values }
+}
+
+/// Puts what pass 1 left in the pixels of a tile into its blocks.
+fn load(pixels: &mut FramebufferTile<'_, f32>, ranks: &Ranks, tile: &mut Tile) {
+    spend(Work::Load);
+    let rect = tile.grid.rect;
+    for index in 0..tile.blocks.len() {
+        let (x0, y0) = tile.grid.corner(index);
+        let block = &mut tile.blocks[index];
+        for lane in 0..LANES as u32 {
+            let (x, y) = (x0 + lane % SIDE, y0 + lane / SIDE);
+            if x >= rect.x1 || y >= rect.y1 {
+                continue;
             }
-        });
-        Limits { width: self.target.width, values }
-    }
-
-    /// Puts the pixels of a tile into its blocks.
-    fn load(&self, ranks: &Ranks, tile: &mut Tile) {
-        spend(Work::Load);
-        let rect = tile.grid.rect;
-        for index in 0..tile.blocks.len() {
-            let (x0, y0) = tile.grid.corner(index);
-            let block = &mut tile.blocks[index];
-            for lane in 0..LANES as u32 {
-                let (x, y) = (x0 + lane % SIDE, y0 + lane / SIDE);
-                if x >= rect.x1 || y >= rect.y1 {
-                    continue;
-                }
-                let id = *self.target.id.at(x, y);
-                if id != NO_ID {
-                    block.id[lane as usize] =
-                        if id == ranks::POLYGON { id } else { ranks.of_flagged(id) };
-                    block.nearest[lane as usize] = *self.target.depth.at(x, y);
-                }
+            let id = *pixels.id.at([x, y]);
+            if id != NO_ID {
+                block.id[lane as usize] =
+                    if id == ranks::POLYGON { id } else { ranks.of_flagged(id) };
+                block.nearest[lane as usize] = *pixels.depth.at([x, y]);
             }
         }
     }

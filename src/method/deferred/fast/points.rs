@@ -1,17 +1,14 @@
 //! Pass 2: test every surfel as a point against the depth of pass 1.
 //!
 //! The surfels are divided into as many shares as there are threads, up to [`SHARES`], in the order
-//! of their ids. Each share has its own picture, and the pictures are joined. The least depth of a
-//! pixel and, if depths are equal, the lowest id are the same however the surfels are divided. For
-//! most surfels the position alone, and for many a box around them, shows that they are not kept.
-//! Only the normals of the others are read and turned.
+//! of their ids. Each share has its own centres, and they are joined. The least depth of a pixel and,
+//! if depths are equal, the lowest id are the same however the surfels are divided. For most surfels
+//! the position alone, and for many a box around them, shows that they are not kept. Only the normals
+//! of the others are read and turned.
 
 use super::super::Settings;
-use super::super::indices::Kept;
 use super::super::part::{Range, Whole};
 use super::super::queries::{Limits, Queries};
-use super::super::visibility::NONE;
-use super::PIXELS;
 use crate::composite::decide;
 use crate::frame::Exec;
 use crate::method::Job;
@@ -21,7 +18,7 @@ use crate::number::lanes::{LANES, Lanes, each, mask, select, vectorized};
 use crate::number::{Real, Vector3};
 use crate::splat::View;
 
-/// The maximum number of shares: each takes a picture, 16 bytes a pixel.
+/// The maximum number of shares: each takes a picture, 4 bytes a pixel.
 const SHARES: usize = 8;
 
 /// B(i), ascending.
@@ -35,44 +32,79 @@ pub(super) fn selected(
     let points = PointProjector::new(View::new(job.camera), settings.splats.cull);
     let queries = Queries::new(job.camera, limits);
     let shares = whole.shares(job.exec.threads().min(SHARES));
-    let pictures = job.exec.ordered(shares, |ranges| {
-        let mut kept = vec![Kept::EMPTY; limits.values.len()];
+    let pixels = limits.values.len();
+    let mut centres = job.exec.ordered(shares, |ranges| {
+        let mut centres = Centres::new(pixels);
         for range in &ranges {
             for part in range.parts(&queries) {
-                draw(&points, &part, limits, &mut kept);
+                draw(&points, &part, limits, &mut centres);
             }
         }
-        kept
+        centres
     });
-    let starts = (0..limits.values.len()).step_by(PIXELS).collect();
-    let parts = job.exec.ordered(starts, |start: usize| {
-        let pixels = start..limits.values.len().min(start + PIXELS);
-        let nearest = pixels.map(|pixel| {
-            let kept = pictures.iter().map(|picture| picture[pixel]);
-            // Ids of a later share are higher, so the earlier share wins a tie.
-            let nearer = |kept: Kept<f32>, later: Kept<f32>| {
-                if decide::before(later.depth, kept.depth) { later } else { kept }
-            };
-            kept.reduce(nearer).map_or(NONE, |kept| kept.id)
-        });
-        nearest.filter(|&id| id != NONE).collect::<Vec<_>>()
+    let later = centres.split_off(1.min(centres.len()));
+    let mut all = centres.pop().unwrap_or_else(|| Centres::new(0));
+    // Ids of a later share are higher, so the earlier share wins a tie.
+    later.into_iter().flat_map(|share| share.kept).for_each(|centre| {
+        if decide::before(centre.depth, all.depth(centre.pixel)) {
+            all.put(centre);
+        }
     });
-    ascending(parts, limits.values.len(), job.exec)
+    ascending(all.kept.into_iter().map(|centre| centre.id).collect(), pixels, job.exec)
+}
+
+/// The centre of a surfel, and the pixel that keeps it.
+#[derive(Clone, Copy)]
+struct Centre {
+    depth: f32,
+    pixel: u32,
+    id: u64,
+}
+
+/// The centres that pixels keep, one at most each. They are not a picture of centres, because most
+/// pixels of a large picture keep none, and memory costs time when it is touched.
+struct Centres {
+    /// Of each pixel, 1 more than the place of its centre; 0 if it has none.
+    places: Vec<u32>,
+    kept: Vec<Centre>,
+}
+
+impl Centres {
+    fn new(pixels: usize) -> Self {
+        Self { places: vec![0; pixels], kept: Vec::new() }
+    }
+
+    /// The depth of the centre that a pixel keeps; +inf if it keeps none.
+    #[inline]
+    fn depth(&self, pixel: u32) -> f32 {
+        let place = self.places[pixel as usize] as usize;
+        if place == 0 { f32::INFINITY } else { self.kept[place - 1].depth }
+    }
+
+    /// Replaces the centre that a pixel keeps.
+    #[inline]
+    fn put(&mut self, centre: Centre) {
+        let place = &mut self.places[centre.pixel as usize];
+        if *place == 0 {
+            self.kept.push(centre);
+            *place = self.kept.len() as u32;
+        } else {
+            self.kept[*place as usize - 1] = centre;
+        }
+    }
 }
 
 /// Ids, each of which is there once, in ascending order.
-fn ascending(parts: Vec<Vec<u64>>, pixels: usize, exec: &Exec) -> Vec<u64> {
-    let ids = || parts.iter().flatten().copied();
-    let end = ids().max().map_or(0, |last| last + 1);
+fn ascending(mut ids: Vec<u64>, pixels: usize, exec: &Exec) -> Vec<u64> {
+    let end = ids.iter().max().map_or(0, |last| last + 1);
     if end > 64 * pixels as u64 {
-        let mut ids = parts.concat();
         exec.sort(&mut ids);
         return ids;
     }
     // A bit for each id, in no more words than there are pixels.
     let mut words = vec![0_u64; end.div_ceil(64) as usize];
-    ids().for_each(|id| words[(id / 64) as usize] |= 1 << (id % 64));
-    let mut sorted = Vec::with_capacity(parts.iter().map(Vec::len).sum());
+    ids.iter().for_each(|id| words[(id / 64) as usize] |= 1 << (id % 64));
+    let mut sorted = Vec::with_capacity(ids.len());
     for (first, mut word) in (0..).step_by(64).zip(words) {
         while word != 0 {
             sorted.push(first + u64::from(word.trailing_zeros()));
@@ -83,7 +115,7 @@ fn ascending(parts: Vec<Vec<u64>>, pixels: usize, exec: &Exec) -> Vec<u64> {
 }
 
 /// Draws neighbouring surfels of an object, in ascending order.
-fn draw(points: &PointProjector<f32>, range: &Range<'_>, limits: &Limits, kept: &mut [Kept<f32>]) {
+fn draw(points: &PointProjector<f32>, range: &Range<'_>, limits: &Limits, centres: &mut Centres) {
     let end = range.surfels.end;
     for first in range.surfels.clone().step_by(LANES) {
         let mut places = place(points, range, first, limits);
@@ -93,12 +125,12 @@ fn draw(points: &PointProjector<f32>, range: &Range<'_>, limits: &Limits, kept: 
         while places.pass != 0 {
             let lane = places.pass.trailing_zeros() as usize;
             places.pass &= places.pass - 1;
-            let (t, kept) = (places.t[lane], &mut kept[places.pixel[lane] as usize]);
-            if decide::before(t, kept.depth)
+            let (depth, pixel) = (places.t[lane], places.pixel[lane]);
+            if decide::before(depth, centres.depth(pixel))
                 && range.draws(first + lane)
                 && faces(points, range, first + lane)
             {
-                *kept = Kept { depth: t, id: range.id(first + lane) };
+                centres.put(Centre { depth, pixel, id: range.id(first + lane) });
             }
         }
     }
@@ -163,14 +195,13 @@ mod tests {
     proptest! {
         #[test]
         fn ids_ascend_with_bits_and_by_sorting(
-            ids in prop::collection::hash_set(0..20_000_u64, 0..400), parts in 1..9_usize,
+            ids in prop::collection::hash_set(0..20_000_u64, 0..400),
         ) {
             let ids: Vec<u64> = ids.into_iter().collect();
             let mut sorted = ids.clone();
             sorted.sort_unstable();
             for pixels in [0, 300, 313] {
-                let parts = ids.chunks(ids.len().div_ceil(parts).max(1)).map(<[u64]>::to_vec);
-                prop_assert_eq!(&ascending(parts.collect(), pixels, &Exec::sequential()), &sorted);
+                prop_assert_eq!(&ascending(ids.clone(), pixels, &Exec::sequential()), &sorted);
             }
         }
     }

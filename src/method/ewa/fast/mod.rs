@@ -3,7 +3,7 @@
 mod kernels;
 
 use super::Settings;
-use crate::frame::Framebuffer;
+use crate::frame::{Framebuffer, FramebufferTile};
 use crate::method::Job;
 use crate::method::clock::Clock;
 use crate::method::fast::tile::Tile;
@@ -30,7 +30,9 @@ pub(super) fn render(
     clock.lap("projection");
     let shared = &prepared.shared;
     let names = ["visibility", "attributes", "normalization"];
-    let gather = |tile: &mut Tile, index, rect, _: &mut _| tile.gather(&prepared, index, rect);
+    let gather = |tile: &mut Tile, pixels: &mut FramebufferTile<'_, f32>, _: &mut _| {
+        tile.gather(&prepared, pixels.depth.index, pixels.depth.rect);
+    };
     draw(job, target, &mut clock, names, gather, |tile, watch| {
         tile.visibility(shared);
         watch.lap(0);

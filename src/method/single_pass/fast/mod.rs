@@ -16,7 +16,7 @@ pub(crate) mod images;
 
 use super::Settings;
 use crate::error::Result;
-use crate::frame::Framebuffer;
+use crate::frame::{Framebuffer, FramebufferTile};
 use crate::method::Job;
 use crate::method::clock::Clock;
 use crate::method::fast::groups::own;
@@ -52,7 +52,9 @@ pub(super) fn render(
     clock.lap("projection");
     let shared = &prepared.shared;
     let names = ["geometry", "compositing"];
-    let gather = |tile: &mut Tile, index, rect, _: &mut _| tile.gather(&prepared, index, rect);
+    let gather = |tile: &mut Tile, pixels: &mut FramebufferTile<'_, f32>, _: &mut _| {
+        tile.gather(&prepared, pixels.depth.index, pixels.depth.rect);
+    };
     draw(job, target, &mut clock, names, gather, |tile, watch| {
         let own = own(&tile.splats, groups);
         let mut images = GroupImages::new(tile, &own, groups.len(), shared.empty(), None);
