@@ -13,20 +13,30 @@ const ROWS: usize = 4;
 
 /// Pulls a coarser level from the finer one; `side` is the side of a finer cell in pixels.
 pub(super) fn pull(fine: &CellLevel, coarse: &mut CellLevel, side: f32, tubes: bool, exec: &Exec) {
+    let layouts = [fine.layout, coarse.layout];
+    exec.chunks(coarse.rows_mut(), ROWS, |first, rows| {
+        for (y, row) in (first as isize..).zip(rows) {
+            pull_pair([fine.row(2 * y), fine.row(2 * y + 1)], row, &layouts, side, tubes);
+        }
+    });
+}
+
+/// Pulls a row of a coarser level from two finer rows.
+pub(super) fn pull_pair(
+    finer: [&[f32]; 2],
+    coarse: &mut [f32],
+    layouts: &[RowLayout; 2],
+    side: f32,
+    tubes: bool,
+) {
     spend(Work::Pull);
-    let finest = side == 1.0;
-    let run = match (finest, tubes) {
+    let run = match (side == 1.0, tubes) {
         (false, false) => pull_row::<false, false>,
         (false, true) => pull_row::<false, true>,
         (true, false) => pull_row::<true, false>,
         (true, true) => pull_row::<true, true>,
     };
-    let layouts = [fine.layout, coarse.layout];
-    exec.chunks(coarse.rows_mut(), ROWS, |first, rows| {
-        for (y, row) in (first as isize..).zip(rows) {
-            run([fine.row(2 * y), fine.row(2 * y + 1)], row, &layouts, side);
-        }
-    });
+    run(finer, coarse, layouts, side);
 }
 
 /// A number of the four finer cells of [`LANES`] coarser ones from column x on.

@@ -16,20 +16,29 @@ const ROWS: usize = 8;
 /// Makes the next level from the centres that do not stay within the first `reach`; the second
 /// `reach` is the next level's.
 pub(super) fn merge(fine: &CenterLevel, coarse: &mut CenterLevel, reach: [f32; 2], exec: &Exec) {
-    spend(Work::Propagate);
     let layouts = [fine.layout, coarse.layout];
     exec.chunks(coarse.rows_mut(), ROWS, |first, rows| {
         for (y, mut row) in (first..).zip(rows) {
-            let upper = fine.row(2 * y);
-            // Below the last row of an odd level there is no row; the upper one stands for it,
-            // unread.
-            let exists = 2 * y + 1 < fine.layout.height;
-            let lower = if exists { fine.row(2 * y + 1) } else { upper };
-            *row.has = [false; 2];
-            let moving = upper.has[1] || (exists && lower.has[1]);
-            merge_row([upper, lower], exists, moving, &mut row, &layouts, reach);
+            let lower = (2 * y + 1 < fine.layout.height).then(|| fine.row(2 * y + 1));
+            merge_pair(fine.row(2 * y), lower, &mut row, &layouts, reach);
         }
     });
+}
+
+/// Makes a row of the next level from two rows; below the last row of an odd level there is none.
+pub(super) fn merge_pair(
+    upper: CenterRow<'_>,
+    lower: Option<CenterRow<'_>>,
+    coarse: &mut CenterRowMut<'_>,
+    layouts: &[RowLayout; 2],
+    reach: [f32; 2],
+) {
+    spend(Work::Propagate);
+    *coarse.has = [false; 2];
+    let moving = upper.has[1] || lower.is_some_and(|lower| lower.has[1]);
+    // Where there is no row, the upper one stands for it, unread.
+    let finer = [upper, lower.unwrap_or(upper)];
+    merge_row(finer, lower.is_some(), moving, coarse, layouts, reach);
 }
 
 /// [`LANES`] times four centres: every second cell of two rows; four meet in one cell.
