@@ -10,11 +10,13 @@
 //!    next coarser level while they are in the cache.
 
 mod layout;
+mod mean;
 mod nearest;
 mod points;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use layout::{PAD, RowLayout};
+pub(crate) use mean::MeanLanes;
 pub(crate) use nearest::{NearestPoints, pairs};
 pub(crate) use points::Points;

@@ -3,8 +3,8 @@
 //! A level is rows of numbers, one number of all cells of a row after the other, so that 16 cells
 //! of a row are 16 neighbours in memory. The pull phase computes 16 coarser cells at a time. The
 //! push phase computes 16 finer cells of every second column, which have 16 consecutive parents.
-//! Empty cells are passed over. Level 1 is pulled from rows of level 0 that are in the cache. The push phase changes a level in place and touches only cells that
-//! are empty or occluded.
+//! Empty cells are passed over. Level 1 is pulled from rows of level 0 that are in the cache. The
+//! push phase changes a level in place and touches only cells that are empty or occluded.
 
 mod level;
 mod mix;

@@ -87,23 +87,23 @@ vectorized!(
                 continue;
             }
             // -- The new cells
-            put(FRONT, &mix.least(&four.front));
-            put(BACK, &mix.greatest(&four.back));
-            put(RADIUS, &mix.average(&four.radius));
+            put(FRONT, &mix.mean.least(&four.front));
+            put(BACK, &mix.mean.greatest(&four.back));
+            put(RADIUS, &mix.mean.average(&four.radius));
             for axis in 0..2 {
-                put(PLACE + axis, &mix.average(&four.place(axis)));
+                put(PLACE + axis, &mix.mean.average(&four.place(axis)));
             }
-            let normal = [mix.average(&nx), mix.average(&ny), mix.average(&nz)];
+            let normal = [mix.mean.average(&nx), mix.mean.average(&ny), mix.mean.average(&nz)];
             (0..3).for_each(|axis| put(NORMAL + axis, &normal[axis]));
             let tilt = tilts(&normal);
             (0..2).for_each(|axis| put(TILT + axis, &tilt[axis]));
             let tangent = tangent(layout, TUBES);
             for attribute in FURTHER..tangent {
-                put(attribute, &mix.average(&number(attribute)));
+                put(attribute, &mix.mean.average(&number(attribute)));
             }
             if TUBES {
                 let aligned = mix.aligned([0, 1, 2].map_inline(|axis| number(tangent + axis)));
-                (0..3).for_each(|axis| put(tangent + axis, &mix.average(&aligned[axis])));
+                (0..3).for_each(|axis| put(tangent + axis, &mix.mean.average(&aligned[axis])));
             }
         }
     }

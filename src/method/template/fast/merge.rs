@@ -3,11 +3,9 @@
 use super::level::{
     COLOR, CenterLevel, CenterRow, CenterRowMut, DEPTH, EXTENT, NORMAL, PLACE, RADIUS,
 };
-use crate::composite::mean::Mean;
 use crate::frame::{Exec, NO_ID};
 use crate::method::clock::{Work, spend};
-use crate::method::projection::fast::{PAD, RowLayout};
-use crate::number::MapInline;
+use crate::method::projection::fast::{MeanLanes, PAD, RowLayout};
 use crate::number::lanes::{LANES, Lanes, Mask, any, each, load_halves, mask, store, vectorized};
 
 /// Rows of a job.
@@ -74,11 +72,12 @@ vectorized!(
             let ids = [a, b, c, d];
             // -- Which of their centres move on
             let extents = number(EXTENT);
-            let mut moves = [[0; LANES]; 4];
-            for (j, moves) in moves.iter_mut().enumerate() {
+            // Written out, because a loop over the four gathers its lanes.
+            let of = |j: usize| {
                 let there = exists | (j < 2);
-                *moves = mask(|i| (ids[j][i] != NO_ID) & !(extents[j][i] <= reach) & there);
-            }
+                mask(|i| (ids[j][i] != NO_ID) & !(extents[j][i] <= reach) & there)
+            };
+            let moves = [of(0), of(1), of(2), of(3)];
             // -- The new centres
             if moves.iter().any(any) {
                 FourCenters { moves, ids }.meet(number, coarse, layout, x);
@@ -111,23 +110,17 @@ impl FourCenters {
             }
         }
         store(coarse.ids, PAD + x, &id);
-        // -- The centres of its surface
-        let mut takes = [[0.0; LANES]; 4];
-        for j in 0..4 {
-            for i in 0..LANES {
+        // -- The average of the centres of its surface
+        let takes = |j: usize| {
+            each(|i| {
                 let near = depths[j][i] - depth[i] <= radii[j][i] + radius[i];
-                takes[j][i] = if (self.moves[j][i] != 0) & near { 1.0 } else { 0.0 };
-            }
-        }
-        // -- Their averages
+                if (self.moves[j][i] != 0) & near { 1.0 } else { 0.0 }
+            })
+        };
+        let mean = MeanLanes::new([takes(0), takes(1), takes(2), takes(3)]);
         let own = [PLACE, PLACE + 1, DEPTH, RADIUS, EXTENT].into_iter().chain(NORMAL..COLOR);
         for attribute in own.chain(COLOR..layout.attributes) {
-            let a = number(attribute);
-            let average = each(|i| {
-                let mean = Mean::plain([0, 1, 2, 3].map_inline(|j| takes[j][i] > 0.0));
-                mean.average([a[0][i], a[1][i], a[2][i], a[3][i]])
-            });
-            store(coarse.numbers, layout.at(attribute, x), &average);
+            store(coarse.numbers, layout.at(attribute, x), &mean.average(&number(attribute)));
         }
     }
 }
