@@ -192,19 +192,19 @@ impl Exec {
     }
 
     /// Runs jobs of `size` neighbouring items each, in parallel, with the index of the job's first
-    /// item.
-    pub(crate) fn chunks<T: Send>(
+    /// item, and returns the results in the order of the jobs.
+    pub(crate) fn chunks<T: Send, R: Send>(
         &self,
         items: impl Iterator<Item = T>,
         size: usize,
-        run: impl Fn(usize, Vec<T>) + Sync + Send,
-    ) {
+        run: impl Fn(usize, Vec<T>) -> R + Sync + Send,
+    ) -> Vec<R> {
         let mut items = items.enumerate().peekable();
         let chunks = std::iter::from_fn(|| {
             let first = items.peek()?.0;
             Some((first, items.by_ref().take(size).map(|(_, item)| item).collect()))
         });
-        self.ordered(chunks.collect(), |(first, chunk)| run(first, chunk));
+        self.ordered(chunks.collect(), |(first, chunk)| run(first, chunk))
     }
 }
 

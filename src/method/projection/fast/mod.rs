@@ -6,14 +6,17 @@
 //!    **bands** of rows in the cache, and writes them out in order.
 //! 2. **[`nearest`].** Each band keeps the nearest point of each pixel in memory that fits the
 //!    cache; one thread owns it. The points then become the samples of a row of pixels. Colours,
-//!    and positions if they are wanted, are read for these points alone.
+//!    and positions if they are wanted, are read for these points alone. Two rows make a row of the
+//!    next coarser level while they are in the cache.
 
 mod layout;
+mod mean;
 mod nearest;
 mod points;
 #[cfg(test)]
 mod tests;
 
 pub(crate) use layout::{PAD, RowLayout};
-pub(crate) use nearest::NearestPoints;
+pub(crate) use mean::MeanLanes;
+pub(crate) use nearest::{NearestPoints, pairs};
 pub(crate) use points::Points;

@@ -7,13 +7,14 @@
 
 use super::points::{CHUNK, Points, depth};
 use crate::frame::{Exec, NO_ID};
-use crate::method::clock::{Work, spend};
+use crate::method::clock::{Stopwatch, Work, spend};
 use crate::method::projection::surfels::PointProjector;
 use crate::number::lanes::{LANES, Lanes, each, put_vector, transposed, vector};
-use crate::number::{Real, Vector3};
+use crate::number::{MapInline, Real, Vector3};
 use crate::scene::Surfels;
 use crate::splat::ellipse;
 use glam::Vec3;
+use std::time::Duration;
 
 /// No point: greater than any depth and slot.
 const NONE: u64 = u64::MAX;
@@ -29,31 +30,56 @@ pub(crate) struct NearestPoints<'a> {
     kept: &'a [u64],
 }
 
+/// The nearest points of a band of rows.
+pub(crate) struct NearestBand<'a> {
+    points: &'a Points,
+    surfels: &'a Surfels,
+    lens: &'a PointProjector<f32>,
+    /// See [`NearestPoints::kept`], row by row.
+    kept: Vec<u64>,
+}
+
+impl NearestBand<'_> {
+    /// A row of pixels; `y` counts from the first row of the band.
+    pub(crate) fn row(&self, y: usize) -> NearestPoints<'_> {
+        let Self { points, surfels, lens, .. } = *self;
+        let width = lens.view.width.to_pixel() as usize;
+        NearestPoints { points, surfels, lens, kept: &self.kept[y * width..(y + 1) * width] }
+    }
+}
+
 impl Points {
-    /// Calls `draw` for every row of pixels, with the target of the row.
-    pub(crate) fn each_row<T: Send>(
+    /// Calls `draw` for every band, with the targets of its pairs of rows; the last row may be
+    /// alone. A stopwatch starts with each band. Returns the times.
+    pub(crate) fn each_band<T: Send>(
         &self,
         surfels: &Surfels,
         lens: &PointProjector<f32>,
-        rows: impl Iterator<Item = T>,
+        pairs: impl Iterator<Item = T>,
         exec: &Exec,
-        draw: impl Fn(&NearestPoints<'_>, T) + Sync + Send,
-    ) {
-        let width = lens.view.width.to_pixel() as usize;
-        exec.chunks(rows, self.rows(), |first, rows| {
+        draw: impl Fn(&NearestBand<'_>, Vec<T>, &mut Stopwatch<2>) + Sync + Send,
+    ) -> Vec<[Duration; 2]> {
+        let size = [lens.view.width, lens.view.height].map_inline(|n| n.to_pixel() as usize);
+        exec.chunks(pairs, self.rows() / 2, |first, pairs| {
+            let mut watch = Stopwatch::start();
             spend(Work::Project);
-            let mut kept = vec![NONE; rows.len() * width];
-            for slots in self.slots(first / self.rows()) {
+            let rows = self.rows().min(size[1] - 2 * first);
+            let mut kept = vec![NONE; rows * size[0]];
+            for slots in self.slots(2 * first / self.rows()) {
                 for (slot, key) in slots.clone().zip(&self.keys[slots]) {
                     let kept = &mut kept[key.pixel()];
                     *kept = (*kept).min(u64::from(key.order) << 32 | slot as u64);
                 }
             }
-            for (kept, target) in kept.chunks(width).zip(rows) {
-                draw(&NearestPoints { points: self, surfels, lens, kept }, target);
-            }
-        });
+            draw(&NearestBand { points: self, surfels, lens, kept }, pairs, &mut watch);
+            watch.times()
+        })
     }
+}
+
+/// Rows in pairs, the last with nothing if it is alone.
+pub(crate) fn pairs<T>(mut rows: impl Iterator<Item = T>) -> impl Iterator<Item = (T, Option<T>)> {
+    std::iter::from_fn(move || Some((rows.next()?, rows.next())))
 }
 
 /// The values that the points of [`LANES`] pixels in a row carry.

@@ -17,12 +17,14 @@ use glam::Vec3;
 use std::ops::Range;
 use std::sync::{Mutex, PoisonError};
 
-/// Surfels of a chunk; an index in a chunk has 16 bits.
-pub(super) const CHUNK: usize = 16_384;
-/// Maximum number of pixels of a band; an index in a band has 16 bits. Depths and slots of a band
-/// fit a second-level cache.
+/// Surfels of a chunk; an index in a chunk has [`SURFEL_BITS`].
+pub(super) const CHUNK: usize = 1 << SURFEL_BITS;
+const SURFEL_BITS: u32 = 14;
+/// Maximum number of pixels of a band that has more than two rows. Depths and slots of a band fit a
+/// second-level cache.
 const BAND: usize = 65_536;
-const _: () = assert!(MAX_EXTENT as usize <= BAND, "a band has a row of the widest picture");
+const _: () =
+    assert!((2 * MAX_EXTENT) >> (32 - SURFEL_BITS) == 0, "two rows of the widest picture");
 /// Minimum number of bands of a picture, if it has as many rows, so that there is work for every
 /// thread.
 const BANDS: usize = 16;
@@ -30,8 +32,8 @@ const BANDS: usize = 16;
 /// The place, the surfel and the depth of a point.
 #[derive(Clone, Copy, Debug, Default)]
 pub(super) struct PointKey {
-    /// The pixel of the band, counted row by row, in the upper half; the surfel of the chunk in the
-    /// lower half.
+    /// The surfel of the chunk in the lower [`SURFEL_BITS`]; above them the pixel of the band, counted
+    /// row by row.
     place: u32,
     /// See [`order`].
     pub(super) order: u32,
@@ -40,12 +42,12 @@ pub(super) struct PointKey {
 impl PointKey {
     /// The pixel of the band.
     pub(super) fn pixel(self) -> usize {
-        (self.place >> 16) as usize
+        (self.place >> SURFEL_BITS) as usize
     }
 
     /// The surfel of the chunk.
     pub(super) fn surfel(self) -> u32 {
-        self.place & 0xFFFF
+        self.place % CHUNK as u32
     }
 }
 
@@ -78,7 +80,8 @@ pub(crate) struct Points {
     spare: Mutex<Vec<Chunk>>,
 }
 
-/// The division of a picture into bands; every band has the same number of rows, a power of two.
+/// The division of a picture into bands; every band has the same number of rows, an even power of
+/// two, so that pairs of rows that meet in a coarser level are in one band.
 #[derive(Clone, Copy, Debug, Default)]
 struct Bands {
     shift: u32,
@@ -87,7 +90,7 @@ struct Bands {
 
 impl Bands {
     fn new(width: usize, height: usize) -> Self {
-        let rows = (BAND / width).min(height / BANDS).max(1);
+        let rows = (BAND / width).min(height / BANDS).max(2);
         let shift = rows.ilog2();
         Self { shift, count: height.div_ceil(1 << shift) }
     }
@@ -306,7 +309,7 @@ impl PointBlock {
             fates.back_facing[i] += u32::from(fate == Fate::BackFacing);
             let sample = lens.sample(0, &placed, n, g, radius[i], [0.0; 3]);
             let (x, y) = (sample.center.x.to_pixel(), sample.center.y.to_pixel());
-            place[i] = ((y & row) * width + x) << 16 | (index * LANES + i) as u32;
+            place[i] = ((y & row) * width + x) << SURFEL_BITS | (index * LANES + i) as u32;
             orders[i] = order(sample.depth);
             band[i] = y >> shift;
             (carried[0][i], carried[1][i]) = (sample.normal.x, sample.normal.y);

@@ -21,7 +21,7 @@ fn samples(of: &Surfels, camera: &Camera, cull: bool, points: &mut Points) -> Ve
     points.find(of, &lens, &exec);
     let width = camera.width as usize;
     let mut rows = vec![vec![String::new(); width]; camera.height as usize];
-    points.each_row(of, &lens, rows.iter_mut(), &exec, |nearest, row| {
+    let draw = |nearest: NearestPoints<'_>, row: &mut Vec<String>| {
         for x in (0..width).step_by(LANES) {
             let Some(s) = nearest.take(x) else { continue };
             let ids = nearest.ids(&s);
@@ -36,6 +36,14 @@ fn samples(of: &Surfels, camera: &Camera, cull: bool, points: &mut Points) -> Ve
                 let form = (s.depth[i], s.radius[i], s.extent[i], center, lane(&s.normal));
                 let color = color.as_ref().map_or([0.0; 3], lane);
                 row[x + i] = format!("{} {form:?} {color:?}", ids[i]);
+            }
+        }
+    };
+    points.each_band(of, &lens, pairs(rows.iter_mut()), &exec, |band, pairs, _| {
+        for (y, (upper, lower)) in (0..).step_by(2).zip(pairs) {
+            draw(band.row(y), upper);
+            if let Some(lower) = lower {
+                draw(band.row(y + 1), lower);
             }
         }
     });

@@ -3,8 +3,8 @@
 //! A level is rows of numbers, one number of all cells of a row after the other, so that 16 cells
 //! of a row are 16 neighbours in memory. The pull phase computes 16 coarser cells at a time. The
 //! push phase computes 16 finer cells of every second column, which have 16 consecutive parents.
-//! Empty cells are passed over. The push phase changes a level in place and touches only cells that
-//! are empty or occluded.
+//! Empty cells are passed over. Level 1 is pulled from rows of level 0 that are in the cache. The
+//! push phase changes a level in place and touches only cells that are empty or occluded.
 
 mod level;
 mod mix;
@@ -22,7 +22,7 @@ use crate::frame::raster::Snap;
 use crate::frame::{Exec, pyramid};
 use crate::method::Job;
 use crate::method::clock::Clock;
-use crate::method::projection::fast::{NearestPoints, Points, RowLayout};
+use crate::method::projection::fast::{NearestPoints, Points, RowLayout, pairs};
 use crate::method::projection::surfels::PointProjector;
 use crate::method::projection::{self, Has, Projected, SampleKind};
 use crate::number::lanes::{LANES, Lanes, each, store, vectorized};
@@ -55,10 +55,9 @@ impl CellLevels {
         let Job { scene, camera, exec, .. } = *job;
         let mut clock = Clock::default();
         self.reshape(camera, Has::in_scene(scene));
-        let tally = self.project(job, settings)?;
-        clock.lap("projection");
+        let (tally, made) = self.project(job, settings, &mut clock)?;
         let tubes = self.has.tangent;
-        for level in 1..self.levels.len() {
+        for level in made..self.levels.len() {
             let (finer, coarser) = self.levels.split_at_mut(level);
             pull::pull(&finer[level - 1], &mut coarser[0], side(level - 1), tubes, exec);
         }
@@ -84,23 +83,48 @@ impl CellLevels {
         self.has = has;
     }
 
-    /// Fills level 0.
-    fn project(&mut self, job: &Job<'_>, settings: &Settings) -> Result<Tally> {
+    /// Fills level 0, and also level 1 from surfels alone. Returns how many levels are filled.
+    fn project(
+        &mut self,
+        job: &Job<'_>,
+        settings: &Settings,
+        clock: &mut Clock,
+    ) -> Result<(Tally, usize)> {
         let Job { scene, camera, exec, .. } = *job;
-        let level = &mut self.levels[0];
         if !scene.primitives.is_empty() {
             let snap = Snap::new(settings.subpixel_bits)?;
             let projected = projection::project(job, settings.cull, snap)?;
-            fill(&projected, self.has, level, exec);
-            return Ok(projected.tally);
+            fill(&projected, self.has, &mut self.levels[0], exec);
+            clock.lap("projection");
+            return Ok((projected.tally, 1));
         }
         let lens = PointProjector::new(View::new(camera), settings.cull);
         let tally = self.points.find(&scene.surfels, &lens, exec);
-        let layout = level.layout;
-        self.points.each_row(&scene.surfels, &lens, level.rows_mut(), exec, |nearest, row| {
-            samples(nearest, row, &layout);
-        });
-        Ok(tally)
+        clock.lap("projection");
+        let (finest, coarser) = self.levels.split_at_mut(1);
+        let (finest, coarser) = (&mut finest[0], coarser.first_mut());
+        let layout = finest.layout;
+        let layouts = [layout, coarser.as_ref().map_or(layout, |coarse| coarse.layout)];
+        let coarse = coarser.map(CellLevel::rows_mut).into_iter().flatten().map(Some);
+        let jobs = pairs(finest.rows_mut()).zip(coarse.chain(std::iter::repeat_with(|| None)));
+        let empty = vec![0.0; layout.row()];
+        let times =
+            self.points.each_band(&scene.surfels, &lens, jobs, exec, |band, jobs, watch| {
+                for (y, ((upper, mut lower), coarse)) in (0..).step_by(2).zip(jobs) {
+                    samples(&band.row(y), upper, &layout);
+                    if let Some(lower) = &mut lower {
+                        samples(&band.row(y + 1), lower, &layout);
+                    }
+                    watch.lap(0);
+                    if let Some(coarse) = coarse {
+                        let finer = [&*upper, lower.as_deref().unwrap_or(&empty)];
+                        pull::pull_pair(finer, coarse, &layouts, side(0), false);
+                    }
+                    watch.lap(1);
+                }
+            });
+        clock.shares(["projection", "pull"], &times);
+        Ok((tally, 2))
     }
 
     /// Pushes to level 0, and writes the picture.

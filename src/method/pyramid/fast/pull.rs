@@ -13,20 +13,30 @@ const ROWS: usize = 4;
 
 /// Pulls a coarser level from the finer one; `side` is the side of a finer cell in pixels.
 pub(super) fn pull(fine: &CellLevel, coarse: &mut CellLevel, side: f32, tubes: bool, exec: &Exec) {
+    let layouts = [fine.layout, coarse.layout];
+    exec.chunks(coarse.rows_mut(), ROWS, |first, rows| {
+        for (y, row) in (first as isize..).zip(rows) {
+            pull_pair([fine.row(2 * y), fine.row(2 * y + 1)], row, &layouts, side, tubes);
+        }
+    });
+}
+
+/// Pulls a row of a coarser level from two finer rows.
+pub(super) fn pull_pair(
+    finer: [&[f32]; 2],
+    coarse: &mut [f32],
+    layouts: &[RowLayout; 2],
+    side: f32,
+    tubes: bool,
+) {
     spend(Work::Pull);
-    let finest = side == 1.0;
-    let run = match (finest, tubes) {
+    let run = match (side == 1.0, tubes) {
         (false, false) => pull_row::<false, false>,
         (false, true) => pull_row::<false, true>,
         (true, false) => pull_row::<true, false>,
         (true, true) => pull_row::<true, true>,
     };
-    let layouts = [fine.layout, coarse.layout];
-    exec.chunks(coarse.rows_mut(), ROWS, |first, rows| {
-        for (y, row) in (first as isize..).zip(rows) {
-            run([fine.row(2 * y), fine.row(2 * y + 1)], row, &layouts, side);
-        }
-    });
+    run(finer, coarse, layouts, side);
 }
 
 /// A number of the four finer cells of [`LANES`] coarser ones from column x on.
@@ -77,23 +87,23 @@ vectorized!(
                 continue;
             }
             // -- The new cells
-            put(FRONT, &mix.least(&four.front));
-            put(BACK, &mix.greatest(&four.back));
-            put(RADIUS, &mix.average(&four.radius));
+            put(FRONT, &mix.mean.least(&four.front));
+            put(BACK, &mix.mean.greatest(&four.back));
+            put(RADIUS, &mix.mean.average(&four.radius));
             for axis in 0..2 {
-                put(PLACE + axis, &mix.average(&four.place(axis)));
+                put(PLACE + axis, &mix.mean.average(&four.place(axis)));
             }
-            let normal = [mix.average(&nx), mix.average(&ny), mix.average(&nz)];
+            let normal = [mix.mean.average(&nx), mix.mean.average(&ny), mix.mean.average(&nz)];
             (0..3).for_each(|axis| put(NORMAL + axis, &normal[axis]));
             let tilt = tilts(&normal);
             (0..2).for_each(|axis| put(TILT + axis, &tilt[axis]));
             let tangent = tangent(layout, TUBES);
             for attribute in FURTHER..tangent {
-                put(attribute, &mix.average(&number(attribute)));
+                put(attribute, &mix.mean.average(&number(attribute)));
             }
             if TUBES {
                 let aligned = mix.aligned([0, 1, 2].map_inline(|axis| number(tangent + axis)));
-                (0..3).for_each(|axis| put(tangent + axis, &mix.average(&aligned[axis])));
+                (0..3).for_each(|axis| put(tangent + axis, &mix.mean.average(&aligned[axis])));
             }
         }
     }

@@ -132,7 +132,7 @@ vectorized!(
             let tangent = tangent(layout, TUBES);
             for attribute in [FRONT].into_iter().chain(FURTHER..tangent) {
                 put(fine, at(attribute), &cells, |odd, new| {
-                    new.mix.average(&number(attribute, odd))
+                    new.mix.mean.average(&number(attribute, odd))
                 });
             }
             if TUBES {
@@ -142,13 +142,15 @@ vectorized!(
                     cells[odd].as_ref().map_or(none, |new| new.mix.aligned(all(odd)))
                 });
                 for axis in 0..3 {
-                    let value = |odd: usize, new: &NewCells| new.mix.average(&aligned[odd][axis]);
+                    let value =
+                        |odd: usize, new: &NewCells| new.mix.mean.average(&aligned[odd][axis]);
                     put(fine, at(tangent + axis), &cells, value);
                 }
             }
             let mut normal = [[[0.0; LANES]; 3]; 2];
             for axis in 0..3 {
-                let new = |odd: usize, new: &NewCells| new.mix.average(&number(NORMAL + axis, odd));
+                let new =
+                    |odd: usize, new: &NewCells| new.mix.mean.average(&number(NORMAL + axis, odd));
                 let [even, odd] = put(fine, at(NORMAL + axis), &cells, new);
                 (normal[0][axis], normal[1][axis]) = (even, odd);
             }
@@ -159,12 +161,12 @@ vectorized!(
             // finest level
             for attribute in [BACK, RADIUS] {
                 put(fine, at(attribute), &cells, |odd, new| {
-                    new.mix.average(&number(attribute, odd))
+                    new.mix.mean.average(&number(attribute, odd))
                 });
             }
             for axis in 0..2 {
                 put(fine, at(PLACE + axis), &cells, |_, new| {
-                    new.mix.average(&new.four.place(axis))
+                    new.mix.mean.average(&new.four.place(axis))
                 });
             }
             let tilt = [tilts(&normal[0]), tilts(&normal[1])];

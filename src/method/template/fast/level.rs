@@ -25,6 +25,17 @@ pub(super) fn layout(size: [u32; 2], color: bool) -> RowLayout {
     RowLayout::new(size, if color { COLOR + 3 } else { COLOR })
 }
 
+/// [`LANES`] centres of level 0.
+pub(super) struct SampledLanes {
+    pub(super) ids: [u32; LANES],
+    pub(super) place: [Lanes; 2],
+    pub(super) depth: Lanes,
+    pub(super) radius: Lanes,
+    pub(super) extent: Lanes,
+    pub(super) normal: [Lanes; 3],
+    pub(super) color: Option<[Lanes; 3]>,
+}
+
 /// A row of a level, to be written.
 #[derive(Debug)]
 pub(super) struct CenterRowMut<'a> {
@@ -131,6 +142,24 @@ impl CenterRowMut<'_> {
         }
         self.has[0] |= has[0] != 0;
         self.has[1] |= has[1] != 0;
+    }
+
+    /// Stores [`LANES`] centres from x on, except for their ellipses.
+    #[inline(always)]
+    pub(super) fn put(&mut self, layout: &RowLayout, x: usize, centers: &SampledLanes) {
+        let SampledLanes { ids, place, depth, radius, extent, normal, color } = centers;
+        let mut put = |attribute: usize, lanes: &Lanes| {
+            store(self.numbers, layout.at(attribute, x), lanes);
+        };
+        put(DEPTH, depth);
+        put(RADIUS, radius);
+        put(EXTENT, extent);
+        (0..2).for_each(|axis| put(PLACE + axis, &place[axis]));
+        (0..3).for_each(|axis| put(NORMAL + axis, &normal[axis]));
+        if let Some(color) = color {
+            (0..3).for_each(|channel| put(COLOR + channel, &color[channel]));
+        }
+        store(self.ids, PAD + x, ids);
     }
 
     /// Marks [`LANES`] cells from x on as empty.

@@ -3,11 +3,9 @@
 use super::level::{
     COLOR, CenterLevel, CenterRow, CenterRowMut, DEPTH, EXTENT, NORMAL, PLACE, RADIUS,
 };
-use crate::composite::mean::Mean;
 use crate::frame::{Exec, NO_ID};
 use crate::method::clock::{Work, spend};
-use crate::method::projection::fast::{PAD, RowLayout};
-use crate::number::MapInline;
+use crate::method::projection::fast::{MeanLanes, PAD, RowLayout};
 use crate::number::lanes::{LANES, Lanes, Mask, any, each, load_halves, mask, store, vectorized};
 
 /// Rows of a job.
@@ -16,20 +14,29 @@ const ROWS: usize = 8;
 /// Makes the next level from the centres that do not stay within the first `reach`; the second
 /// `reach` is the next level's.
 pub(super) fn merge(fine: &CenterLevel, coarse: &mut CenterLevel, reach: [f32; 2], exec: &Exec) {
-    spend(Work::Propagate);
     let layouts = [fine.layout, coarse.layout];
     exec.chunks(coarse.rows_mut(), ROWS, |first, rows| {
         for (y, mut row) in (first..).zip(rows) {
-            let upper = fine.row(2 * y);
-            // Below the last row of an odd level there is no row; the upper one stands for it,
-            // unread.
-            let exists = 2 * y + 1 < fine.layout.height;
-            let lower = if exists { fine.row(2 * y + 1) } else { upper };
-            *row.has = [false; 2];
-            let moving = upper.has[1] || (exists && lower.has[1]);
-            merge_row([upper, lower], exists, moving, &mut row, &layouts, reach);
+            let lower = (2 * y + 1 < fine.layout.height).then(|| fine.row(2 * y + 1));
+            merge_pair(fine.row(2 * y), lower, &mut row, &layouts, reach);
         }
     });
+}
+
+/// Makes a row of the next level from two rows; below the last row of an odd level there is none.
+pub(super) fn merge_pair(
+    upper: CenterRow<'_>,
+    lower: Option<CenterRow<'_>>,
+    coarse: &mut CenterRowMut<'_>,
+    layouts: &[RowLayout; 2],
+    reach: [f32; 2],
+) {
+    spend(Work::Propagate);
+    *coarse.has = [false; 2];
+    let moving = upper.has[1] || lower.is_some_and(|lower| lower.has[1]);
+    // Where there is no row, the upper one stands for it, unread.
+    let finer = [upper, lower.unwrap_or(upper)];
+    merge_row(finer, lower.is_some(), moving, coarse, layouts, reach);
 }
 
 /// [`LANES`] times four centres: every second cell of two rows; four meet in one cell.
@@ -65,11 +72,12 @@ vectorized!(
             let ids = [a, b, c, d];
             // -- Which of their centres move on
             let extents = number(EXTENT);
-            let mut moves = [[0; LANES]; 4];
-            for (j, moves) in moves.iter_mut().enumerate() {
+            // Written out, because a loop over the four gathers its lanes.
+            let of = |j: usize| {
                 let there = exists | (j < 2);
-                *moves = mask(|i| (ids[j][i] != NO_ID) & !(extents[j][i] <= reach) & there);
-            }
+                mask(|i| (ids[j][i] != NO_ID) & !(extents[j][i] <= reach) & there)
+            };
+            let moves = [of(0), of(1), of(2), of(3)];
             // -- The new centres
             if moves.iter().any(any) {
                 FourCenters { moves, ids }.meet(number, coarse, layout, x);
@@ -102,23 +110,17 @@ impl FourCenters {
             }
         }
         store(coarse.ids, PAD + x, &id);
-        // -- The centres of its surface
-        let mut takes = [[0.0; LANES]; 4];
-        for j in 0..4 {
-            for i in 0..LANES {
+        // -- The average of the centres of its surface
+        let takes = |j: usize| {
+            each(|i| {
                 let near = depths[j][i] - depth[i] <= radii[j][i] + radius[i];
-                takes[j][i] = if (self.moves[j][i] != 0) & near { 1.0 } else { 0.0 };
-            }
-        }
-        // -- Their averages
+                if (self.moves[j][i] != 0) & near { 1.0 } else { 0.0 }
+            })
+        };
+        let mean = MeanLanes::new([takes(0), takes(1), takes(2), takes(3)]);
         let own = [PLACE, PLACE + 1, DEPTH, RADIUS, EXTENT].into_iter().chain(NORMAL..COLOR);
         for attribute in own.chain(COLOR..layout.attributes) {
-            let a = number(attribute);
-            let average = each(|i| {
-                let mean = Mean::plain([0, 1, 2, 3].map_inline(|j| takes[j][i] > 0.0));
-                mean.average([a[0][i], a[1][i], a[2][i], a[3][i]])
-            });
-            store(coarse.numbers, layout.at(attribute, x), &average);
+            store(coarse.numbers, layout.at(attribute, x), &mean.average(&number(attribute)));
         }
     }
 }

@@ -13,15 +13,15 @@ mod search;
 mod tests;
 
 use super::{Falloff, Settings, propagation};
-use crate::frame::{Exec, Framebuffer, Plane, pyramid};
+use crate::frame::{Exec, Framebuffer, NO_ID, Plane, pyramid};
 use crate::method::clock::{Clock, Work, spend};
 use crate::method::projection::Has;
-use crate::method::projection::fast::{NearestPoints, PAD, Points, RowLayout};
+use crate::method::projection::fast::{NearestPoints, Points, RowLayout, pairs};
 use crate::method::projection::surfels::PointProjector;
-use crate::number::lanes::{LANES, Lanes, store, vectorized};
+use crate::number::lanes::{LANES, any, mask, vectorized};
 use crate::scene::{Camera, Scene};
 use crate::splat::{Tally, View};
-use level::{COLOR, CenterLevel, CenterRowMut, DEPTH, EXTENT, NORMAL, PLACE, RADIUS};
+use level::{CenterLevel, CenterRowMut, SampledLanes};
 use search::Target;
 
 /// The levels of a picture; their memory can be used for many pictures.
@@ -55,11 +55,11 @@ impl CenterLevels {
             self.levels = layouts.map(CenterLevel::new).collect();
         }
         let reach = |level: usize| {
-            if level == top { f32::INFINITY } else { settings.reach(level) }
+            if level >= top { f32::INFINITY } else { settings.reach(level) }
         };
-        let tally = self.project(scene, camera, settings.cull, reach(0), exec);
-        clock.lap("projection");
-        for level in 1..=top {
+        let lens = PointProjector::new(View::new(camera), settings.cull);
+        let tally = self.project(scene, &lens, [reach(0), reach(1)], exec, &mut clock);
+        for level in 2..=top {
             let (finer, coarser) = self.levels.split_at_mut(level);
             let reach = [reach(level - 1), reach(level)];
             merge::merge(&finer[level - 1], &mut coarser[0], reach, exec);
@@ -70,22 +70,41 @@ impl CenterLevels {
         (tally, clock)
     }
 
-    /// Fills level 0.
+    /// Fills level 0 with the centres that stay there, and level 1 from the others, which no later
+    /// stage needs. Their rows lie in memory that fits the cache.
     fn project(
         &mut self,
         scene: &Scene,
-        camera: &Camera,
-        cull: bool,
-        reach: f32,
+        lens: &PointProjector<f32>,
+        reach: [f32; 2],
         exec: &Exec,
+        clock: &mut Clock,
     ) -> Tally {
-        let lens = PointProjector::new(View::new(camera), cull);
-        let tally = self.points.find(&scene.surfels, &lens, exec);
-        let level = &mut self.levels[0];
-        let layout = level.layout;
-        self.points.each_row(&scene.surfels, &lens, level.rows_mut(), exec, |nearest, mut row| {
-            samples(nearest, &mut row, &layout, reach);
+        let surfels = &scene.surfels;
+        let tally = self.points.find(surfels, lens, exec);
+        clock.lap("projection");
+        let (finest, coarser) = self.levels.split_at_mut(1);
+        let (finest, coarser) = (&mut finest[0], coarser.first_mut());
+        let layout = finest.layout;
+        let layouts = [layout, coarser.as_ref().map_or(layout, |coarse| coarse.layout)];
+        let coarse = coarser.into_iter().flat_map(CenterLevel::rows_mut).map(Some);
+        let jobs = pairs(finest.rows_mut()).zip(coarse.chain(std::iter::repeat_with(|| None)));
+        let times = self.points.each_band(surfels, lens, jobs, exec, |band, jobs, watch| {
+            let mut moving = CenterLevel::new(RowLayout { height: 2, ..layout });
+            for (y, ((mut upper, mut lower), coarse)) in (0..).step_by(2).zip(jobs) {
+                let rows = [Some(&mut upper), lower.as_mut()].into_iter().flatten();
+                for ((y, row), mut moving) in (y..).zip(rows).zip(moving.rows_mut()) {
+                    samples(&band.row(y), row, &mut moving, &layout, reach[0]);
+                }
+                watch.lap(0);
+                if let Some(mut coarse) = coarse {
+                    let lower = lower.map(|_| moving.row(1));
+                    merge::merge_pair(moving.row(0), lower, &mut coarse, &layouts, reach);
+                }
+                watch.lap(1);
+            }
         });
+        clock.shares(["projection", "propagation"], &times);
         tally
     }
 
@@ -115,34 +134,45 @@ impl CenterLevels {
 }
 
 vectorized!(
-    /// Fills a row of level 0 from the nearest points of its pixels.
+    /// Fills a row of level 0 from the nearest points of its pixels: the centres that stay there, and
+    /// in `moving` the others.
     fn samples(
         nearest: &NearestPoints<'_>,
         row: &mut CenterRowMut<'_>,
+        moving: &mut CenterRowMut<'_>,
         layout: &RowLayout,
         reach: f32,
     ) {
-        *row.has = [false; 2];
+        (*row.has, *moving.has) = ([false; 2], [false; 2]);
         for x in (0..layout.width).step_by(LANES) {
             let Some(s) = nearest.take(x) else {
                 row.clear(layout, x);
+                moving.clear(layout, x);
                 continue;
             };
             let ids = nearest.ids(&s);
-            let center = nearest.centers(&ids);
-            let mut put = |attribute: usize, lanes: &Lanes| {
-                store(row.numbers, layout.at(attribute, x), lanes);
+            let centers = SampledLanes {
+                ids,
+                place: nearest.centers(&ids),
+                depth: s.depth,
+                radius: s.radius,
+                extent: s.extent,
+                normal: s.normal,
+                color: nearest.colors(&ids),
             };
-            put(DEPTH, &s.depth);
-            put(RADIUS, &s.radius);
-            put(EXTENT, &s.extent);
-            (0..2).for_each(|axis| put(PLACE + axis, &center[axis]));
-            (0..3).for_each(|axis| put(NORMAL + axis, &s.normal[axis]));
-            if let Some(color) = nearest.colors(&ids) {
-                (0..3).for_each(|channel| put(COLOR + channel, &color[channel]));
+            let there = |i: usize| ids[i] != NO_ID;
+            if any(&mask(|i| there(i) & (s.extent[i] <= reach))) {
+                row.put(layout, x, &centers);
+                row.settle(layout, x, reach);
+            } else {
+                row.clear(layout, x);
             }
-            store(row.ids, PAD + x, &ids);
-            row.settle(layout, x, reach);
+            if any(&mask(|i| there(i) & !(s.extent[i] <= reach))) {
+                moving.put(layout, x, &centers);
+                moving.has[1] = true;
+            } else {
+                moving.clear(layout, x);
+            }
         }
     }
 );
