@@ -43,6 +43,7 @@ use crate::composite::decide::Ternary;
 use crate::composite::{decide, sum};
 use crate::frame::{Exec, NO_ID, Plane};
 use crate::method::clock::{Work, spend};
+use crate::method::record::Records;
 use crate::number::{Exact, Real, Truth};
 use crate::splat::Ellipse;
 
@@ -184,7 +185,7 @@ pub fn gather<R: Exact>(
         for (x, pixel) in (0..).zip(row) {
             each_query(levels, settings, (x, y), |asked| {
                 if asked.holds || asked.own {
-                    pixel.add(asked.center, weight(settings.falloff, asked.form, asked.square));
+                    pixel.add(&asked.center, weight(settings.falloff, asked.form, asked.square));
                 }
             });
         }
@@ -194,8 +195,8 @@ pub fn gather<R: Exact>(
 
 /// A centre that a pixel visits.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct CenterQuery<'a, R: Real> {
-    pub(crate) center: &'a Center<R>,
+pub(crate) struct CenterQuery<R: Real> {
+    pub(crate) center: Center<R>,
     pub(super) level: usize,
     pub(super) cell: (u32, u32),
     /// The form at the pixel's centre, and the square that it is compared with.
@@ -212,11 +213,11 @@ pub(crate) struct CenterQuery<'a, R: Real> {
 
 /// Calls `visit` for every centre that stays, or may stay, in the templates around a pixel, in the
 /// order of the module page.
-pub(crate) fn each_query<'a, R: Real>(
-    levels: &'a [Plane<Center<R>>],
+pub(crate) fn each_query<R: Real>(
+    levels: &[impl Records<Center<R>>],
     settings: &Settings,
     pixel: (u32, u32),
-    mut visit: impl FnMut(&CenterQuery<'a, R>),
+    mut visit: impl FnMut(&CenterQuery<R>),
 ) {
     for level in 0..levels.len() {
         search(levels, level, settings, pixel, &mut visit);
@@ -224,21 +225,22 @@ pub(crate) fn each_query<'a, R: Real>(
 }
 
 /// Visits the template of one level around a pixel.
-fn search<'a, R: Real>(
-    levels: &'a [Plane<Center<R>>],
+fn search<R: Real>(
+    levels: &[impl Records<Center<R>>],
     level: usize,
     settings: &Settings,
     (x, y): (u32, u32),
-    visit: &mut impl FnMut(&CenterQuery<'a, R>),
+    visit: &mut impl FnMut(&CenterQuery<R>),
 ) {
     let (cells, h) = (&levels[level], settings.half());
+    let [width, height] = cells.size();
     let is_top = level + 1 == levels.len();
     let reach = R::from_f32(settings.reach(level));
     let (column, row) = (x >> level, y >> level);
-    for cy in row.saturating_sub(h)..cells.height().min(row + h + 1) {
-        for cx in column.saturating_sub(h)..cells.width().min(column + h + 1) {
-            let center = cells.at(cx, cy);
-            let stays = R::Truth::from(is_top) | !propagation::moves(center, reach);
+    for cy in row.saturating_sub(h)..height.min(row + h + 1) {
+        for cx in column.saturating_sub(h)..width.min(column + h + 1) {
+            let center = cells.record(cx, cy);
+            let stays = R::Truth::from(is_top) | !propagation::moves(&center, reach);
             if !center.is_valid() || !stays.possibly() {
                 continue;
             }

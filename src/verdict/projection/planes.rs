@@ -1,6 +1,6 @@
 //! The planes of the projection that a client hands in.
 
-use crate::frame::{NO_ID, Plane};
+use crate::frame::NO_ID;
 use crate::method::projection::{PixelSample, SampleKind};
 use crate::method::record::Field;
 use crate::method::stage::{Conditions, Holds, Keep, PlaneRow};
@@ -121,11 +121,15 @@ impl<'a> SamplePlanes<'a> {
         }
     }
 
-    /// The samples as the next stage reads them, if all planes that it reads are there. `places`
-    /// says whether it reads ids and centres. If not, an id stands for a kind.
-    pub(crate) fn samples<P: Profile>(&self, places: bool) -> Option<Plane<PixelSample<Ball<P>>>> {
+    /// The samples as the next stage reads them, if all planes that it reads are there: their number,
+    /// and each where it is asked for. `places` says whether it reads ids and centres. If not, an id
+    /// stands for a kind.
+    pub(crate) fn samples<P: Profile>(
+        &self,
+        places: bool,
+    ) -> Option<([u32; 2], impl Fn(u32, u32) -> PixelSample<Ball<P>> + Sync + '_)> {
         let (depth, there) = (self.depth?, Conditions::new(self.scene, Keep::Stages));
-        let all = &PixelSample::PLANES;
+        let all = &PixelSample::<Ball<P>>::PLANES;
         let of_place = [PixelSample::<f32>::LEFT.row, PixelSample::<f32>::UPPER.row];
         let known = |(place, field): (usize, &Field<_, _>)| {
             let row = &field.row;
@@ -140,9 +144,9 @@ impl<'a> SamplePlanes<'a> {
             return None;
         }
         let size = [depth.plane.width(), depth.plane.height()];
-        Some(Plane::from_pixels(size, |x, y| {
+        Some((size, move |x, y| {
             let mut sample = PixelSample::empty();
-            self.planes.read(all, &there, (x, y), &mut sample);
+            self.planes.read(&PixelSample::PLANES, &there, (x, y), &mut sample);
             if self.kind.is_none() {
                 sample.kind = kind_of(self.scene, sample.id).unwrap_or_default();
             }
