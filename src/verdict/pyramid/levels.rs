@@ -55,10 +55,7 @@ impl<'a, P: Profile> Levels<'a, P> {
             let all = of.has_all(&Cell::<Ball<P>>::PULL, &there);
             all.then(|| ClientRecords::new(job, *size, read))
         };
-        let samples = finest.samples(false).map(|(size, sample)| {
-            ClientRecords::new(job, size, move |x, y| Cell::new(&sample(x, y)))
-        });
-        let mut pulled = vec![samples];
+        let mut pulled = vec![finest.samples(job, false, Cell::new)];
         pulled.extend(planes[0].iter().zip(&sizes[1..]).map(level));
         let pushed = planes[1].iter().zip(sizes).map(level).collect();
         Self { job, sizes, supposed, planes, pulled, pushed }

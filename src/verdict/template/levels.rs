@@ -43,10 +43,7 @@ impl<'a, P: Profile> Levels<'a, P> {
             let all = of.has_all(&Center::<Ball<P>>::PLANES, &there);
             all.then(|| ClientRecords::new(job, *size, read))
         };
-        let samples = finest.samples(true).map(|(size, sample)| {
-            ClientRecords::new(job, size, move |x, y| Center::new(&sample(x, y)))
-        });
-        let mut levels = vec![samples];
+        let mut levels = vec![finest.samples(job, true, Center::new)];
         levels.extend(planes.iter().zip(&sizes[1..]).map(level));
         Self { job, settings, sizes, planes, levels }
     }
