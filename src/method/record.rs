@@ -16,8 +16,17 @@ pub(crate) trait Records<T> {
     /// Width and height in pixels.
     fn size(&self) -> [u32; 2];
 
+    /// Passes the record of a pixel, which is not copied: in the verdict's numbers it is large.
+    fn with<U>(&self, x: u32, y: u32, read: impl FnOnce(&T) -> U) -> U;
+
     /// The record of a pixel.
-    fn record(&self, x: u32, y: u32) -> T;
+    #[inline(always)]
+    fn record(&self, x: u32, y: u32) -> T
+    where
+        T: Copy,
+    {
+        self.with(x, y, |record| *record)
+    }
 }
 
 impl<T: Copy> Records<T> for Plane<T> {
@@ -27,8 +36,8 @@ impl<T: Copy> Records<T> for Plane<T> {
     }
 
     #[inline(always)]
-    fn record(&self, x: u32, y: u32) -> T {
-        *self.at(x, y)
+    fn with<U>(&self, x: u32, y: u32, read: impl FnOnce(&T) -> U) -> U {
+        read(self.at(x, y))
     }
 }
 

@@ -220,11 +220,11 @@ impl<T: Copy> Records<T> for ClientRecords<'_, T> {
         }
     }
 
-    #[inline]
-    fn record(&self, x: u32, y: u32) -> T {
+    #[inline(always)]
+    fn with<U>(&self, x: u32, y: u32, read: impl FnOnce(&T) -> U) -> U {
         match self {
-            Self::All(plane) => plane.record(x, y),
-            Self::Asked(_, read) => read(x, y),
+            Self::All(plane) => read(plane.at(x, y)),
+            Self::Asked(_, record) => read(&record(x, y)),
         }
     }
 }

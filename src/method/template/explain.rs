@@ -82,12 +82,12 @@ pub(super) fn explain<R: Exact>(
     });
     let (mut gathered, mut asked) = (Gathered::empty(), Vec::new());
     each_query(&levels, settings, pixel, |a| {
-        let (before, test) = (gathered, gathered.test(&a.center));
+        let (before, test) = (gathered, gathered.test(a.center));
         let given = weight(settings.falloff, a.form, a.square);
         if a.holds || a.own {
-            gathered.add(&a.center, given);
+            gathered.add(a.center, given);
         }
-        let (level, cell, center, form, square) = (a.level, a.cell, a.center, a.form, a.square);
+        let (level, cell, center, form, square) = (a.level, a.cell, *a.center, a.form, a.square);
         let (holds, own) = (a.holds, a.own);
         let weight = given;
         asked.push(CenterAnswer {

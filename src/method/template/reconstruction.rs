@@ -185,7 +185,7 @@ pub fn gather<R: Exact>(
         for (x, pixel) in (0..).zip(row) {
             each_query(levels, settings, (x, y), |asked| {
                 if asked.holds || asked.own {
-                    pixel.add(&asked.center, weight(settings.falloff, asked.form, asked.square));
+                    pixel.add(asked.center, weight(settings.falloff, asked.form, asked.square));
                 }
             });
         }
@@ -195,8 +195,8 @@ pub fn gather<R: Exact>(
 
 /// A centre that a pixel visits.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct CenterQuery<R: Real> {
-    pub(crate) center: Center<R>,
+pub(crate) struct CenterQuery<'a, R: Real> {
+    pub(crate) center: &'a Center<R>,
     pub(super) level: usize,
     pub(super) cell: (u32, u32),
     /// The form at the pixel's centre, and the square that it is compared with.
@@ -217,7 +217,7 @@ pub(crate) fn each_query<R: Real>(
     levels: &[impl Records<Center<R>>],
     settings: &Settings,
     pixel: (u32, u32),
-    mut visit: impl FnMut(&CenterQuery<R>),
+    mut visit: impl FnMut(&CenterQuery<'_, R>),
 ) {
     for level in 0..levels.len() {
         search(levels, level, settings, pixel, &mut visit);
@@ -230,7 +230,7 @@ fn search<R: Real>(
     level: usize,
     settings: &Settings,
     (x, y): (u32, u32),
-    visit: &mut impl FnMut(&CenterQuery<R>),
+    visit: &mut impl FnMut(&CenterQuery<'_, R>),
 ) {
     let (cells, h) = (&levels[level], settings.half());
     let [width, height] = cells.size();
@@ -239,19 +239,20 @@ fn search<R: Real>(
     let (column, row) = (x >> level, y >> level);
     for cy in row.saturating_sub(h)..height.min(row + h + 1) {
         for cx in column.saturating_sub(h)..width.min(column + h + 1) {
-            let center = cells.record(cx, cy);
-            let stays = R::Truth::from(is_top) | !propagation::moves(&center, reach);
-            if !center.is_valid() || !stays.possibly() {
-                continue;
-            }
-            let ellipse = Ellipse::new(center.normal, center.extent);
-            let form = ellipse.form(
-                R::from_f32(x as f32 + 0.5) - center.center.x,
-                R::from_f32(y as f32 + 0.5) - center.center.y,
-            );
-            let own = level == 0 && (cx, cy) == (x, y);
-            let (cell, square, holds) = ((cx, cy), ellipse.square, ellipse.holds(form));
-            visit(&CenterQuery { center, level, cell, form, square, stays, holds, own });
+            cells.with(cx, cy, |center| {
+                let stays = R::Truth::from(is_top) | !propagation::moves(center, reach);
+                if !center.is_valid() || !stays.possibly() {
+                    return;
+                }
+                let ellipse = Ellipse::new(center.normal, center.extent);
+                let form = ellipse.form(
+                    R::from_f32(x as f32 + 0.5) - center.center.x,
+                    R::from_f32(y as f32 + 0.5) - center.center.y,
+                );
+                let own = level == 0 && (cx, cy) == (x, y);
+                let (cell, square, holds) = ((cx, cy), ellipse.square, ellipse.holds(form));
+                visit(&CenterQuery { center, level, cell, form, square, stays, holds, own });
+            });
         }
     }
 }

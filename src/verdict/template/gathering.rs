@@ -34,7 +34,7 @@ pub(super) fn outcomes<P: Profile>(
 
 impl<P: Profile> Outcomes<P> {
     /// Follows a centre that may be taken.
-    fn ask(&mut self, falloff: Falloff, asked: &CenterQuery<Ball<P>>) {
+    fn ask(&mut self, falloff: Falloff, asked: &CenterQuery<'_, Ball<P>>) {
         let taken = (asked.holds | asked.own.into()) & asked.stays;
         let weight = bounded_weight(falloff, asked);
         let mut all: Vec<Gathered<Ball<P>>> = Vec::with_capacity(self.all.len());
@@ -45,7 +45,7 @@ impl<P: Profile> Outcomes<P> {
             }
         };
         for before in &self.all {
-            let test = before.ternary(&asked.center);
+            let test = before.ternary(asked.center);
             // Behind the front it does not matter whether the ellipse holds the pixel.
             let matters = !test.behind.certainly();
             if matters && !taken.certainly() {
@@ -57,13 +57,13 @@ impl<P: Profile> Outcomes<P> {
                 doubts |= Doubt::Epsilon as u8;
             }
             if test.before.possibly() {
-                each_front(&Gathered::empty(), &asked.center, weight, &mut doubts, &mut add);
+                each_front(&Gathered::empty(), asked.center, weight, &mut doubts, &mut add);
             }
             if test.behind.possibly() {
                 add(*before);
             }
             if places[2].possibly() {
-                each_front(before, &asked.center, weight, &mut doubts, &mut add);
+                each_front(before, asked.center, weight, &mut doubts, &mut add);
             }
         }
         self.doubts |= doubts;
@@ -93,7 +93,7 @@ fn each_front<P: Profile>(
 
 /// The weight of a centre. At the centre itself the form may be 0 up to its radius. The root of a
 /// ball that reaches below 0 is unbounded, but the root of its greatest value is bounded.
-fn bounded_weight<P: Profile>(falloff: Falloff, asked: &CenterQuery<Ball<P>>) -> Ball<P> {
+fn bounded_weight<P: Profile>(falloff: Falloff, asked: &CenterQuery<'_, Ball<P>>) -> Ball<P> {
     let CenterQuery { form, square, .. } = *asked;
     let most = form.middle + form.radius;
     let reaches_zero = form.middle - form.radius <= 0.0 && most.is_finite();
