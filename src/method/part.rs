@@ -1,10 +1,12 @@
 //! Judge a part of a picture: only what may touch it needs a projection.
 
+use super::algorithm::Job;
 use crate::frame::Rect;
 use crate::number::{MapInline, Real, Vector3};
 use crate::scene::Camera;
 use crate::splat::View;
 use glam::Vec3;
+use std::ops::Range;
 
 /// A part of a picture.
 #[derive(Clone, Copy, Debug)]
@@ -13,6 +15,34 @@ pub(crate) struct Part<'a> {
     pub(crate) pieces: &'a [(usize, Rect)],
     /// A splat reaches at most this many times as far as its surfel.
     pub(crate) spread: f64,
+    /// The surfels around the pieces, if they were looked for before.
+    pub(crate) around: Option<&'a Around>,
+}
+
+/// The surfels around a small part of a picture. A search for a mistake judges one part many times, by
+/// other rules; each time it looks for what is near among these surfels alone.
+#[derive(Debug)]
+pub(crate) struct Around {
+    camera: Camera,
+    /// Their indices, ascending.
+    surfels: Vec<usize>,
+}
+
+/// Surfels are around a part if they are near it when they reach this many times as far. Naming tries no
+/// larger radii.
+const MOST_SPREAD: f64 = 2.5;
+
+/// The same for how far the low-pass filter reaches, in pixels.
+const MOST_SKIRT: f64 = 3.0;
+
+impl Around {
+    /// The surfels around pieces of a job's picture; none if there are too many pieces.
+    pub(crate) fn new(job: &Job<'_>, pieces: &[(usize, Rect)]) -> Option<Self> {
+        let part = Part { pieces, spread: MOST_SPREAD, around: None };
+        let surfels = &job.scene.surfels;
+        let surfels = part.near(job, MOST_SKIRT, |i| surfels.reach_of(i))?;
+        Some(Self { camera: *job.camera, surfels })
+    }
 }
 
 /// The most pieces of a part for which what is near them is looked for.
@@ -22,6 +52,33 @@ impl Part<'_> {
     /// Whether it pays to look for what is near: many pieces are near almost everything.
     pub(crate) fn is_small(&self) -> bool {
         self.pieces.len() <= MOST_PIECES
+    }
+
+    /// The surfels of a job that may touch the part, ascending, if the part is small: splats are wider
+    /// by `skirt` pixels than what they show, and a surfel reaches as far as `reach` says.
+    pub(crate) fn near(
+        &self,
+        job: &Job<'_>,
+        skirt: f64,
+        reach: impl Fn(usize) -> f64 + Sync + Send,
+    ) -> Option<Vec<usize>> {
+        if !self.is_small() {
+            return None;
+        }
+        let nearby = Nearby::new(*self, job.camera, skirt);
+        let position = job.scene.surfels.position();
+        let holds = |i: &usize| nearby.holds(Vector3::from_glam(position[*i]), reach(*i));
+        let knows = |around: &&Around| {
+            let reaches = self.spread <= MOST_SPREAD && skirt <= MOST_SKIRT;
+            reaches && around.camera == *job.camera
+        };
+        if let Some(around) = self.around.filter(knows) {
+            return Some(around.surfels.iter().copied().filter(holds).collect());
+        }
+        let count = position.len();
+        let ranges = (0..count).step_by(8192).map(|first| first..count.min(first + 8192));
+        let some = |range: Range<usize>| range.filter(holds).collect::<Vec<_>>();
+        Some(job.exec.ordered(ranges.collect(), some).concat())
     }
 
     /// Whether a splat with these bounds touches the part.
@@ -290,7 +347,7 @@ mod tests {
                 let (q, _) = fragment(&shared, &splat.footprint, (x, y));
                 if splat.bounds.contains(x, y) && decide::inside(q, shared.limit) {
                     let pieces = [(0, Rect { x0: x, y0: y, x1: x + 1, y1: y + 1 })];
-                    let part = Part { pieces: &pieces, spread: 1.0 };
+                    let part = Part { pieces: &pieces, spread: 1.0, around: None };
                     let nearby = Nearby::new(part, &camera, skirt);
                     prop_assert!(nearby.holds_any(around, reach), "pixel {x} {y}");
                     prop_assert!(nearby.holds_one(position, reach), "pixel {x} {y} alone");
@@ -304,7 +361,8 @@ mod tests {
         let camera = camera(Lens::FieldOfView(40.0), DVec3::ZERO, DVec3::new(0.0, 0.0, 4.0));
         let holds = |region: Rect, middle: Vec3| {
             let pieces = [(0, region)];
-            let nearby = Nearby::new(Part { pieces: &pieces, spread: 1.0 }, &camera, 1.0);
+            let part = Part { pieces: &pieces, spread: 1.0, around: None };
+            let nearby = Nearby::new(part, &camera, 1.0);
             nearby.holds_any([middle - 0.1, middle + 0.1], 0.01)
         };
         let whole = Rect::of_size([40, 30]);

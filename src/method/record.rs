@@ -11,6 +11,36 @@ use super::stage::{Conditions, Holds, PlaneRow, When};
 use crate::frame::{NO_ID, NamedPlane, Plane, Rect};
 use crate::number::{Real, Vector3};
 
+/// The records of all pixels.
+pub(crate) trait Records<T> {
+    /// Width and height in pixels.
+    fn size(&self) -> [u32; 2];
+
+    /// Passes the record of a pixel, which is not copied: in the verdict's numbers it is large.
+    fn with<U>(&self, x: u32, y: u32, read: impl FnOnce(&T) -> U) -> U;
+
+    /// The record of a pixel.
+    #[inline(always)]
+    fn record(&self, x: u32, y: u32) -> T
+    where
+        T: Copy,
+    {
+        self.with(x, y, |record| *record)
+    }
+}
+
+impl<T: Copy> Records<T> for Plane<T> {
+    #[inline(always)]
+    fn size(&self) -> [u32; 2] {
+        [self.width(), self.height()]
+    }
+
+    #[inline(always)]
+    fn with<U>(&self, x: u32, y: u32, read: impl FnOnce(&T) -> U) -> U {
+        read(self.at(x, y))
+    }
+}
+
 /// A plane of records `T` with numbers `R`.
 #[derive(Debug)]
 pub(crate) struct Field<T, R> {

@@ -284,6 +284,14 @@ impl<'a> Session<'a> {
         self.defined(&self.whole_job(camera)?, stages)
     }
 
+    /// Draws the whole picture, whatever region was set, by the fast path where there is one. Leaves the
+    /// session as it was.
+    pub(crate) fn draw_whole(&self, camera: &Camera) -> Result<Picture<f32>> {
+        let job = self.whole_job(camera)?;
+        self.ask(&job, Making::Render)?;
+        self.method.draw(&job, &mut self.method.memory(), &mut Pool::default())
+    }
+
     /// Renders a job by the definition.
     fn defined<R: Exact>(&self, job: &Job<'_>, stages: bool) -> Result<Picture<R>> {
         self.ask(job, Making::Define { number: size_of::<R>() as u64, stages })?;

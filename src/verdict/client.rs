@@ -6,6 +6,7 @@ pub use super::storage::Storage;
 use crate::error::{Error, Result};
 use crate::frame::{Frame, NamedPlane, Plane, Rect, Samples};
 use crate::method::gaussians::record::GaussianRecord;
+use crate::method::part::Around;
 use crate::method::stage::numbered;
 use crate::method::{Holds, Job, PlaneRow};
 use crate::number::MapInline;
@@ -143,6 +144,9 @@ pub struct Client {
     /// The only rectangles that are judged, each with the number of its tile in the grid; none: the
     /// whole picture.
     pub(crate) part: Option<Arc<[(usize, Rect)]>>,
+    /// The surfels around these rectangles, if they were looked for. A mistake that is assumed moves no
+    /// surfel, or moves it out of sight.
+    pub(crate) around: Option<Arc<Around>>,
     /// The format of the attribute pass's sums between two additions.
     pub accumulator: Storage,
     /// The splats that the client has projected, in ascending surfel index. The later stages are
@@ -266,6 +270,7 @@ impl Client {
             supposed: Supposed::default(),
             drawn: None,
             part: None,
+            around: None,
             accumulator: Storage::Single,
             records: None,
             gaussian_records: None,

@@ -336,6 +336,59 @@ impl Watch {
     }
 }
 
+/// Marks on the cells of levels, each at its place in the plane of its own level. Where a part of the
+/// picture is judged, these are the cells at the places of the part.
+pub(crate) struct LevelMarks {
+    watch: Watch,
+    /// The marks of the pieces that are judged, or of the whole picture.
+    pieces: Vec<Marks>,
+}
+
+impl LevelMarks {
+    pub(crate) fn new(job: &Job<'_>, watch: Watch) -> Self {
+        let pieces = match job.part {
+            Some(part) => part.pieces.iter().map(|(_, rect)| watch.marks(*rect)).collect(),
+            None => vec![watch.picture(job)],
+        };
+        Self { watch, pieces }
+    }
+
+    /// Judges a level: `judge` marks the wrong cells of a rectangle.
+    pub(crate) fn level(
+        &mut self,
+        job: &Job<'_>,
+        size: [u32; 2],
+        judge: impl Fn(Rect, &mut Marks) + Sync + Send,
+    ) {
+        let whole = Rect::of_size(size);
+        let rects: Vec<(usize, Rect)> = match job.part {
+            Some(part) => {
+                let all = part.pieces.iter().map(|(_, rect)| rect.intersection(&whole));
+                all.enumerate().filter(|(_, rect)| !rect.is_empty()).collect()
+            }
+            None => {
+                let all = self.watch.parts(&job.exec.grid(size[0], size[1]));
+                all.into_iter().map(|(_, rect)| (0, rect)).collect()
+            }
+        };
+        let watch = self.watch;
+        let found = job.exec.ordered(rects, |(piece, rect)| {
+            let mut marks = watch.marks(rect);
+            judge(rect, &mut marks);
+            (piece, marks)
+        });
+        found.into_iter().for_each(|(piece, marks)| self.pieces[piece].put(marks));
+    }
+
+    /// The marks on all levels.
+    pub(crate) fn together(mut self, job: &Job<'_>) -> Marks {
+        match (job.part, self.pieces.pop()) {
+            (None, Some(picture)) => picture,
+            (_, last) => Marks::in_a_row(self.pieces.into_iter().chain(last).collect()),
+        }
+    }
+}
+
 /// The findings about a stage: its name, the planes that were judged, and the marks.
 pub(crate) type StageMarks = (&'static str, Vec<&'static str>, Marks);
 

@@ -4,8 +4,9 @@
 use super::checks::{Report, input_where, inputs, number, triple, whole};
 use super::client::{Client, StoredPlane};
 use crate::frame::{NO_ID, Plane};
+use crate::method::Job;
 use crate::method::projection::SampleKind;
-use crate::method::record::{Field, Part};
+use crate::method::record::{Field, Part, Records};
 use crate::method::stage::{Conditions, Holds, PlaneRow};
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real, Vector3};
@@ -184,23 +185,47 @@ impl<'a> RecordPlanes<'a> {
         }
     }
 
-    /// The records as the next stage reads them. None unless all planes that the scene has are
-    /// there.
-    pub(crate) fn records<T: Copy, P: Profile>(
-        &self,
-        fields: &[Field<T, Ball<P>>],
-        there: &Conditions,
-        size: [u32; 2],
-        empty: T,
-    ) -> Option<Plane<T>> {
+    /// Whether all planes are there that the scene has.
+    pub(crate) fn has_all<T, R>(&self, fields: &[Field<T, R>], there: &Conditions) -> bool {
         let mut wanted = fields.iter().enumerate().filter(|(_, field)| there.hold(&field.row));
-        wanted.all(|(place, _)| self.has(place)).then(|| {
-            Plane::from_pixels(size, |x, y| {
-                let mut record = empty;
-                self.read(fields, there, (x, y), &mut record);
-                record
-            })
-        })
+        wanted.all(|(place, _)| self.has(place))
+    }
+}
+
+/// The records of a client as the next stage reads them.
+pub(crate) enum ClientRecords<'a, T> {
+    All(Plane<T>),
+    /// Where a part of a picture is judged, few are read, each where it is asked for.
+    Asked([u32; 2], Box<dyn Fn(u32, u32) -> T + Sync + 'a>),
+}
+
+impl<'a, T> ClientRecords<'a, T> {
+    pub(crate) fn new(
+        job: &Job<'_>,
+        size: [u32; 2],
+        read: impl Fn(u32, u32) -> T + Sync + 'a,
+    ) -> Self {
+        match job.part {
+            Some(_) => Self::Asked(size, Box::new(read)),
+            None => Self::All(Plane::from_pixels(size, read)),
+        }
+    }
+}
+
+impl<T: Copy> Records<T> for ClientRecords<'_, T> {
+    fn size(&self) -> [u32; 2] {
+        match self {
+            Self::All(plane) => plane.size(),
+            Self::Asked(size, _) => *size,
+        }
+    }
+
+    #[inline(always)]
+    fn with<U>(&self, x: u32, y: u32, read: impl FnOnce(&T) -> U) -> U {
+        match self {
+            Self::All(plane) => read(plane.at(x, y)),
+            Self::Asked(_, record) => read(&record(x, y)),
+        }
     }
 }
 

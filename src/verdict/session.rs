@@ -39,7 +39,8 @@ impl Session<'_> {
         budget: f64,
     ) -> Result<Verdict> {
         let spread = client.supposed.spread();
-        let part = client.part.as_deref().map(|pieces| Part { pieces, spread });
+        let around = client.around.as_deref();
+        let part = client.part.as_deref().map(|pieces| Part { pieces, spread, around });
         let job = Job { part, ..self.job(camera)? };
         self.check_client(camera, client)?;
         self.ask(&self.whole_job(camera)?, Making::Verdict)?;

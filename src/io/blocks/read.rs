@@ -113,7 +113,8 @@ impl Blocks {
         exec: &Exec,
     ) -> Result<(Surfels, Excerpt)> {
         let pieces = [(0, region)];
-        let nearby = Nearby::new(Part { pieces: &pieces, spread: 1.0 }, camera, skirt);
+        let nearby =
+            Nearby::new(Part { pieces: &pieces, spread: 1.0, around: None }, camera, skirt);
         let (cloud, ids) = self.some(Some(&nearby))?;
         self.excerpt(cloud, ids, exec)
     }
@@ -121,7 +122,8 @@ impl Blocks {
     /// The most surfels that [`Blocks::near`] reads, and the bytes that it needs for them.
     pub(in crate::io) fn most_near(&self, camera: &Camera, region: Rect, skirt: f64) -> (u64, u64) {
         let pieces = [(0, region)];
-        let nearby = Nearby::new(Part { pieces: &pieces, spread: 1.0 }, camera, skirt);
+        let nearby =
+            Nearby::new(Part { pieces: &pieces, spread: 1.0, around: None }, camera, skirt);
         let count = self.most(Some(&nearby));
         (count, count * self.of_a_surfel())
     }

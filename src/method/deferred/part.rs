@@ -9,6 +9,7 @@ use crate::frame::Exec;
 use crate::index::seen::Seen;
 use crate::method::Job;
 use crate::method::clock::{Work, spend};
+use crate::method::part::Part as RectPart;
 use crate::number::lanes::{LANES, Lanes};
 use crate::scene::merge::join;
 use crate::scene::objects::detail::Mask;
@@ -307,7 +308,9 @@ impl Part {
 
     /// The job that draws these surfels alone.
     pub(crate) fn job<'j>(&'j self, whole: &Job<'j>) -> Job<'j> {
-        Job { scene: &self.scene, ..*whole }
+        // The surfels have other numbers here.
+        let part = whole.part.map(|part| RectPart { around: None, ..part });
+        Job { scene: &self.scene, part, ..*whole }
     }
 
     pub(crate) fn surfels(&self) -> &Surfels {

@@ -3,10 +3,10 @@
 use super::Settings;
 use crate::frame::Rect;
 use crate::method::Job;
-use crate::method::part::{Nearby, Part};
+use crate::method::part::Part;
 use crate::method::prepare::Prepared;
 use crate::number::ball::{Common, Profile};
-use crate::number::{Ball, Real, Truth, Vector3};
+use crate::number::{Ball, Real, Truth};
 use crate::scene::Surfels;
 use crate::splat::project::project_each;
 use crate::splat::{Disc, Projector, Splat, Tally, View, batch, enclosed};
@@ -39,39 +39,43 @@ pub(crate) fn project_into<P: Profile, S: Copy + Send>(
     let picture = job.picture();
     let common = Projector::new(View::new(job.camera), &settings.kernel, settings.cull);
     let part = job.part.filter(Part::is_small);
+    let project = |projector: &_, range, list: Option<&[usize]>, splats: &mut Vec<S>| {
+        let each = &mut |mut splat: Splat<Ball<P>>, certain| {
+            splat.bounds = splat.bounds.intersection(&picture);
+            if splat.bounds.is_empty() {
+                return;
+            }
+            let possible = record(PossibleSplat { splat, certain });
+            if part.is_none_or(|part| part.touches(&bounds(&possible))) {
+                splats.push(possible);
+            }
+        };
+        each_of_range(projector, &common, surfels, range, list, each);
+        Tally::default()
+    };
+    let (grid, count) = (job.grid(), surfels.len());
+    match near(job, settings) {
+        Some(list) => {
+            let all = |projector: &_, list: Vec<usize>, splats: &mut _| {
+                project(projector, 0..count, Some(&list), splats)
+            };
+            Prepared::of_batches(job, &grid, settings, vec![list], all, &bounds)
+        }
+        None => {
+            let some =
+                |projector: &_, range, splats: &mut _| project(projector, range, None, splats);
+            Prepared::new(job, &grid, settings, count, some, &bounds)
+        }
+    }
+}
+
+/// The surfels of a job that may touch the part that is judged, ascending, if that part is small.
+pub(crate) fn near(job: &Job<'_>, settings: &Settings) -> Option<Vec<usize>> {
     let kernel = &settings.kernel;
     // A client may add the filter to the radius.
     let filter = f64::from(kernel.low_pass);
     let skirt = f64::from(kernel.cutoff) * filter.sqrt().at_least(filter);
-    let nearby = part.map(|part| Nearby::new(part, job.camera, skirt));
-    Prepared::new(
-        job,
-        &job.grid(),
-        settings,
-        surfels.len(),
-        |projector, range, splats| {
-            let each = &mut |mut splat: Splat<Ball<P>>, certain| {
-                splat.bounds = splat.bounds.intersection(&picture);
-                if splat.bounds.is_empty() {
-                    return;
-                }
-                let possible = record(PossibleSplat { splat, certain });
-                if part.is_none_or(|part| part.touches(&bounds(&possible))) {
-                    splats.push(possible);
-                }
-            };
-            let list = nearby.as_ref().map(|nearby| {
-                let near = |surfel: &usize| {
-                    let position = Vector3::from_glam(surfels.position()[*surfel]);
-                    nearby.holds(position, surfels.reach_of(*surfel))
-                };
-                range.clone().filter(near).collect::<Vec<_>>()
-            });
-            each_of_range(projector, &common, surfels, range, list.as_deref(), each);
-            Tally::default()
-        },
-        &bounds,
-    )
+    job.part?.near(job, skirt, |i| job.scene.surfels.reach_of(i))
 }
 
 /// [`each_possible`] for a range of surfels, or for those of a list in it, in ascending order. Affine

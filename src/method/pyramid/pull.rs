@@ -32,6 +32,7 @@ use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
 use crate::method::clock::{Work, spend};
 use crate::method::projection::PixelSample;
+use crate::method::record::Records;
 use crate::number::{Exact, MapInline, Real, Vector2};
 
 /// The side of a cell of a level in pixels, 2^level.
@@ -68,11 +69,11 @@ pub fn pull<R: Exact>(fine: &Plane<Cell<R>>, side: R, exec: &Exec) -> Plane<Cell
 }
 
 /// The four finer cells of a cell.
-pub(crate) fn four<R: Real>(fine: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
+pub(crate) fn four<R: Real>(fine: &impl Records<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
+    let [width, height] = fine.size();
     [0, 1, 2, 3].map_inline(|j| {
         let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
-        let exists = x < fine.width() && y < fine.height();
-        if exists { *fine.at(x, y) } else { Cell::empty() }
+        if x < width && y < height { fine.record(x, y) } else { Cell::empty() }
     })
 }
 

@@ -33,6 +33,7 @@ use crate::composite::decide;
 use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
 use crate::method::clock::{Work, spend};
+use crate::method::record::Records;
 use crate::number::{Exact, MapInline, Real, Vector2};
 use crate::splat::Ellipse;
 
@@ -81,14 +82,13 @@ pub fn push<R: Exact>(
 }
 
 /// The parent of a cell and the parent's three neighbours.
-pub(crate) fn four<R: Real>(coarse: &Plane<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
-    let exists = |x: i64, y: i64| {
-        (0..i64::from(coarse.width())).contains(&x) && (0..i64::from(coarse.height())).contains(&y)
-    };
+pub(crate) fn four<R: Real>(coarse: &impl Records<Cell<R>>, x: u32, y: u32) -> [Cell<R>; 4] {
+    let [width, height] = coarse.size().map_inline(i64::from);
+    let exists = |x: i64, y: i64| (0..width).contains(&x) && (0..height).contains(&y);
     let (px, py) = (i64::from(x / 2), i64::from(y / 2));
     let (nx, ny) = (beside(x), beside(y));
     [(px, py), (nx, py), (px, ny), (nx, ny)].map_inline(|(x, y)| {
-        if exists(x, y) { *coarse.at(x as u32, y as u32) } else { Cell::empty() }
+        if exists(x, y) { coarse.record(x as u32, y as u32) } else { Cell::empty() }
     })
 }
 

@@ -26,6 +26,7 @@ use crate::composite::mean::Mean;
 use crate::frame::{Exec, Plane};
 use crate::method::clock::{Work, spend};
 use crate::method::projection::PixelSample;
+use crate::method::record::Records;
 use crate::number::{Exact, MapInline, Real, Vector2, Vector3};
 
 /// The top level, whose cells every pixel searches whole: the first level whose sides are at most
@@ -80,11 +81,11 @@ pub(super) fn coarser<R: Exact>(
 }
 
 /// The four finer cells of a cell.
-pub(crate) fn four<R: Real>(fine: &Plane<Center<R>>, x: u32, y: u32) -> [Center<R>; 4] {
+pub(crate) fn four<R: Real>(fine: &impl Records<Center<R>>, x: u32, y: u32) -> [Center<R>; 4] {
+    let [width, height] = fine.size();
     [0, 1, 2, 3].map_inline(|j| {
         let (x, y) = (2 * x + j % 2, 2 * y + j / 2);
-        let exists = x < fine.width() && y < fine.height();
-        if exists { *fine.at(x, y) } else { Center::empty() }
+        if x < width && y < height { fine.record(x, y) } else { Center::empty() }
     })
 }
 

@@ -43,6 +43,7 @@ use crate::composite::decide::Ternary;
 use crate::composite::{decide, sum};
 use crate::frame::{Exec, NO_ID, Plane};
 use crate::method::clock::{Work, spend};
+use crate::method::record::Records;
 use crate::number::{Exact, Real, Truth};
 use crate::splat::Ellipse;
 
@@ -212,11 +213,11 @@ pub(crate) struct CenterQuery<'a, R: Real> {
 
 /// Calls `visit` for every centre that stays, or may stay, in the templates around a pixel, in the
 /// order of the module page.
-pub(crate) fn each_query<'a, R: Real>(
-    levels: &'a [Plane<Center<R>>],
+pub(crate) fn each_query<R: Real>(
+    levels: &[impl Records<Center<R>>],
     settings: &Settings,
     pixel: (u32, u32),
-    mut visit: impl FnMut(&CenterQuery<'a, R>),
+    mut visit: impl FnMut(&CenterQuery<'_, R>),
 ) {
     for level in 0..levels.len() {
         search(levels, level, settings, pixel, &mut visit);
@@ -224,32 +225,34 @@ pub(crate) fn each_query<'a, R: Real>(
 }
 
 /// Visits the template of one level around a pixel.
-fn search<'a, R: Real>(
-    levels: &'a [Plane<Center<R>>],
+fn search<R: Real>(
+    levels: &[impl Records<Center<R>>],
     level: usize,
     settings: &Settings,
     (x, y): (u32, u32),
-    visit: &mut impl FnMut(&CenterQuery<'a, R>),
+    visit: &mut impl FnMut(&CenterQuery<'_, R>),
 ) {
     let (cells, h) = (&levels[level], settings.half());
+    let [width, height] = cells.size();
     let is_top = level + 1 == levels.len();
     let reach = R::from_f32(settings.reach(level));
     let (column, row) = (x >> level, y >> level);
-    for cy in row.saturating_sub(h)..cells.height().min(row + h + 1) {
-        for cx in column.saturating_sub(h)..cells.width().min(column + h + 1) {
-            let center = cells.at(cx, cy);
-            let stays = R::Truth::from(is_top) | !propagation::moves(center, reach);
-            if !center.is_valid() || !stays.possibly() {
-                continue;
-            }
-            let ellipse = Ellipse::new(center.normal, center.extent);
-            let form = ellipse.form(
-                R::from_f32(x as f32 + 0.5) - center.center.x,
-                R::from_f32(y as f32 + 0.5) - center.center.y,
-            );
-            let own = level == 0 && (cx, cy) == (x, y);
-            let (cell, square, holds) = ((cx, cy), ellipse.square, ellipse.holds(form));
-            visit(&CenterQuery { center, level, cell, form, square, stays, holds, own });
+    for cy in row.saturating_sub(h)..height.min(row + h + 1) {
+        for cx in column.saturating_sub(h)..width.min(column + h + 1) {
+            cells.with(cx, cy, |center| {
+                let stays = R::Truth::from(is_top) | !propagation::moves(center, reach);
+                if !center.is_valid() || !stays.possibly() {
+                    return;
+                }
+                let ellipse = Ellipse::new(center.normal, center.extent);
+                let form = ellipse.form(
+                    R::from_f32(x as f32 + 0.5) - center.center.x,
+                    R::from_f32(y as f32 + 0.5) - center.center.y,
+                );
+                let own = level == 0 && (cx, cy) == (x, y);
+                let (cell, square, holds) = ((cx, cy), ellipse.square, ellipse.holds(form));
+                visit(&CenterQuery { center, level, cell, form, square, stays, holds, own });
+            });
         }
     }
 }

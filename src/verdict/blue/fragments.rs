@@ -62,10 +62,12 @@ impl<'a, P: Profile> Fragments<'a, P> {
     pub(super) fn new(job: &Job<'a>, cull: bool) -> Self {
         let (scene, grid) = (job.scene, job.grid());
         let projector = SquareProjector::new(job, cull);
-        let count = scene.surfels.len();
+        let near = near(job);
+        let count = near.as_ref().map_or(scene.surfels.len(), Vec::len);
         let ranges = (0..count).step_by(8192).map(|first| first..count.min(first + 8192));
         let surfels = job.exec.ordered(ranges.collect(), |range: Range<usize>| {
-            let place = |i| Possible::new(&projector, i, job.camera.size());
+            let surfel = |i: usize| near.as_ref().map_or(i, |near| near[i]);
+            let place = |i| Possible::new(&projector, surfel(i), job.camera.size());
             let mut possible: Vec<_> = range.filter_map(place).collect();
             job.keep_touching(&mut possible, |one| one.bounds);
             let bins = Bins::new(&grid, possible.len(), |i| possible[i].bounds);
@@ -254,6 +256,15 @@ impl<P: Profile> Possible<P> {
         let (surfel, drawn) = (i as u32, !dropped.possibly());
         (!bounds.is_empty()).then_some(Self { surfel, bounds, drawn, placed, back })
     }
+}
+
+/// The surfels that may touch the part that is judged, ascending, if that part is small and squares are
+/// as large as discs: a square has the side of the greater focal length.
+fn near(job: &Job<'_>) -> Option<Vec<usize>> {
+    let part = job.part.filter(|_| job.scene.sides.is_none())?;
+    let [fx, fy] = [job.camera.fx, job.camera.fy].map_inline(|focal| f64::from(focal.abs()));
+    let wider = fx.at_least(fy) / fx.at_most(fy);
+    part.near(job, 1.0, |i| wider * f64::from(job.scene.surfels.radius()[i]))
 }
 
 /// The pixels whose centres may be between two edges.

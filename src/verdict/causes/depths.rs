@@ -39,9 +39,9 @@ impl Reading {
     pub(super) fn read(&self, client: &Client) -> Client {
         let read = client.mapped(|name, samples| match samples {
             Samples::Scalar(plane) if DEPTHS.contains(&name) => {
-                Samples::Scalar(plane.map(|value| self.depth(*value)))
+                Samples::Scalar(client.changed(plane, |value| self.depth(*value)))
             }
-            other => other.clone(),
+            other => client.same(other),
         });
         if self.relative == 0.0 {
             return read;
@@ -110,7 +110,7 @@ pub(super) fn pairs(
     client: &Client,
 ) -> Option<Vec<(f64, f64)>> {
     let (name, _) = client.depth_of_visibility()?;
-    let picture = session.define_whole::<f32>(camera, false).ok()?;
+    let picture = session.draw_whole(camera).ok()?;
     let (own, truth) = (client.frame().scalar(name).ok()?, picture.frame.scalar("Z").ok()?);
     let truth = truth.values().iter().map(|&t| f64::from(t));
     Some(own.values().iter().copied().zip(truth).collect())

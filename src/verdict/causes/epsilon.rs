@@ -162,9 +162,9 @@ pub(super) fn moved_back(client: &Client, by: f64) -> Client {
     let mut back = client.mapped(|name, samples| match samples {
         // An empty pixel stays at infinity.
         Samples::Scalar(plane) if DEPTHS.contains(&name) => {
-            Samples::Scalar(plane.map(|depth| depth - by))
+            Samples::Scalar(client.changed(plane, |depth| depth - by))
         }
-        other => other.clone(),
+        other => client.same(other),
     });
     for name in DEPTHS {
         if matches!(back.storage(name), Storage::Single | Storage::Rounded) {

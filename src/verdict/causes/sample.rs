@@ -1,6 +1,7 @@
 //! Try mistakes on parts of a large picture, because each trial judges the client again:
 //!
-//! 1. A pilot of 256 pixels rejects most mistakes, and says about where a number lies.
+//! 1. A pilot of 256 pixels rejects most mistakes, and says about where a number lies. The surfels around
+//!    it are looked for once.
 //! 2. The tiles with the most wrong pixels, 8192 pixels at most, say which mistakes explain them.
 //! 3. Every fourth tile confirms the mistake. The whole picture decides only where few pixels are
 //!    wrong, or where two mistakes explain about the same.
@@ -10,6 +11,7 @@ use super::{Case, Explanation, FEWEST, Wrong};
 use crate::error::Result;
 use crate::frame::Rect;
 use crate::method::Method;
+use crate::method::part::Around;
 use crate::method::tiled::pixels;
 use crate::number::MapInline;
 use crate::verdict::StageVerdict;
@@ -31,13 +33,10 @@ pub(super) fn is_large(case: &Case<'_, '_>) -> bool {
 }
 
 /// Whether a verdict can judge some tiles alone. The passes of `deferred` choose surfels from the whole
-/// picture, so that its client must list them. Where a method has levels of the whole picture, its
-/// projection alone is judged.
+/// picture, so that its client must list them.
 fn has_tiles(case: &Case<'_, '_>) -> bool {
-    match case.session.method() {
-        Method::Deferred(_) => lists_surfels(case.client),
-        method => !method.projects_regions() || case.wrong.stage == "projection",
-    }
+    let is_deferred = matches!(case.session.method(), Method::Deferred(_));
+    !is_deferred || lists_surfels(case.client)
 }
 
 /// The fewest pixels that are judged first in each trial, and the side of the squares that they are in.
@@ -55,7 +54,8 @@ pub(super) fn parts(case: &Case<'_, '_>) -> Option<Parts> {
     if !is_large(case) || !has_tiles(case) {
         return None;
     }
-    let grid = case.session.job(case.camera).ok()?.grid();
+    let job = case.session.job(case.camera).ok()?;
+    let grid = job.grid();
     let rects = grid.rects();
     let stages = near(case);
     let mut wrong = vec![0_u64; rects.len()];
@@ -87,7 +87,17 @@ pub(super) fn parts(case: &Case<'_, '_>) -> Option<Parts> {
     let mut squares: Vec<_> = tiles.iter().flat_map(|&tile| of_tile(tile).enumerate()).collect();
     squares.sort_by_key(|(turn, _)| *turn);
     let squares = squares.into_iter().map(|(_, square)| square).take(PILOT / SIDE.pow(2) as usize);
-    let of = |pieces| Client { part: Some(pieces), ..case.client.clone() };
+    // Levels are judged from the planes of the projection that the client hands in, so that its mistake
+    // does not show in them.
+    let is_first = case.session.method().projects_regions() && case.wrong.stage == "projection";
+    let client = match is_first {
+        true => case.client.with_planes(|name| name.starts_with("projection.")),
+        false => case.client.clone(),
+    };
+    let of = |pieces: Arc<[_]>| {
+        let around = Around::new(&job, &pieces).map(Arc::new);
+        Client { part: Some(pieces), around, ..client.clone() }
+    };
     let part = of(tiles.iter().map(|&tile| (tile, rects[tile])).collect());
     Some(Parts { part, pilot: of(squares.collect()) })
 }
@@ -119,11 +129,8 @@ fn spread(case: &Case<'_, '_>) -> Result<Option<(Client, Wrong)>> {
         tiles.filter(|(tile, _)| (tile % columns + 2 * (tile / columns)).is_multiple_of(ONE_IN));
     let part: Arc<[_]> = some.collect();
     let wrong = |stage| part.iter().map(|(_, rect)| count(stage, *rect)).sum::<u64>();
-    // Records are judged wherever they are, and levels nowhere in a part.
-    if case.client.has_records()
-        || case.session.method().projects_regions()
-        || near(case).map(wrong).sum::<u64>() < ENOUGH
-    {
+    // Records are judged wherever they are.
+    if case.client.has_records() || near(case).map(wrong).sum::<u64>() < ENOUGH {
         return Ok(None);
     }
     let all = case.verdict.stages.iter().map(wrong).sum();
@@ -259,35 +266,44 @@ mod tests {
     }
 
     #[test]
-    fn the_projection_of_a_part_is_judged_as_in_the_whole_picture() {
+    fn a_part_with_levels_is_judged_as_in_the_whole_picture() {
         let exec = Exec::new(2, 32).unwrap();
-        let mut wrong = 0;
-        for scene in [Shape::Sphere.surfels(600, 3).unwrap(), Shape::Torus.surfels(400, 1).unwrap()]
+        let mut wrong = [0; 5];
+        let changes = [
+            Change::Supposed(Supposed::PullSide(2.0)),
+            Change::Flipped,
+            Change::Unsigned,
+            Change::Decoded(1),
+        ];
+        for scene in [Shape::Sphere.surfels(300, 3).unwrap(), Shape::Torus.surfels(200, 1).unwrap()]
         {
             let scene = Scene::unlit("", scene);
-            let camera = camera(Shape::Sphere, [112, 96], None);
+            let camera = camera(Shape::Sphere, [90, 70], None);
             let moved = Camera { cx: camera.cx + 0.7, ..camera };
-            let all: Vec<_> = exec.grid(112, 96).rects().into_iter().enumerate().collect();
-            for part in [&all[4..6], &all[..], &all[..1]] {
-                for method in ["pyramid", "template"] {
-                    let method = Method::by_name(method).unwrap();
-                    let session = Session::new(&scene, method, &exec).unwrap();
-                    let client = Client::from(&session.define::<f32>(&moved, true).unwrap().frame);
+            let all: Vec<_> = exec.grid(90, 70).rects().into_iter().enumerate().collect();
+            for method in ["pyramid", "template"] {
+                let method = Method::by_name(method).unwrap();
+                let session = Session::new(&scene, method, &exec).unwrap();
+                let client = Client::from(&session.define::<f32>(&moved, true).unwrap().frame);
+                for change in &changes {
                     let judged = |part| {
                         let client = Client { part, ..client.clone() };
-                        session.verify_as(&method, &camera, &client, 1.0).unwrap()
+                        change.judge(&session, &camera, &client, 1.0).unwrap().unwrap()
                     };
-                    let (whole, own) = (judged(None), judged(Some(part.into())));
-                    let at = part.iter().flat_map(|(_, rect)| pixels(*rect));
-                    let errors: Vec<_> =
-                        at.map(|(x, y)| *whole.stages[0].errors.at(x, y)).collect();
-                    assert_eq!(own.stages.len(), 1);
-                    assert_eq!(own.stages[0].errors.values(), errors);
-                    wrong += own.stages[0].wrong;
+                    let whole = judged(None);
+                    for part in [&all[..2], &all[5..6]] {
+                        let own = judged(Some(part.into()));
+                        for (i, (whole, own)) in whole.stages.iter().zip(&own.stages).enumerate() {
+                            let at = part.iter().flat_map(|(_, rect)| pixels(*rect));
+                            let errors: Vec<_> = at.map(|(x, y)| *whole.errors.at(x, y)).collect();
+                            assert_eq!(own.errors.values(), errors, "{}", own.stage);
+                            wrong[i] += own.wrong;
+                        }
+                    }
                 }
             }
         }
-        assert!(wrong > 1000, "{wrong}");
+        assert!(wrong[..4].iter().all(|wrong| *wrong > 100), "{wrong:?}");
     }
 
     #[test]

@@ -146,7 +146,8 @@ fn found(case: &Case<'_, '_>, number: &Number<'_>) -> Result<Option<Tried>> {
     let found = found.filter(|found| !found.left.is_hopeless(all));
     let Some(Tried { value, .. }) = found else { return Ok(None) };
     let Some(left) = judge(value, case.client)? else { return Ok(None) };
-    if left.all == 0 {
+    // What is left here may be wrong for another reason.
+    if case.explains(left, 2 * MOST_LEFT) {
         return Ok(Some(Tried { value, left }));
     }
     // The few pixels tell about where the best value is.

@@ -30,7 +30,7 @@ use crate::verdict::client::Client;
 use glam::DVec3;
 
 /// The most pixels that a number is fitted to, and the fewest.
-const MOST: usize = 16384;
+const MOST: usize = 4096;
 const FEWEST: usize = 64;
 /// How often a number is moved.
 const TURNS: usize = 6;

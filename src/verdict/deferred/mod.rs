@@ -100,6 +100,7 @@ use crate::method::deferred::Settings;
 use crate::method::deferred::indices::Kept;
 use crate::method::deferred::part::{Part, Whole};
 use crate::method::deferred::picture::whole;
+use crate::method::ewa::possible;
 use crate::method::record::rows;
 use crate::method::tiled::{Tiled, pixels};
 use crate::number::ball::Profile;
@@ -161,13 +162,20 @@ fn judge<P: Profile>(
     let cull = settings.splats.cull;
     let ground = ground.as_ref().map(|ground| Polygons::<P>::new(job, ground, cull));
     let flat = whole.drawn(whole.drawn_ids(), job);
-    let scene = Scenery { job, settings, whole: &whole, flat: &flat, ground: ground.as_ref() };
+    // Without objects a rank is the index of a surfel, so that what is around the part is known.
+    let part = job.part.filter(|_| job.scene.objects.is_none());
+    let own = flat.job(job);
+    let own = Job { part: part.or(own.part), ..own };
+    let near = possible::near(&own, &settings.splats);
+    let (whole, flat, ground) = (&whole, &flat, ground.as_ref());
+    let scene = Scenery { job, own, near, settings, whole, flat, ground };
     let flagged = before.surfels(whole.ids());
     memory::ask(flagged.len() as u64 * OF_A_FLAGGED, || {
         format!("{} flagged surfels that are judged", flagged.len())
     })?;
     let flagged = flagged.into_iter().filter(|&id| scene.draws(id));
-    let flagged: Vec<_> = flagged.filter_map(|id| Some((scene.rank(id)?, true))).collect();
+    let flagged = flagged.filter_map(|id| Some((scene.rank(id)?, true))).collect();
+    let flagged = scene.near(flagged);
 
     let first = client_planes::visibility(client);
     let (visible, visibility) = scene.visible(&flagged, &first, watch);
@@ -176,6 +184,7 @@ fn judge<P: Profile>(
         visible.map(|nearest| client.depth_test.tested(decide::limit(nearest.depth, epsilon)));
 
     let (indices, selected) = scene.indices(client, &limits, watch);
+    let selected = scene.near(selected);
 
     let unseen = |&(rank, _): &(u32, bool)| {
         let found = whole.ids().find(flat.id(rank));
@@ -223,6 +232,10 @@ const OF_A_FLAGGED: u64 = 1536;
 /// by its rank.
 struct Scenery<'a, P: Profile> {
     job: &'a Job<'a>,
+    /// The job that draws all these surfels.
+    own: Job<'a>,
+    /// The ranks of the surfels that may touch the part that is judged, if it is small.
+    near: Option<Vec<usize>>,
     settings: &'a Settings,
     whole: &'a Whole<'a>,
     flat: &'a Part,
@@ -242,6 +255,13 @@ impl<'a, P: Profile> Scenery<'a, P> {
 
     fn rank(&self, id: u64) -> Option<u32> {
         self.flat.ids().binary_search(&id).ok().map(|rank| rank as u32)
+    }
+
+    /// Those of some surfels, ascending, that may touch the part that is judged.
+    fn near(&self, some: Vec<(u32, bool)>) -> Vec<(u32, bool)> {
+        let Some(near) = &self.near else { return some };
+        let place = |rank: &usize| some.binary_search_by_key(&(*rank as u32), |one| one.0).ok();
+        near.iter().filter_map(place).map(|place| some[place]).collect()
     }
 
     fn epsilon(&self) -> Ball<P> {
@@ -296,7 +316,7 @@ impl<'a, P: Profile> Scenery<'a, P> {
         limits: &Tiled<Ball<P>>,
         watch: Watch,
     ) -> (StageMarks, Vec<(u32, bool)>) {
-        let (job, cull) = (self.flat.job(self.job), self.settings.splats.cull);
+        let (job, cull) = (self.own, self.settings.splats.cull);
         let [depth, id, _] = rows(&Kept::<f32>::PLANES);
         let planes = SamplePlanes::of_nearest(client, job.scene, [depth, id]);
         let points = AllPossible::<P>::new(&job, cull, Snap::default(), Some(limits));

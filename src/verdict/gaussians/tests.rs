@@ -94,7 +94,7 @@ fn left_out(scene: &Scene, camera: &Camera) -> [usize; 2] {
         for piece in whole.grid().rects().into_iter().enumerate().step_by(3) {
             let (tile, own) = piece;
             let piece = [(tile, Rect { x1: own.x0 + 7, y1: own.y0 + 5, ..own })];
-            let part = Some(Part { pieces: &piece, spread: 1.0 });
+            let part = Some(Part { pieces: &piece, spread: 1.0, around: None });
             let some = possible_splats(&Job { part, ..whole }, &source);
             let near = |splats: &PossibleSplats<Gpu>| -> Vec<u32> {
                 let (tile, rect) = piece[0];

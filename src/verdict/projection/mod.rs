@@ -49,15 +49,12 @@ use crate::composite::decide;
 use crate::frame::raster::Snap;
 use crate::frame::{Bins, Rect};
 use crate::method::Job;
-use crate::method::part::{Nearby, Part};
 use crate::method::projection::{PixelSample, SceneProjector};
 use crate::method::tiled::Tiled;
 use crate::number::ball::{Profile, Three};
-use crate::number::{Ball, MapInline, Real, Truth, Vector3};
-use crate::verdict::client::Client;
-use crate::verdict::marks::{Marks, StageMarks, TilePart, Watch, counted, stage_verdicts};
-use crate::verdict::shift::Shifts;
-use crate::verdict::{Doubt, Verdict};
+use crate::number::{Ball, MapInline, Real, Truth};
+use crate::verdict::Doubt;
+use crate::verdict::marks::{Marks, StageMarks, TilePart, Watch, counted};
 use candidate::{Candidate, Possible};
 use claim::Claim;
 use planes::PixelContent;
@@ -93,26 +90,6 @@ pub(crate) fn judge<P: Profile>(
     }
 }
 
-/// The verdict on the projection alone, in a part of the picture. It takes all pixels of the part for
-/// covered.
-pub(crate) fn verify_part<P: Profile>(
-    job: &Job<'_>,
-    part: Part<'_>,
-    cull: bool,
-    snap: Snap,
-    client: &Client,
-    budget: f64,
-) -> Verdict {
-    let planes = SamplePlanes::new(client, job.scene);
-    let possible = AllPossible::<P>::new(&client.projection(job), cull, snap, None);
-    let found = job.exec.ordered(part.pieces.to_vec(), |(tile, rect)| {
-        [possible.judge(&planes, TilePart { tile, rect }, Marks::new(rect))]
-    });
-    let stages = stage_verdicts(job, [("projection", planes.names())], found);
-    let pixels = part.pieces.iter().map(|(_, rect)| rect.pixels() as u64).sum();
-    Verdict::new(stages, [pixels, 0], budget, Shifts::default())
-}
-
 impl<'a, P: Profile> AllPossible<'a, P> {
     /// Where only a few pieces of the picture are judged, the surfels near them alone.
     pub(crate) fn new(
@@ -122,19 +99,16 @@ impl<'a, P: Profile> AllPossible<'a, P> {
         limits: Option<&'a Tiled<Ball<P>>>,
     ) -> Self {
         let (scene, grid) = (job.scene, job.grid());
-        let part = job.part.filter(Part::is_small);
-        let nearby = part.map(|part| Nearby::new(part, job.camera, 1.0));
-        let position = scene.surfels.position();
-        let draws = |i: usize| {
-            nearby.is_none_or(|nearby| nearby.holds(Vector3::from_glam(position[i]), 0.0))
-        };
+        let near = job.part.and_then(|part| part.near(job, 1.0, |_| 0.0));
         let of = &scene.surfels;
         let projector = SceneProjector::new(scene, job.camera, cull, snap);
-        let ranges = (0..of.len()).step_by(8192);
-        let ranges = ranges.map(|first| first..of.len().min(first + 8192)).collect();
+        let count = near.as_ref().map_or(of.len(), Vec::len);
+        let ranges = (0..count).step_by(8192);
+        let ranges = ranges.map(|first| first..count.min(first + 8192)).collect();
         let surfels = job.exec.ordered(ranges, |range: std::ops::Range<usize>| {
-            let place = |i| Possible::new(&projector.points, of, i, &grid);
-            let possible: Vec<_> = range.filter(|&i| draws(i)).filter_map(place).collect();
+            let surfel = |i: usize| near.as_ref().map_or(i, |near| near[i]);
+            let place = |i| Possible::new(&projector.points, of, surfel(i), &grid);
+            let possible: Vec<_> = range.filter_map(place).collect();
             let bins = Bins::new(&grid, possible.len(), |i| possible[i].bounds);
             (possible, bins)
         });

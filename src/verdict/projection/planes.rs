@@ -1,6 +1,7 @@
 //! The planes of the projection that a client hands in.
 
-use crate::frame::{NO_ID, Plane};
+use crate::frame::NO_ID;
+use crate::method::Job;
 use crate::method::projection::{PixelSample, SampleKind};
 use crate::method::record::Field;
 use crate::method::stage::{Conditions, Holds, Keep, PlaneRow};
@@ -9,7 +10,7 @@ use crate::number::ball::Profile;
 use crate::scene::Scene;
 use crate::verdict::checks::{Report, whole};
 use crate::verdict::client::{Client, Storage, StoredPlane, Ties};
-use crate::verdict::planes::RecordPlanes;
+use crate::verdict::planes::{ClientRecords, RecordPlanes};
 
 /// The planes of the projection; each may be missing.
 #[derive(Clone, Debug)]
@@ -121,11 +122,16 @@ impl<'a> SamplePlanes<'a> {
         }
     }
 
-    /// The samples as the next stage reads them, if all planes that it reads are there. `places`
-    /// says whether it reads ids and centres. If not, an id stands for a kind.
-    pub(crate) fn samples<P: Profile>(&self, places: bool) -> Option<Plane<PixelSample<Ball<P>>>> {
+    /// What the next stage makes of the samples, if all planes that it reads are there. `places` says
+    /// whether it reads ids and centres. If not, an id stands for a kind.
+    pub(crate) fn samples<'s, T, P: Profile>(
+        &'s self,
+        job: &Job<'_>,
+        places: bool,
+        made: impl Fn(&PixelSample<Ball<P>>) -> T + Sync + 's,
+    ) -> Option<ClientRecords<'s, T>> {
         let (depth, there) = (self.depth?, Conditions::new(self.scene, Keep::Stages));
-        let all = &PixelSample::PLANES;
+        let all = &PixelSample::<Ball<P>>::PLANES;
         let of_place = [PixelSample::<f32>::LEFT.row, PixelSample::<f32>::UPPER.row];
         let known = |(place, field): (usize, &Field<_, _>)| {
             let row = &field.row;
@@ -140,14 +146,15 @@ impl<'a> SamplePlanes<'a> {
             return None;
         }
         let size = [depth.plane.width(), depth.plane.height()];
-        Some(Plane::from_pixels(size, |x, y| {
+        let read = move |x, y| {
             let mut sample = PixelSample::empty();
-            self.planes.read(all, &there, (x, y), &mut sample);
+            self.planes.read(&PixelSample::PLANES, &there, (x, y), &mut sample);
             if self.kind.is_none() {
                 sample.kind = kind_of(self.scene, sample.id).unwrap_or_default();
             }
-            sample
-        }))
+            made(&sample)
+        };
+        Some(ClientRecords::new(job, size, read))
     }
 }
 

@@ -1,23 +1,23 @@
 //! Verify a client's pull and push, level by level.
 
 use crate::composite::decide;
-use crate::frame::Plane;
 use crate::method::Job;
 use crate::method::projection::SampleKind;
 use crate::method::pyramid::{Cell, Settings, pull, push};
+use crate::method::record::Records;
 use crate::method::stage::Keep;
 use crate::number::ball::Profile;
 use crate::number::{Ball, MapInline, Truth, Vector2};
 use crate::verdict::Doubt;
 use crate::verdict::checks::{Report, least_wrong};
-use crate::verdict::marks::{Marks, PixelMarks, StageMarks, Watch, counted};
+use crate::verdict::marks::{LevelMarks, PixelMarks, StageMarks, Watch, counted};
 use crate::verdict::outcomes::{MOST, Outcome, outcomes};
-use crate::verdict::planes::RecordPlanes;
+use crate::verdict::planes::{ClientRecords, RecordPlanes};
 use crate::verdict::projection::SamplePlanes;
 use crate::verdict::supposed::Supposed;
 
 /// The cells of a level.
-pub(super) type Level<P> = Plane<Cell<Ball<P>>>;
+pub(super) type Level<'a, P> = ClientRecords<'a, Cell<Ball<P>>>;
 
 /// Four cells.
 type Four<P> = [Cell<Ball<P>>; 4];
@@ -31,9 +31,9 @@ pub(super) struct Levels<'a, P: Profile> {
     /// one after the push.
     planes: [&'a [RecordPlanes<'a>]; 2],
     /// All levels after the pull; none where a plane is missing.
-    pulled: Vec<Option<Level<P>>>,
-    /// All levels after the push. The last level is the pull's.
-    pushed: Vec<Option<Level<P>>>,
+    pulled: Vec<Option<Level<'a, P>>>,
+    /// All levels after the push but the last, which is the pull's.
+    pushed: Vec<Option<Level<'a, P>>>,
 }
 
 impl<'a, P: Profile> Levels<'a, P> {
@@ -41,25 +41,34 @@ impl<'a, P: Profile> Levels<'a, P> {
         job: &'a Job<'a>,
         sizes: &'a [[u32; 2]],
         supposed: Supposed,
-        finest: &SamplePlanes<'_>,
+        finest: &'a SamplePlanes<'a>,
         planes: [&'a [RecordPlanes<'a>]; 2],
     ) -> Self {
         // The planes of both phases have the same places in a cell.
         let there = job.there(Keep::Stages);
-        let level = |(of, size): (&RecordPlanes<'_>, &[u32; 2])| {
-            of.records(&Cell::PULL, &there, *size, Cell::empty())
+        let level = |(of, size): (&'a RecordPlanes<'a>, &[u32; 2])| {
+            let read = move |x, y| {
+                let mut cell = Cell::empty();
+                of.read(&Cell::PULL, &there, (x, y), &mut cell);
+                cell
+            };
+            let all = of.has_all(&Cell::<Ball<P>>::PULL, &there);
+            all.then(|| ClientRecords::new(job, *size, read))
         };
-        let samples = finest.samples(false);
-        let mut pulled = vec![samples.map(|samples| samples.map(Cell::new))];
+        let mut pulled = vec![finest.samples(job, false, Cell::new)];
         pulled.extend(planes[0].iter().zip(&sizes[1..]).map(level));
-        let mut pushed: Vec<_> = planes[1].iter().zip(sizes).map(level).collect();
-        pushed.extend(pulled.last().cloned());
+        let pushed = planes[1].iter().zip(sizes).map(level).collect();
         Self { job, sizes, supposed, planes, pulled, pushed }
     }
 
     /// Level 0 after the push, if all its planes are there.
-    pub(super) fn finest(&self) -> Option<&Level<P>> {
-        self.pushed.first().and_then(Option::as_ref)
+    pub(super) fn finest(&self) -> Option<&Level<'a, P>> {
+        self.pushed(0)
+    }
+
+    /// A level after the push, if all its planes are there.
+    fn pushed(&self, level: usize) -> Option<&Level<'a, P>> {
+        self.pushed.get(level).or(self.pulled.last())?.as_ref()
     }
 
     /// The levels of the pull and of the push that are not judged although the client hands in
@@ -70,7 +79,7 @@ impl<'a, P: Profile> Levels<'a, P> {
         let pull =
             (1..=pulls).filter(|level| there(0, level - 1) && self.pulled[level - 1].is_none());
         let push = (0..pushes).filter(|&level| {
-            there(1, level) && (self.pulled[level].is_none() || self.pushed[level + 1].is_none())
+            there(1, level) && (self.pulled[level].is_none() || self.pushed(level + 1).is_none())
         });
         let name = |level| format!("level {level}");
         [pull.map(name).collect(), push.map(name).collect()]
@@ -94,7 +103,7 @@ impl<'a, P: Profile> Levels<'a, P> {
                 outcomes.iter().map(of).collect()
             });
         }
-        ("pull", found.names, found.marks)
+        ("pull", found.names, found.marks.together(self.job))
     }
 
     /// Judges each level of the push whose coarser level is there, together with its own level
@@ -102,27 +111,26 @@ impl<'a, P: Profile> Levels<'a, P> {
     pub(super) fn push(&self, settings: &Settings, watch: Watch) -> StageMarks {
         let mut found = Phase::new(self.job, watch);
         for (level, planes) in self.planes[1].iter().enumerate() {
-            let (Some(fine), Some(coarse)) = (&self.pulled[level], &self.pushed[level + 1]) else {
+            let (Some(fine), Some(coarse)) = (&self.pulled[level], self.pushed(level + 1)) else {
                 continue;
             };
             found.level(self.job, planes, self.sizes[level], |at, pixel| {
                 pushed(fine, coarse, at, level, settings, self.supposed, pixel)
             });
         }
-        ("push", found.names, found.marks)
+        ("push", found.names, found.marks.together(self.job))
     }
 }
 
 /// The findings about a phase.
 struct Phase {
-    watch: Watch,
-    marks: Marks,
+    marks: LevelMarks,
     names: Vec<&'static str>,
 }
 
 impl Phase {
     fn new(job: &Job<'_>, watch: Watch) -> Self {
-        Self { watch, marks: watch.picture(job), names: Vec::new() }
+        Self { marks: LevelMarks::new(job, watch), names: Vec::new() }
     }
 
     /// Judges the planes of a level against all outcomes that each cell may have.
@@ -130,7 +138,7 @@ impl Phase {
         &mut self,
         job: &Job<'_>,
         planes: &RecordPlanes<'_>,
-        [width, height]: [u32; 2],
+        size: [u32; 2],
         all: impl Fn((u32, u32), &mut PixelMarks<'_>) -> Vec<Cell<Ball<P>>> + Sync + Send,
     ) {
         let names = planes.names();
@@ -142,10 +150,7 @@ impl Phase {
                 self.names.push(*name);
             }
         }
-        let watch = self.watch;
-        let parts = watch.parts(&job.exec.grid(width, height));
-        let found = job.exec.ordered(parts, |(_, rect)| {
-            let mut marks = watch.marks(rect);
+        self.marks.level(job, size, |rect, marks| {
             for (pixel, at) in counted(rect) {
                 let mut pixel = marks.at(pixel);
                 let all = all(at, &mut pixel);
@@ -159,9 +164,7 @@ impl Phase {
                     check(truth, &mut |_, error, fault| pixel.found(error, fault));
                 }
             }
-            marks
         });
-        found.into_iter().for_each(|part| self.marks.put(part));
     }
 }
 
@@ -181,21 +184,21 @@ fn of_four<P: Profile>(
 
 /// Every outcome that a cell may have after the push.
 fn pushed<P: Profile>(
-    fine: &Level<P>,
-    coarse: &Level<P>,
+    fine: &Level<'_, P>,
+    coarse: &Level<'_, P>,
     (x, y): (u32, u32),
     level: usize,
     settings: &Settings,
     supposed: Supposed,
     pixel: &mut PixelMarks<'_>,
 ) -> Vec<Cell<Ball<P>>> {
-    let (cell, parent) = (fine.at(x, y), coarse.at(x / 2, y / 2));
+    let (cell, parent) = (fine.record(x, y), coarse.record(x / 2, y / 2));
     let none = supposed == Supposed::NothingOccluded;
-    let occluded = push::occluded(cell, parent, settings.occlusion) & (!none).into();
+    let occluded = push::occluded(&cell, &parent, settings.occlusion) & (!none).into();
     let covered = occluded | (!cell.is_valid()).into();
     pixel.doubt(Doubt::Fate, covered.decided().is_none());
     if !covered.possibly() {
-        return vec![*cell];
+        return vec![cell];
     }
     let coarser = push::four(coarse, x, y);
     let (even_x, even_y) = (x.is_multiple_of(2), y.is_multiple_of(2));
@@ -204,11 +207,11 @@ fn pushed<P: Profile>(
     pixel.doubts(doubts);
     let mut all = Vec::with_capacity(outcomes.len() + 1);
     if !covered.certainly() {
-        all.push(*cell);
+        all.push(cell);
     }
     all.extend(outcomes.iter().map(|outcome| match *outcome {
         Some((takes, first)) => push::merge(&coarser, &offsets, settings.weights, takes, first),
-        None => *cell,
+        None => cell,
     }));
     all
 }

@@ -49,16 +49,13 @@ use levels::Levels;
 use pixel::PixelJudge;
 use planes::PicturePlanes;
 
-/// Judges the planes of a client; in a part of the picture, the planes of the projection alone.
+/// Judges the planes of a client.
 pub(super) fn verify<P: Profile>(
     job: &Job<'_>,
     settings: &Settings,
     client: &Client,
     budget: f64,
 ) -> Verdict {
-    if let Some(part) = job.part {
-        return samples::verify_part::<P>(job, part, settings.cull, snap(settings), client, budget);
-    }
     let (found, unjudged, covered) = judge::<P>(job, settings, client, Watch::All);
     let mut stages = found.stage_verdicts(job);
     let last = pyramid::sizes(job.camera.width, job.camera.height).len() - 1;
@@ -110,7 +107,7 @@ fn judge<P: Profile>(
     let before = vec![projection, levels.pull(watch), levels.push(settings, watch)];
     let client_planes = PicturePlanes::new(client);
     let judge = PixelJudge::new(job, levels.finest(), &client_planes);
-    let found = job.exec.ordered(watch.parts(&job.grid()), |(_, rect)| {
+    let found = job.exec.ordered(watch.pieces(job), |(_, rect)| {
         let mut marks = watch.marks(rect);
         let at = counted(rect);
         let covered = at.filter(|(pixel, at)| judge.judge(*at, &mut marks.at(*pixel))).count();

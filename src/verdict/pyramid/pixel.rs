@@ -5,6 +5,7 @@ use super::planes::PicturePlanes;
 use crate::method::Job;
 use crate::method::projection::{Has, SampleKind, world};
 use crate::method::pyramid::Cell;
+use crate::method::record::Records;
 use crate::number::ball::Profile;
 use crate::number::{Ball, Real};
 use crate::splat::View;
@@ -14,7 +15,7 @@ use crate::verdict::marks::PixelMarks;
 /// The parts that all pixels share.
 pub(super) struct PixelJudge<'a, P: Profile> {
     /// Level 0 after the push, if it is there.
-    cells: Option<&'a Level<P>>,
+    cells: Option<&'a Level<'a, P>>,
     client_planes: &'a PicturePlanes<'a>,
     view: View<Ball<P>>,
     shading: Shading<'a, P>,
@@ -24,7 +25,7 @@ pub(super) struct PixelJudge<'a, P: Profile> {
 impl<'a, P: Profile> PixelJudge<'a, P> {
     pub(super) fn new(
         job: &Job<'a>,
-        cells: Option<&'a Level<P>>,
+        cells: Option<&'a Level<'a, P>>,
         client_planes: &'a PicturePlanes<'a>,
     ) -> Self {
         let has = Has::in_scene(job.scene);
@@ -49,7 +50,8 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
 
     /// Marks a wrong pixel. Returns whether the pixel may be covered.
     pub(super) fn judge(&self, at: (u32, u32), pixel: &mut PixelMarks<'_>) -> bool {
-        let cell = self.cells.map(|cells| cells.at(at.0, at.1));
+        let cell = self.cells.map(|cells| cells.record(at.0, at.1));
+        let cell = cell.as_ref();
         let report: &mut Report<'_> = &mut |_, error, fault| pixel.found(error, fault);
         if let Some(cell) = cell {
             self.check_copies(at, cell, report);

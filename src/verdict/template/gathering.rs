@@ -18,7 +18,7 @@ pub(super) struct Outcomes<P: Profile> {
 
 /// The outcomes that a pixel may have gathered from a client's levels.
 pub(super) fn outcomes<P: Profile>(
-    levels: &[Level<P>],
+    levels: &[Level<'_, P>],
     settings: &Settings,
     pixel: (u32, u32),
 ) -> Outcomes<P> {

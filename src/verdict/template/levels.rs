@@ -1,19 +1,18 @@
 //! Verify a client's propagation, level by level.
 
-use crate::frame::Plane;
 use crate::method::Job;
 use crate::method::stage::Keep;
 use crate::method::template::{Center, Settings, propagation};
 use crate::number::ball::Profile;
 use crate::number::{Ball, MapInline, Real};
 use crate::verdict::checks::{Report, least_wrong};
-use crate::verdict::marks::{PixelMarks, StageMarks, Watch, counted};
+use crate::verdict::marks::{LevelMarks, PixelMarks, StageMarks, Watch, counted};
 use crate::verdict::outcomes::{MOST, Outcome, outcomes};
-use crate::verdict::planes::RecordPlanes;
+use crate::verdict::planes::{ClientRecords, RecordPlanes};
 use crate::verdict::projection::SamplePlanes;
 
 /// The centres of a level.
-pub(super) type Level<P> = Plane<Center<Ball<P>>>;
+pub(super) type Level<'a, P> = ClientRecords<'a, Center<Ball<P>>>;
 
 /// The levels of a client.
 pub(super) struct Levels<'a, P: Profile> {
@@ -23,7 +22,7 @@ pub(super) struct Levels<'a, P: Profile> {
     /// The planes of level 1 and coarser levels.
     planes: &'a [RecordPlanes<'a>],
     /// All levels; none where a plane is missing.
-    levels: Vec<Option<Level<P>>>,
+    levels: Vec<Option<Level<'a, P>>>,
 }
 
 impl<'a, P: Profile> Levels<'a, P> {
@@ -31,21 +30,26 @@ impl<'a, P: Profile> Levels<'a, P> {
         job: &'a Job<'a>,
         settings: &'a Settings,
         sizes: &'a [[u32; 2]],
-        finest: &SamplePlanes<'_>,
+        finest: &'a SamplePlanes<'a>,
         planes: &'a [RecordPlanes<'a>],
     ) -> Self {
         let there = job.there(Keep::Stages);
-        let samples = finest.samples(true);
-        let mut levels = vec![samples.map(|samples| samples.map(Center::new))];
-        let coarser = planes.iter().zip(&sizes[1..]);
-        levels.extend(
-            coarser.map(|(of, size)| of.records(&Center::PLANES, &there, *size, Center::empty())),
-        );
+        let level = |(of, size): (&'a RecordPlanes<'a>, &[u32; 2])| {
+            let read = move |x, y| {
+                let mut center = Center::empty();
+                of.read(&Center::PLANES, &there, (x, y), &mut center);
+                center
+            };
+            let all = of.has_all(&Center::<Ball<P>>::PLANES, &there);
+            all.then(|| ClientRecords::new(job, *size, read))
+        };
+        let mut levels = vec![finest.samples(job, true, Center::new)];
+        levels.extend(planes.iter().zip(&sizes[1..]).map(level));
         Self { job, settings, sizes, planes, levels }
     }
 
     /// The levels, if all of them are there.
-    pub(super) fn all(self) -> Option<Vec<Level<P>>> {
+    pub(super) fn all(self) -> Option<Vec<Level<'a, P>>> {
         self.levels.into_iter().collect()
     }
 
@@ -60,7 +64,7 @@ impl<'a, P: Profile> Levels<'a, P> {
 
     /// Judges each level whose finer level is there.
     pub(super) fn judge(&self, watch: Watch) -> StageMarks {
-        let (mut marks, mut names) = (watch.picture(self.job), Vec::new());
+        let (mut marks, mut names) = (LevelMarks::new(self.job, watch), Vec::new());
         for (level, planes) in (1..).zip(self.planes) {
             let (Some(fine), own) = (&self.levels[level - 1], planes.names()) else { continue };
             if own.is_empty() {
@@ -68,20 +72,15 @@ impl<'a, P: Profile> Levels<'a, P> {
             }
             let new = own.iter().copied().filter(|name| !names.contains(name));
             names.extend(new.collect::<Vec<_>>());
-            let [width, height] = self.sizes[level];
             let reach = Ball::from_f32(self.settings.reach(level - 1));
-            let parts = watch.parts(&self.job.exec.grid(width, height));
-            let found = self.job.exec.ordered(parts, |(_, rect)| {
-                let mut marks = watch.marks(rect);
+            marks.level(self.job, self.sizes[level], |rect, marks| {
                 for (pixel, at) in counted(rect) {
                     let finer = propagation::four(fine, at.0, at.1);
                     cell(planes, at, &finer, reach, &mut marks.at(pixel));
                 }
-                marks
             });
-            found.into_iter().for_each(|part| marks.put(part));
         }
-        ("propagation", names, marks)
+        ("propagation", names, marks.together(self.job))
     }
 }
 

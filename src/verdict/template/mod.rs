@@ -58,10 +58,6 @@ pub(super) fn verify<P: Profile>(
     client: &Client,
     budget: f64,
 ) -> Verdict {
-    if let Some(part) = job.part {
-        let snap = Snap::default();
-        return samples::verify_part::<P>(job, part, settings.cull, snap, client, budget);
-    }
     let (found, unjudged, covered) = judge::<P>(job, settings, client, Watch::All);
     let mut stages = found.stage_verdicts(job);
     let (levels, there) = (1..levels(job, settings).len(), job.there(Keep::Stages));
@@ -106,7 +102,7 @@ fn judge<P: Profile>(
     let (propagation, unjudged) = (levels.judge(watch), levels.unjudged());
     let client_planes = PicturePlanes::new(client);
     let judge = PixelJudge::new(job, settings, levels.all(), &client_planes);
-    let found = job.exec.ordered(watch.parts(&job.grid()), |(_, rect)| {
+    let found = job.exec.ordered(watch.pieces(job), |(_, rect)| {
         let mut marks = [(); 3].map(|()| watch.marks(rect));
         let covered =
             counted(rect).filter(|(pixel, at)| judge.judge(*pixel, *at, &mut marks)).count();

@@ -28,7 +28,7 @@ const SHADING: usize = 2;
 /// The parts that all pixels share.
 pub(super) struct PixelJudge<'a, P: Profile> {
     settings: &'a Settings,
-    levels: Option<Vec<Level<P>>>,
+    levels: Option<Vec<Level<'a, P>>>,
     client_planes: &'a PicturePlanes<'a>,
     view: View<Ball<P>>,
     shading: Shading<'a, P>,
@@ -42,7 +42,7 @@ impl<'a, P: Profile> PixelJudge<'a, P> {
     pub(super) fn new(
         job: &Job<'a>,
         settings: &'a Settings,
-        levels: Option<Vec<Level<P>>>,
+        levels: Option<Vec<Level<'a, P>>>,
         client_planes: &'a PicturePlanes<'a>,
     ) -> Self {
         let (scene, has) = (job.scene, Has::in_scene(job.scene));
