@@ -377,7 +377,7 @@ mod tests {
         assert!(holds(corner, Vec3::NAN), "nobody knows where it is");
         let covers = |middle: Vec3| {
             let pieces = [(0, whole)];
-            let part = Part { pieces: &pieces, spread: 1.0 };
+            let part = Part { pieces: &pieces, spread: 1.0, around: None };
             Nearby::new(part, &camera, 1.0).covers([middle - 0.1, middle + 0.1])
         };
         assert!(covers(Vec3::ZERO) && !covers(1.9 * Vec3::X), "partly beside");
