@@ -2,7 +2,7 @@
 
 use super::cameras::{self, Moved};
 use super::change::Change;
-use super::depths::digits;
+use super::depths::{digits, median};
 use super::mistakes::{HALF_DOWN, HALF_RIGHT, SHAPES, SUMS};
 use super::{Case, Wrong, epsilon, surfels};
 use crate::error::Result;
@@ -21,7 +21,7 @@ pub(super) struct Number<'a> {
     pub(super) step: f64,
     pub(super) change: Box<dyn Fn(f64) -> Option<Change> + 'a>,
     pub(super) in_words: Box<dyn Fn(f64) -> String + 'a>,
-    /// A number of the camera, estimated from the surfels that the client shows.
+    /// The number, estimated from the colours or the surfels that the client shows.
     pub(super) estimate: Option<f64>,
 }
 
@@ -59,12 +59,26 @@ pub(super) fn numbers<'a>(case: &'a Case<'_, '_>) -> Vec<Number<'a>> {
         all.push(Number {
             right: 1.0,
             step: 0.02,
-            estimate: None,
+            estimate: gamma(case),
             change: Box::new(|gamma| (gamma > 0.1).then_some(Change::Power(gamma))),
             in_words: Box::new(|gamma| format!("the picture is encoded with a gamma of {gamma}")),
         });
     }
     all
+}
+
+/// The power that turns the client's colours into the right ones, by the median over all colours.
+fn gamma(case: &Case<'_, '_>) -> Option<f64> {
+    let picture = case.session.draw_whole(case.camera).ok()?;
+    let (own, right) = (case.client.frame().color("").ok()?, picture.frame.color("").ok()?);
+    let colors = own.values().as_flattened().iter().zip(right.values().as_flattened());
+    // Black and white are themselves to any power.
+    let is_grey = |value: f64| value > 0.01 && value < 0.99;
+    let powers = colors.filter_map(|(&own, &right)| {
+        let right = f64::from(right);
+        (is_grey(own) && is_grey(right)).then(|| libm::log(right) / libm::log(own))
+    });
+    Some(median(powers.collect())).filter(|power| power.is_finite())
 }
 
 /// The numbers of the camera, if the first wrong stage shows where surfels are.

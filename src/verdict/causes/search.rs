@@ -98,11 +98,16 @@ fn estimated<'n, 'c>(
         }
     }
     let Some((number, tried)) = nearest else { return Ok(None) };
+    Ok(Some((number, around(case, number, tried)?)))
+}
+
+/// The best value near one that was estimated.
+fn around(case: &Case<'_, '_>, number: &Number<'_>, tried: Tried) -> Result<Tried> {
     // The estimate is off by a few hundredths of its distance, or of the first step.
     let range = (0.05 * (tried.value - number.right).abs()).at_least(0.05 * number.step.abs());
     let ends = [tried.value - range, tried.value + range];
     let wrong = |value| number.judge(case, value, case.client);
-    Ok(Some((number, narrowed(number.right, ends, tried, case.all, false, wrong)?)))
+    narrowed(number.right, ends, tried, case.all, false, wrong)
 }
 
 /// Keeps the value of a number if it explains the wrong pixels, and more than the best one; says whether it
@@ -139,6 +144,13 @@ fn found(case: &Case<'_, '_>, number: &Number<'_>) -> Result<Option<Tried>> {
         return Ok(None);
     }
     let judge = |value: f64, client| number.judge(case, value, client);
+    if let Some(value) = number.estimate {
+        let Some(tried) = near(case, number, value)? else { return Ok(None) };
+        if tried.left.is_hopeless(case.all) || case.explains(tried.left, MOST_LEFT) {
+            return Ok(Some(tried));
+        }
+        return around(case, number, tried).map(Some);
+    }
     let in_part = || search(right, step, case.all, false, |value| judge(value, case.client));
     let pilot = case.pilot;
     let Some((pilot, all)) = pilot else { return in_part() };
