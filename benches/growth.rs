@@ -40,7 +40,7 @@ fn main() -> Result<()> {
         let times = measured(SURFELS.len(), |i| frame(&scenes[i], *method, 1024, &one))?;
         by_surfels.add(*method, SURFELS.map(|n| n as f64), &times);
     }
-    by_surfels.publish(&arguments, "surfels")?;
+    by_surfels.publish(&arguments, "surfels", "growth-surfels")?;
 
     let mut by_pixels =
         Growth::new(&["256 x 256 pixels", "1024 x 1024", "4096 x 4096", "8192 x 8192"]);
@@ -48,7 +48,7 @@ fn main() -> Result<()> {
         let times = measured(SIDES.len(), |i| frame(&scenes[1], *method, SIDES[i], &one))?;
         by_pixels.add(*method, SIDES.map(|side| f64::from(side * side)), &times);
     }
-    by_pixels.publish(&arguments, "pixels")?;
+    by_pixels.publish(&arguments, "pixels", "growth-pixels")?;
 
     by_tiles(&arguments, &scenes[2], methods)
 }
@@ -138,7 +138,7 @@ impl Growth {
     }
 
     /// Puts table and chart into the page.
-    fn publish(&self, arguments: &Arguments, what: &'static str) -> Result<()> {
+    fn publish(&self, arguments: &Arguments, what: &'static str, block: &str) -> Result<()> {
         let values = |axis: usize| {
             self.series.iter().flat_map(move |s| s.points.iter().map(move |p| p[axis]))
         };
@@ -152,7 +152,7 @@ impl Growth {
         let y = Axis::around("milliseconds a frame", values(1));
         let title = format!("Milliseconds a frame by {what}, one thread");
         let chart = svg(&title, [&x, &y], &self.series, ("", &[]));
-        arguments.write(&format!("growth-{what}.svg"), &chart)?;
-        self.table.publish_times(arguments, "limits.md", &format!("growth-{what}"))
+        arguments.write(&format!("{block}.svg"), &chart)?;
+        self.table.publish_times(arguments, "limits.md", block)
     }
 }
