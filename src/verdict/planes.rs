@@ -185,10 +185,23 @@ impl<'a> RecordPlanes<'a> {
         }
     }
 
-    /// Whether all planes are there that the scene has.
-    pub(crate) fn has_all<T, R>(&self, fields: &[Field<T, R>], there: &Conditions) -> bool {
+    /// The records as the next stage reads them. None unless all planes that the scene has are
+    /// there.
+    pub(crate) fn records<T: Copy + Sync, P: Profile>(
+        &'a self,
+        job: &Job<'_>,
+        fields: &'a [Field<T, Ball<P>>],
+        there: Conditions,
+        size: [u32; 2],
+        empty: T,
+    ) -> Option<ClientRecords<'a, T>> {
         let mut wanted = fields.iter().enumerate().filter(|(_, field)| there.hold(&field.row));
-        wanted.all(|(place, _)| self.has(place))
+        let read = move |x, y| {
+            let mut record = empty;
+            self.read(fields, &there, (x, y), &mut record);
+            record
+        };
+        wanted.all(|(place, _)| self.has(place)).then(|| ClientRecords::new(job, size, read))
     }
 }
 

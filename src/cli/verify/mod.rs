@@ -67,7 +67,7 @@ pub(super) struct Args {
     /// Write the verdict as JSON
     #[arg(long, value_name = "FILE.json")]
     json: Option<PathBuf>,
-    /// Do not look for the mistake behind a wrong picture, which takes about as long as the verdict at most
+    /// Do not look for the mistake behind a wrong picture, which may take about as long as the verdict
     #[arg(long)]
     no_cause: bool,
     /// Write a page that shows each stage, its errors and the worst pixels in a browser

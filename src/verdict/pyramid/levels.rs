@@ -47,13 +47,7 @@ impl<'a, P: Profile> Levels<'a, P> {
         // The planes of both phases have the same places in a cell.
         let there = job.there(Keep::Stages);
         let level = |(of, size): (&'a RecordPlanes<'a>, &[u32; 2])| {
-            let read = move |x, y| {
-                let mut cell = Cell::empty();
-                of.read(&Cell::PULL, &there, (x, y), &mut cell);
-                cell
-            };
-            let all = of.has_all(&Cell::<Ball<P>>::PULL, &there);
-            all.then(|| ClientRecords::new(job, *size, read))
+            of.records(job, &Cell::PULL, there, *size, Cell::empty())
         };
         let mut pulled = vec![finest.samples(job, false, Cell::new)];
         pulled.extend(planes[0].iter().zip(&sizes[1..]).map(level));

@@ -34,17 +34,12 @@ impl<'a, P: Profile> Levels<'a, P> {
         planes: &'a [RecordPlanes<'a>],
     ) -> Self {
         let there = job.there(Keep::Stages);
-        let level = |(of, size): (&'a RecordPlanes<'a>, &[u32; 2])| {
-            let read = move |x, y| {
-                let mut center = Center::empty();
-                of.read(&Center::PLANES, &there, (x, y), &mut center);
-                center
-            };
-            let all = of.has_all(&Center::<Ball<P>>::PLANES, &there);
-            all.then(|| ClientRecords::new(job, *size, read))
-        };
         let mut levels = vec![finest.samples(job, true, Center::new)];
-        levels.extend(planes.iter().zip(&sizes[1..]).map(level));
+        let coarser = planes.iter().zip(&sizes[1..]);
+        levels.extend(
+            coarser
+                .map(|(of, size)| of.records(job, &Center::PLANES, there, *size, Center::empty())),
+        );
         Self { job, settings, sizes, planes, levels }
     }
 
