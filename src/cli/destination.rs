@@ -87,10 +87,16 @@ impl Destination<'_> {
     }
 
     /// Writes the state after a frame, if `--keep-state` asks for it.
-    pub(super) fn keep(&self, ready: &Ready, frame: u32, seen: Option<&Seen>) -> Result<()> {
+    pub(super) fn keep(
+        &self,
+        ready: &Ready,
+        frame: u32,
+        seen: Option<&Seen>,
+        exec: &Exec,
+    ) -> Result<()> {
         let (Some(path), Some(seen)) = (self.keep_state, seen) else { return Ok(()) };
         let state = State { frame, seen: seen.clone() };
-        state::pending(path, &state, &ready.identity()?)?.put()
+        state::pending(path, &state, &ready.identity(exec)?)?.put()
     }
 
     /// Checks, before anything is drawn, that the state can be written beside these pictures.

@@ -40,13 +40,13 @@ pub(super) fn session<'a>(
     exec: &'a Exec,
 ) -> Result<(Session<'a>, Option<Made>)> {
     let steps = progress::Steps::new("preparing");
-    let seen = seen(ready, options)?;
+    let seen = seen(ready, options, exec)?;
     let (mut session, made) = ready.session(exec, &|what, done, of| steps.show(what, done, of))?;
     session.resume(seen);
     Ok((session, made))
 }
 
 /// The state after the previous frame, if the options name one.
-pub(super) fn seen(ready: &Ready, options: &SceneOptions) -> Result<Option<Seen>> {
-    options.state().map(|path| ready.state(path)).transpose()
+pub(super) fn seen(ready: &Ready, options: &SceneOptions, exec: &Exec) -> Result<Option<Seen>> {
+    options.state().map(|path| ready.state(path, exec)).transpose()
 }

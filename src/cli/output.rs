@@ -47,7 +47,8 @@ pub(super) fn check_two(one: &Path, other: &Path) -> Result<()> {
 /// Checks that the scene is not read from the output file.
 pub(super) fn check_unread(path: &Path, scene: &Path, file: &SceneFile) -> Result<()> {
     let mut read = std::iter::once(scene).chain(file.reads());
-    if read.any(|input| overwrites(path, input)) {
+    let in_some_frame = place(path).is_some_and(|place| file.reads_in_some_frame(&place));
+    if in_some_frame || read.any(|input| overwrites(path, input)) {
         let path = path.display();
         return Err(Error::Usage(format!(
             "{path} is part of the scene; give another name for the output"

@@ -219,7 +219,7 @@ pub(super) fn run(args: &Args) -> Ended {
     })?;
     let (writing, tally, seen) = (writing.elapsed(), drawing.tally, drawing.seen.clone());
     drop(drawing);
-    destination.keep(&ready, ready.frame(), seen.as_ref())?;
+    destination.keep(&ready, ready.frame(), seen.as_ref(), &exec)?;
 
     report::scene(loaded);
     report::camera(camera);

@@ -78,10 +78,10 @@ pub(super) fn render(
     let last = shots.last().map_or(file.frame, |shot| shot.frame);
     let mut ready = draw::ready(file, exec)?;
     // What no later frame can have is found before the first is drawn.
-    ready.camera_at(last)?;
+    ready.check_frames(file.frame..last + 1)?;
     to.check_state(&ready, file, &places)?;
     // Each eye has its own state. Only a sequence of one eye has an old one.
-    let mut seen = [draw::seen(&ready, to.options)?, None];
+    let mut seen = [draw::seen(&ready, to.options, exec)?, None];
     let mut times = Times::default();
     times.add("loading", start.elapsed());
     report::scene(&ready.loaded);
@@ -123,7 +123,7 @@ pub(super) fn render(
         }
     }
     drop(steps);
-    to.keep(&ready, last, seen[0].as_ref())?;
+    to.keep(&ready, last, seen[0].as_ref(), exec)?;
 
     let pairs = if places.len() > shots.len() { ", two pictures each" } else { "" };
     let frames = shots.len();

@@ -15,6 +15,9 @@
 //!   u32  the CRC-32 of all bytes before, as `zlib.crc32` gives it
 //! ```
 //!
+//! `Decided:` a scene of points that [move](crate::io::scene_file#points-that-move) has the hash of its
+//! points in frame 0.
+//!
 //! `Decided:` a state of an older version, without a checksum, is refused, because nobody can tell
 //! whether it is damaged. Write it again.
 

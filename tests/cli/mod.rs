@@ -16,6 +16,7 @@ mod hierarchy;
 #[cfg(unix)]
 mod interrupts;
 mod memory;
+mod moving;
 mod one_file;
 mod pictures;
 mod plan;

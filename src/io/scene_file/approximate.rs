@@ -56,6 +56,12 @@ impl SceneFile {
             .chain(self.geometries.iter().map(|one| (one.name.clone(), &one.model)))
             .collect();
         // Check every model before the folder is made.
+        if let Some(moving) = self.geometries.iter().find(|one| matches!(one.files(), Ok(Some(_))))
+        {
+            let what = "a hierarchy samples triangles that do not move, but this geometry has a file for \
+                        each frame; name one file";
+            return Err(Error::Invalid(format!("{}: {what}", moving.name)));
+        }
         for (name, model) in &models {
             check(name, model)?;
             check_properties(model, &settings.properties)?;

@@ -1,5 +1,6 @@
 //! Load a [`SceneFile`] into surfels and primitives.
 
+use super::geometries::Moving;
 use super::model::{Colored, ModelParts, Purpose, check_draw, prefiltered, read};
 use super::{Draw, EnvironmentChoice, Model, SceneFile, Source, TREE, offset, stem};
 use crate::error::Result;
@@ -9,11 +10,10 @@ use crate::io::hierarchy::Hierarchy;
 use crate::io::{environment, surface};
 use crate::progress::Progress;
 use crate::scene::merge::{join, merge};
-use crate::scene::{Cloud, Counts, Dropped, Environment, Geometry, Light, Object, Objects};
+use crate::scene::{Cloud, Counts, Dropped, Environment, Light};
 use crate::scene::{Primitives, Scene, Similarity, Surfels, Vertices};
 use crate::source::derive::Derived;
-use crate::source::sampler::estimate;
-use glam::DVec3;
+use glam::{DVec3, Vec3};
 
 /// A loaded scene, with a report about its models.
 #[derive(Clone, Debug)]
@@ -34,6 +34,8 @@ pub struct Loaded {
     pub(super) unread: Option<Hierarchy>,
     /// The folder of blocks from which parts of a picture read what they need.
     pub(super) blocks: Option<Blocks>,
+    /// The geometries that have a file for each frame.
+    pub(super) moving: Moving,
 }
 
 /// A report on a loaded model of 3D Gaussians.
@@ -157,17 +159,7 @@ impl SceneFile {
             surface,
             ..Scene::unlit(&self.name, Surfels::none())
         };
-        let (models, dropped, warnings) = (Vec::new(), Dropped::default(), Vec::new());
-        let mut loaded = Loaded {
-            scene,
-            models,
-            dropped,
-            dropped_primitives: 0,
-            gaussians: None,
-            warnings,
-            unread: None,
-            blocks: None,
-        };
+        let mut loaded = Loaded::nothing_of(scene);
         if let Some((model, path)) = gaussians {
             loaded.read_gaussians(model, path)?;
             return Ok(loaded);
@@ -223,61 +215,30 @@ impl SceneFile {
             }
             primitives.push(more);
         }
-        let primitives = join(primitives, self.material.color)?;
-        let (surfels, lost) = self.join_surfels(parts, primitives.is_empty(), exec)?;
+        let fill = self.material.color;
+        let primitives = join(primitives, fill)?;
+        let (surfels, lost) = join_surfels(parts, primitives.is_empty(), fill, exec)?;
         loaded.dropped += lost;
         (loaded.scene.surfels, loaded.scene.primitives) = (surfels, primitives);
         Ok(())
     }
+}
 
-    /// Loads the models and the geometries as geometries of objects.
-    fn load_objects(
-        &self,
-        objects: Vec<Object>,
-        loaded: &mut Loaded,
-        purpose: Purpose<'_>,
-        exec: &Exec,
-        progress: Progress<'_>,
-    ) -> Result<()> {
-        let own = self.models.iter().map(|model| (model.source.name(), model, None));
-        let named = self.geometries.iter();
-        let named = named.map(|one| (one.name.clone(), &one.model, one.detail));
-        let mut geometries = Vec::new();
-        for (name, model, detail) in own.chain(named) {
-            let part = read(model, purpose, true, exec, progress)?;
-            let (surfels, primitives) =
-                loaded.place(model, part, name.clone(), purpose, exec, progress)?;
-            let parts = if surfels.is_empty() { vec![] } else { vec![(model.clone(), surfels)] };
-            let (surfels, lost) = self.join_surfels(parts, primitives.is_empty(), exec)?;
-            loaded.dropped += lost;
-            let geometry = Geometry { name, surfels, primitives, detail: None };
-            geometries.push(match detail {
-                Some(threshold) => geometry.with_detail(threshold, exec)?,
-                None if model.progressive => in_order(geometry)?,
-                None => geometry,
-            });
-        }
-        let objects = Objects::new(geometries, objects, self.material.color)?;
-        loaded.scene.objects = Some(objects);
-        Ok(())
+/// The surfels of all models in their places. If they are `alone`, without primitives, there must be
+/// at least one. `fill` is the colour of those without one.
+pub(super) fn join_surfels(
+    mut parts: Vec<(Model, Surfels)>,
+    alone: bool,
+    fill: Vec3,
+    exec: &Exec,
+) -> Result<(Surfels, Dropped)> {
+    if parts.len() == 1 && is_as_read(&parts[0].0) {
+        // One untransformed model is the usual case; its surfels are already checked.
+        return Ok((parts.remove(0).1, Dropped::default()));
     }
-
-    /// The surfels of all models in their places. If they are `alone`, without primitives, there
-    /// must be at least one.
-    fn join_surfels(
-        &self,
-        mut parts: Vec<(Model, Surfels)>,
-        alone: bool,
-        exec: &Exec,
-    ) -> Result<(Surfels, Dropped)> {
-        if parts.len() == 1 && is_as_read(&parts[0].0) {
-            // One untransformed model is the usual case; its surfels are already checked.
-            return Ok((parts.remove(0).1, Dropped::default()));
-        }
-        let clouds = parts.into_iter().map(|(model, surfels)| placed(&model, surfels));
-        let all = merge(clouds.collect(), self.material.color);
-        if alone { Surfels::new_with(all, exec) } else { Surfels::new_or_none(all, exec) }
-    }
+    let clouds = parts.into_iter().map(|(model, surfels)| placed(&model, surfels));
+    let all = merge(clouds.collect(), fill);
+    if alone { Surfels::new_with(all, exec) } else { Surfels::new_or_none(all, exec) }
 }
 
 /// Makes objects from the nodes of a hierarchy; for a view, without reading the nodes.
@@ -309,6 +270,21 @@ fn of_hierarchy(
 }
 
 impl Loaded {
+    /// A scene of which nothing has been read.
+    pub(super) fn nothing_of(scene: Scene) -> Self {
+        Self {
+            scene,
+            models: Vec::new(),
+            dropped: Dropped::default(),
+            dropped_primitives: 0,
+            gaussians: None,
+            warnings: Vec::new(),
+            unread: None,
+            blocks: None,
+            moving: Moving::default(),
+        }
+    }
+
     /// Moves what is in world coordinates by the offset of the files.
     pub(super) fn move_to(&mut self, offset: DVec3) {
         self.scene.offset = offset;
@@ -320,7 +296,7 @@ impl Loaded {
     }
 
     /// Takes a model: its surfels in the coordinates of its file, its primitives in their places.
-    fn place(
+    pub(super) fn place(
         &mut self,
         model: &Model,
         part: ModelParts,
@@ -369,12 +345,6 @@ fn veil(vertices: &mut Vertices, opacity: Option<f32>) {
         vertices.opacity = Some(vec![opacity; vertices.position.len()]);
     }
     vertices.opacity = vertices.opacity.take().filter(|all| all.iter().any(|&one| one != 1.0));
-}
-
-/// A geometry of ordered surfels, which views draw as a prefix.
-fn in_order(geometry: Geometry) -> Result<Geometry> {
-    let estimate = estimate(geometry.surfels.position(), geometry.surfels.normal());
-    geometry.with_prefix(estimate)
 }
 
 /// Whether the surfels of a model are unchanged from their source.

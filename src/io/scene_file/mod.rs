@@ -44,6 +44,29 @@
 //! its geometry is. Frames are counted from 0; keys may lie beyond the last frame. Without a chosen
 //! camera, every frame uses the camera that shows the scene of frame 0.
 //!
+//! # Points that move
+//!
+//! A geometry may have a file for each frame: with `%d` or `%04d` in its name, for the number of the
+//! frame. `%04d` puts zeros in front, up to 4 digits; 1 to 9 digits are possible.
+//!
+//! ```toml
+//! [[geometry]]
+//! name = "cloud"
+//! file = "cloud.%04d.ply"         # cloud.0000.ply in frame 0, cloud.0001.ply in frame 1
+//! [[object]]
+//! of = "cloud"
+//! [sequence]
+//! frames = 60
+//! ```
+//!
+//! Each file is read when its frame is drawn, with the choices of the geometry. All files must have the
+//! same points in the same order, because the method `deferred` remembers the points that the last frame
+//! saw by their numbers, and [states](crate::io::state) name them by these numbers too. A file with
+//! another number of surfels is refused, and so is one with a point that cannot be a surfel. Numbers that
+//! `color_by` colours have a range in each file. `Decided:` a scene has the [hash](crate::scene::Scene::sha256)
+//! of its frame; a state has the hash of frame 0. A `[[model]]` and a name on the command line always
+//! name one file.
+//!
 //! # Cameras of other programs
 //!
 //! The table `[camera]` takes intrinsics in place of `fov`, and a matrix in place of `eye`, `target`
@@ -88,7 +111,9 @@ mod approximate;
 mod camera;
 mod choice;
 mod draw;
+mod file_sequence;
 mod gaussians;
+mod geometries;
 mod load;
 mod model;
 mod objects;
@@ -335,7 +360,8 @@ impl SceneFile {
         }
     }
 
-    /// The files that loading reads, except those that model files name.
+    /// The files that loading reads, except those that model files name, and except the files of
+    /// [frames](SceneFile::reads_in_some_frame).
     pub fn reads(&self) -> impl Iterator<Item = &Path> {
         let models = self.all_models().flat_map(|model| match &model.source {
             Source::File { path, texture, .. } => [Some(path.as_path()), texture.as_deref()],
@@ -353,6 +379,13 @@ impl SceneFile {
         let cameras = self.camera.views.iter().map(|views| views.path.as_path());
         let (index, surface) = (self.hierarchy.as_deref(), self.surface.as_deref());
         models.chain(tables).chain(environment).chain(cameras).chain(index).chain(surface)
+    }
+
+    /// Whether a canonical path is the file of some frame of a geometry that has a file for each frame.
+    #[must_use]
+    pub fn reads_in_some_frame(&self, path: &Path) -> bool {
+        let files = self.geometries.iter().filter_map(|geometry| geometry.files().ok().flatten());
+        files.into_iter().any(|files| files.has(path))
     }
 
     /// Whether this is a scene of objects.

@@ -15,6 +15,7 @@ use crate::scene::objects::detail::refine::Refinement;
 use crate::scene::{Camera, Objects, Primitives, Scene, Stereo, Surfels};
 use crate::source::flatten;
 use std::borrow::Cow;
+use std::ops::Range;
 use std::path::Path;
 
 /// A loaded scene with resolved settings: everything that the picture of a frame needs.
@@ -125,7 +126,9 @@ impl Ready {
     /// The same scene in another frame; reuses the memory of this one.
     ///
     /// # Errors
-    /// As [`Ready::camera_at`], [`Objects::at`], [`Objects::seen_from`] and [`flatten()`].
+    /// As [`Ready::camera_at`], [`Objects::at`], [`Objects::seen_from`] and [`flatten()`]; of a geometry
+    /// with a file for each frame, as [`SceneFile::load`], and [`Error::Format`] if the file has other
+    /// surfels than the file of frame 0.
     pub fn at(mut self, frame: u32, exec: &Exec) -> Result<Self> {
         self.camera = self.camera_at(frame)?;
         self.frame = frame;
@@ -176,7 +179,7 @@ impl Ready {
     pub fn is_still(&self) -> bool {
         let depends_on_camera = |objects: &Objects| objects.have_detail() && self.path.is_some();
         let is_still = |objects: &Objects| objects.are_still() && !depends_on_camera(objects);
-        self.loaded.scene.objects.as_ref().is_none_or(is_still)
+        self.loaded.moving.is_empty() && self.loaded.scene.objects.as_ref().is_none_or(is_still)
     }
 
     /// The frame.
@@ -185,15 +188,27 @@ impl Ready {
         self.frame
     }
 
-    /// The identity of the scene in files of states: its SHA-256, with objects as in frame 0.
+    /// Checks, before long work, that frames can be drawn as far as that is known without reading more
+    /// than names: they have cameras, and the files of geometries with a file for each frame exist.
     ///
     /// # Errors
-    /// As [`Objects::at`].
-    pub fn identity(&self) -> Result<String> {
-        let scene = &self.loaded.scene;
+    /// As [`Ready::camera_at`]; [`Error::Io`] for a file that is missing.
+    pub fn check_frames(&self, mut frames: Range<u32>) -> Result<()> {
+        self.loaded.moving.check_files(frames.clone())?;
+        frames.try_for_each(|frame| self.camera_at(frame).map(drop))
+    }
+
+    /// The identity of the scene in files of states: its SHA-256, with objects as in frame 0. Geometries
+    /// with a file for each frame are read again for this.
+    ///
+    /// # Errors
+    /// As [`Ready::at`].
+    pub fn identity(&self, exec: &Exec) -> Result<String> {
+        let Loaded { scene, moving, .. } = &self.loaded;
         match &scene.objects {
             None => Ok(scene.sha256()),
             Some(objects) => {
+                let (objects, _) = moving.clone().at(objects.clone(), 0, exec)?;
                 let objects = Some(objects.at(0)?);
                 let (surfels, primitives) = (Surfels::none(), Primitives::default());
                 Ok(Scene { objects, surfels, primitives, ..scene.clone() }.sha256())
@@ -206,7 +221,7 @@ impl Ready {
     /// # Errors
     /// As [`state::read`]; [`Error::Usage`] if the method carries nothing from frame to frame, if the
     /// state is not that of the frame before, or if the method has another number of `flags`.
-    pub fn state(&self, path: &Path) -> Result<Seen> {
+    pub fn state(&self, path: &Path, exec: &Exec) -> Result<Seen> {
         let Method::Deferred(settings) = &self.method else {
             let what = format!(
                 "the method {} has no state between frames; give --method deferred, or no state",
@@ -216,7 +231,7 @@ impl Ready {
         };
         let scene = &self.loaded.scene;
         let ids = deferred::ids(scene);
-        let State { frame, seen } = state::read(path, &self.identity()?, &ids)?;
+        let State { frame, seen } = state::read(path, &self.identity(exec)?, &ids)?;
         if frame.checked_add(1) != Some(self.frame) {
             let (next, own) = (u64::from(frame) + 1, self.frame);
             let what = format!(
@@ -234,10 +249,12 @@ impl Ready {
     /// Puts the objects in their places of the frame, as the camera sees them. The method then gets
     /// the objects, or all their surfels if it does not draw objects.
     fn place(&mut self, exec: &Exec, progress: Progress<'_>) -> Result<()> {
-        let Loaded { scene, unread, .. } = &mut self.loaded;
+        let Loaded { scene, unread, moving, warnings, .. } = &mut self.loaded;
         if let Some(objects) = scene.objects.take() {
             // Free the surfels of the last frame first.
             (scene.surfels, scene.primitives) = (Surfels::none(), Primitives::default());
+            let (objects, doubts) = moving.at(objects, self.frame, exec)?;
+            warnings.extend(doubts);
             let view = objects.at(self.frame)?.seen_from(&self.camera, exec)?;
             drop(objects);
             scene.objects = Some(match unread {

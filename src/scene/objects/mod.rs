@@ -180,6 +180,18 @@ impl Objects {
         Ok(moved)
     }
 
+    /// Replaces geometries, given with their indices, by geometries with as many surfels: the same
+    /// surfels in another frame, to which [`Objects::at`] then moves the objects.
+    #[must_use]
+    pub(crate) fn with_geometries(mut self, replaced: Vec<(usize, Geometry)>) -> Self {
+        let (mut geometries, mut extents) = (self.taken(), self.extents.to_vec());
+        for (index, geometry) in replaced {
+            extents[index] = Extent::new(&geometry);
+            geometries[index] = geometry;
+        }
+        Self { geometries: geometries.into(), extents: extents.into(), ..self }
+    }
+
     /// The geometries.
     #[must_use]
     pub fn geometries(&self) -> &[Geometry] {

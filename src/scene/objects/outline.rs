@@ -199,7 +199,7 @@ impl Objects {
     }
 
     /// Takes the geometries out, without a copy if nobody else holds them.
-    fn taken(&mut self) -> Vec<Geometry> {
+    pub(super) fn taken(&mut self) -> Vec<Geometry> {
         let mut all = std::mem::replace(&mut self.geometries, Arc::new([]));
         let Some(all) = Arc::get_mut(&mut all) else { return all.to_vec() };
         let taken = |geometry: &mut Geometry| Geometry {

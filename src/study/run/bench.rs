@@ -203,7 +203,11 @@ mod tests {
         for candidate in kept.iter().filter(|one| one.method == "pyramid") {
             let found = bench.visit(candidate, &exec, &quiet).unwrap().ready.clone();
             let alone = candidate.file.ready(&exec, &quiet).unwrap();
-            assert_eq!(found.identity().unwrap(), alone.identity().unwrap(), "{candidate:?}");
+            assert_eq!(
+                found.identity(&exec).unwrap(),
+                alone.identity(&exec).unwrap(),
+                "{candidate:?}"
+            );
             let surfels = found.loaded.scene.surfels.len();
             (least, most) = (least.min(surfels), most.max(surfels));
         }

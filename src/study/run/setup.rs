@@ -60,7 +60,7 @@ impl Setup {
         Ok(Subject {
             splatref: env!("CARGO_PKG_VERSION").into(),
             scene: first.file.name.clone(),
-            scene_sha256: ready.identity()?,
+            scene_sha256: ready.identity(exec)?,
             size: [camera.width, camera.height],
             camera: provenance::camera(camera, ready.loaded.scene.offset),
             truth: self.known.in_words(&truths.still),

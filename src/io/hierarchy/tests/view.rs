@@ -160,12 +160,12 @@ fn frames_read_what_they_need() {
     let mut needed = file.ready(&exec, &quiet).unwrap();
     let mut all = file.ready_of(file.load(&exec, &quiet).unwrap(), &exec).unwrap();
     let mut sizes = Vec::new();
-    let identity = needed.identity().unwrap();
+    let identity = needed.identity(&exec).unwrap();
     for frame in [0, 1, 2, 3, 0] {
         needed = needed.at(frame, &exec).unwrap();
         all = all.at(frame, &exec).unwrap();
         assert!(picture(&needed) == picture(&all), "{frame}");
-        let identities = [&needed, &all].map(|ready| ready.identity().unwrap());
+        let identities = [&needed, &all].map(|ready| ready.identity(&exec).unwrap());
         assert_eq!(identities, [identity.clone(), identity.clone()], "whatever is read");
         sizes.push(held(needed.loaded.scene.objects.as_ref().unwrap()));
     }

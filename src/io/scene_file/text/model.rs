@@ -54,7 +54,13 @@ impl RawModel {
                 "`detail` and `progressive` are two kinds of levels of detail; remove one".into()
             );
         }
-        Ok(Geometry { name, detail, model: self.model()? })
+        let geometry = Geometry { name, detail, model: self.model()? };
+        if geometry.files()?.is_some() && detail.is_some() {
+            let what = "`detail` is made of one file, but this geometry has one for each frame; remove \
+                        `detail`, or name one file";
+            return Err(what.into());
+        }
+        Ok(geometry)
     }
 
     pub(super) fn model(mut self) -> Result<Model, String> {
