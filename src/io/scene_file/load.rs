@@ -78,7 +78,7 @@ impl SceneFile {
     /// - [`environment::read`], [`surface::read`], [`read_model`](super::read_model), [`crate::io::texture::paint`];
     /// - [`crate::source::Shape::surfels`], [`crate::source::plant::apple_tree`];
     /// - [`crate::source::derive::surfels`], and its counterparts for polygons and lines;
-    /// - [tables](super::places), [`Objects::new`] and [`crate::index::mipmap::build`].
+    /// - [tables](super::places), [`crate::scene::Objects::new`] and [`crate::index::mipmap::build`].
     ///
     /// [`crate::Error::Invalid`] in these cases:
     ///
