@@ -1,8 +1,9 @@
-//! How the time of a picture grows with its surfels, pixels, tiles and threads: three tables and two
-//! charts of `docs/limits.md`.
+//! How the time of a picture grows with its surfels, pixels, tiles and threads, and what the order of
+//! the surfels costs: four tables and two charts of `docs/limits.md`.
 //!
 //! `cargo bench --profile release --bench growth` prints Markdown, and with `--write` puts tables and
-//! charts into that page; an argument is a pattern that the names of methods must contain. The scene is
+//! charts into that page; an argument is a pattern that the names of methods must contain. Scans are those
+//! in the folder that `SPLATREF_MODELS` names (`../shared/models` if that is not set). The scene is
 //! the sphere of the standard workloads, lit, with default settings. However many surfels it has, they
 //! cover each pixel equally often. A time is the median of whole frames in the memory of a session, one
 //! thread and tiles of 32 pixels where the table does not say otherwise.
@@ -13,13 +14,17 @@
 mod common;
 
 use common::chart::{Axis, Series, svg};
+use common::models::models;
+use common::order::along_a_curve;
 use common::report::{Arguments, Table};
-use common::sphere::{Workload, camera_of, sphere};
+use common::sphere::{STANDARD, Workload, camera_of, sphere};
+use glam::Vec3;
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::method::{Method, Session};
 use splatref::number::elementary::ln;
-use splatref::scene::Scene;
+use splatref::scene::{Cloud, Scene, Surfels};
+use splatref::source::derive::{self, Derive};
 use std::time::Instant;
 
 const SURFELS: [usize; 4] = [10_000, 100_000, 1_000_000, 10_000_000];
@@ -50,18 +55,19 @@ fn main() -> Result<()> {
     }
     by_pixels.publish(&arguments, "pixels", "growth-pixels")?;
 
-    by_tiles(&arguments, &scenes[2], methods)
+    by_tiles(&arguments, &scenes[2], &methods)?;
+    by_order(&arguments, &methods)
 }
 
 /// The table of tiles and threads.
-fn by_tiles(arguments: &Arguments, scene: &Scene, methods: Vec<Method>) -> Result<()> {
+fn by_tiles(arguments: &Arguments, scene: &Scene, methods: &[Method]) -> Result<()> {
     let threads: Vec<usize> = [1, 2, 4, 8, 16].into_iter().filter(|&n| n <= cores()).collect();
     let mut columns: Vec<String> =
         ["method", "8 px tiles", "16", "32", "64"].map(str::to_owned).to_vec();
     columns.push("slowest by fastest".to_owned());
     columns.extend(threads[1..].iter().map(|n| format!("{n} threads: times as fast")));
     let mut table = Table::new(&columns.iter().map(String::as_str).collect::<Vec<_>>());
-    for method in methods {
+    for &method in methods {
         let time = |exec: &Exec| frame(scene, method, 1024, exec);
         let tiles = measured(TILES.len(), |i| time(&Exec::new(1, TILES[i])?))?;
         let parallel = measured(threads.len(), |i| time(&Exec::new(threads[i], 32)?))?;
@@ -75,6 +81,49 @@ fn by_tiles(arguments: &Arguments, scene: &Scene, methods: Vec<Method>) -> Resul
         table.row(&format!("{} | {}", method.name(), cells.collect::<Vec<_>>().join(" | ")));
     }
     table.publish_times(arguments, "limits.md", "growth-tiles")
+}
+
+/// The table of orders: the time in random order, or in the order of a scan's file, by the time along a
+/// space-filling curve.
+fn by_order(arguments: &Arguments, methods: &[Method]) -> Result<()> {
+    let exec = Exec::new(1, 32)?;
+    let mut subjects: Vec<(String, Surfels)> = STANDARD
+        .iter()
+        .map(|workload| (format!("{}, random", workload.name), sphere(workload)))
+        .collect();
+    for (name, cloud) in ["bunny", "igea", "dragon"]
+        .map(|name| models(name, arguments))
+        .into_iter()
+        .flatten()
+        .flatten()
+    {
+        let points = in_unit_sphere(cloud);
+        let (surfels, _) = derive::surfels(points, &Derive::default(), &exec, &|_, _, _| ())?;
+        subjects.push((format!("{name}, {} k", surfels.len() / 1000), surfels));
+    }
+    let names = subjects.iter().map(|(name, _)| name.as_str());
+    let mut table = Table::new(&std::iter::once("method").chain(names).collect::<Vec<_>>());
+    let mut rows: Vec<String> = methods.iter().map(|method| method.name().to_owned()).collect();
+    for (name, surfels) in &subjects {
+        let along = Scene::lit(name, along_a_curve(surfels.clone())?);
+        let as_it_is = Scene::lit(name, surfels.clone());
+        for (row, &method) in rows.iter_mut().zip(methods) {
+            let [own, best] = [&as_it_is, &along].map(|scene| frame(scene, method, 1024, &exec));
+            *row += &format!(" | {:.2}", own? / best?);
+        }
+    }
+    rows.iter().for_each(|row| table.row(row));
+    table.publish_times(arguments, "limits.md", "growth-order")
+}
+
+/// The points of a cloud, moved and scaled into the unit sphere.
+fn in_unit_sphere(cloud: Cloud) -> Cloud {
+    let corners = |choose: fn(Vec3, Vec3) -> Vec3| cloud.position.iter().copied().reduce(choose);
+    let (low, high) =
+        (corners(Vec3::min).unwrap_or_default(), corners(Vec3::max).unwrap_or_default());
+    let (middle, radius) = ((low + high) / 2.0, (high - low).length() / 2.0);
+    let position = cloud.position.iter().map(|&p| (p - middle) / radius).collect();
+    Cloud { position, normal: cloud.normal, color: cloud.color, ..Cloud::default() }
 }
 
 /// The sphere of this many surfels, each of an area that is inverse to it.

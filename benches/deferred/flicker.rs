@@ -18,7 +18,8 @@
 //! Flicker and error are also measured of `deferred` with surfel mipmaps of [`LEVELS`] levels; the
 //! reference is the same.
 
-use super::stage::{along_a_curve, board, check};
+use super::common::order::along_a_curve;
+use super::stage::{board, check};
 use glam::{DVec3, Vec3};
 use splatref::Result;
 use splatref::compare::metrics::{Region, regions, rmse};
