@@ -6,6 +6,8 @@
 
 #[path = "../benches/deferred/flicker.rs"]
 mod flicker;
+#[path = "../benches/common/order.rs"]
+mod order;
 #[path = "../benches/deferred/stage.rs"]
 mod stage;
 #[path = "../benches/deferred/wrong.rs"]

@@ -18,7 +18,7 @@
 //! Flicker and error are also measured of `deferred` with surfel mipmaps of [`LEVELS`] levels; the
 //! reference is the same.
 
-use super::common::order::along_a_curve;
+use super::order::along_a_curve;
 use super::stage::{board, check};
 use glam::{DVec3, Vec3};
 use splatref::Result;

@@ -17,6 +17,7 @@ mod subjects;
 mod turn;
 mod wrong;
 
+use common::order;
 use common::report::Arguments;
 use splatref::Result;
 use splatref::frame::Exec;

@@ -1,6 +1,6 @@
 //! What stands before the camera: surfels along a curve, a board of checks, a model that is turned.
 
-use super::common::order::along_a_curve;
+use super::order::along_a_curve;
 use glam::{DMat3, DVec3, Vec3};
 use splatref::Result;
 use splatref::scene::objects::{Geometry, Motion, Object, Objects};

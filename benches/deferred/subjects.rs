@@ -1,8 +1,8 @@
 //! The scenes of Table 1 and of its passes, as near to the paper's as what there is allows.
 
 use super::common::models;
-use super::common::order::along_a_curve;
 use super::common::report::Arguments;
+use super::order::along_a_curve;
 use glam::{DVec3, Vec3};
 use splatref::Result;
 use splatref::frame::Exec;

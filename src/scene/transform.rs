@@ -104,10 +104,16 @@ impl Similarity {
     }
 
     /// Places the position and the normal of a surfel; they stay valid for a surfel.
-    pub(crate) fn surfel(&self, position: Vec3, mut normal: Vec3) -> (Vec3, Vec3) {
+    pub(crate) fn surfel(&self, position: Vec3, normal: Vec3) -> (Vec3, Vec3) {
+        (self.point(position), self.normal(normal))
+    }
+
+    /// A normal, turned and made a unit vector again.
+    #[inline(always)]
+    pub(crate) fn normal(&self, mut normal: Vec3) -> Vec3 {
         self.turn(&mut normal);
         unit(&mut normal);
-        (self.point(position), normal)
+        normal
     }
 
     /// Where a point goes.

@@ -256,27 +256,33 @@ impl Range<'_> {
         self.drawn.is_none_or(|drawn| drawn.has(surfel))
     }
 
-    /// Position and normal of a surfel in its place.
+    /// The normal of a surfel in its place.
     #[inline]
-    pub(super) fn surfel(&self, i: usize) -> (Vec3, Vec3) {
-        let (position, normal) = (self.of.position()[i], self.of.normal()[i]);
-        self.place.map_or((position, normal), |place| place.surfel(position, normal))
-    }
-
-    /// The positions of [`LANES`] surfels from `first` on; beyond the last surfel, the position of
-    /// the last.
-    #[inline(always)]
-    pub(super) fn positions(&self, first: usize) -> [Vec3; LANES] {
-        let all = &self.of.position()[..self.surfels.end];
-        match all[first..].first_chunk::<LANES>() {
-            Some(positions) => *positions,
-            None => std::array::from_fn(|i| all[(first + i).min(all.len() - 1)]),
+    pub(super) fn normal(&self, i: usize) -> Vec3 {
+        let normal = self.of.normal()[i];
+        match self.place {
+            None => normal,
+            Some(place) => place.normal(normal),
         }
     }
 
-    /// Positions in their places, component by component.
+    /// The positions of [`LANES`] surfels from `first` on in their places, component by component;
+    /// beyond the last surfel, the position of the last.
     #[inline(always)]
-    pub(super) fn moved(&self, positions: &[Vec3; LANES]) -> [Lanes; 3] {
+    pub(super) fn positions(&self, first: usize) -> [Lanes; 3] {
+        let all = &self.of.position()[..self.surfels.end];
+        match all[first..].first_chunk::<LANES>() {
+            Some(positions) => self.moved(positions),
+            None => {
+                let mut last = [all[all.len() - 1]; LANES];
+                last[..all.len() - first].copy_from_slice(&all[first..]);
+                self.moved(&last)
+            }
+        }
+    }
+
+    #[inline(always)]
+    fn moved(&self, positions: &[Vec3; LANES]) -> [Lanes; 3] {
         let mut moved = [[0.0; LANES]; 3];
         let Some(place) = self.place else {
             for i in 0..LANES {

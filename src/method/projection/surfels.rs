@@ -76,11 +76,13 @@ impl<R: Real> PointProjector<R> {
     #[inline(always)]
     #[must_use]
     pub fn facing(&self, placed: &PlacedPoint<R>, n: Vector3<R>) -> R {
-        if self.view.perspective {
-            (n.x * (placed.p.x * placed.m) + n.y * (placed.p.y * placed.m)) - n.z
-        } else {
-            -n.z
-        }
+        self.facing_along(Vector2::new(placed.p.x * placed.m, placed.p.y * placed.m), n)
+    }
+
+    /// [`PointProjector::facing`] of a point whose position in view space is, by its depth, `ray`.
+    #[inline(always)]
+    pub(crate) fn facing_along(&self, ray: Vector2<R>, n: Vector3<R>) -> R {
+        if self.view.perspective { (n.x * ray.x + n.y * ray.y) - n.z } else { -n.z }
     }
 
     /// Places a surfel, and returns g and the reasons not to draw it; `n` is the normal in view

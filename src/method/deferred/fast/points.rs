@@ -13,10 +13,11 @@ use crate::composite::decide;
 use crate::frame::Exec;
 use crate::method::Job;
 use crate::method::clock::{Work, spend};
-use crate::method::projection::surfels::{PlacedPoint, PointProjector};
+use crate::method::projection::surfels::PointProjector;
 use crate::number::lanes::{LANES, Lanes, each, mask, select, vectorized};
-use crate::number::{Real, Vector3};
+use crate::number::{Real, Vector2, Vector3};
 use crate::splat::View;
+use glam::Vec3;
 
 /// The maximum number of shares: each takes a picture, 4 bytes a pixel.
 const SHARES: usize = 8;
@@ -128,7 +129,11 @@ fn draw(points: &PointProjector<f32>, range: &Range<'_>, limits: &Limits, centre
             let (depth, pixel) = (places.t[lane], places.pixel[lane]);
             if decide::before(depth, centres.depth(pixel))
                 && range.draws(first + lane)
-                && faces(points, range, first + lane)
+                && faces(
+                    points,
+                    [places.ray[0][lane], places.ray[1][lane]],
+                    range.normal(first + lane),
+                )
             {
                 centres.put(Centre { depth, pixel, id: range.id(first + lane) });
             }
@@ -139,6 +144,8 @@ fn draw(points: &PointProjector<f32>, range: &Range<'_>, limits: &Limits, centre
 /// The depths of points, and their pixels.
 struct Places {
     t: Lanes,
+    /// x/t and y/t in view space, or x and y.
+    ray: [Lanes; 2],
     pixel: [u32; LANES],
     /// A bit for each point that is in the picture, beyond the near plane and not hidden.
     pass: u32,
@@ -153,14 +160,15 @@ vectorized!(
         first: usize,
         limits: &Limits,
     ) -> Places {
-        let positions = range.positions(first);
-        let world = range.moved(&positions);
+        let world = range.positions(first);
         let (mut x, mut y, mut t) = ([0.0; LANES], [0.0; LANES], [0.0; LANES]);
+        let mut ray = [[0.0; LANES]; 2];
         for i in 0..LANES {
             let position = Vector3::new(world[0][i], world[1][i], world[2][i]);
             let placed = points.place(points.view.point(position));
             // Adding 0 turns -0 into +0.
             (x[i], y[i], t[i]) = (placed.center.x, placed.center.y, placed.t + 0.0);
+            (ray[0][i], ray[1][i]) = (placed.p.x * placed.m, placed.p.y * placed.m);
         }
         let View { width, height, near, .. } = points.view;
         let inside = mask(|i| {
@@ -174,16 +182,14 @@ vectorized!(
         let limit = each(|i| limits.values[pixel[i] as usize]);
         let pass = mask(|i| decide::visible(t[i], limit[i]));
         let pass = (0..LANES).fold(0, |all, i| all | (pass[i] & inside[i] & 1) << i);
-        Places { t, pixel, pass }
+        Places { t, ray, pixel, pass }
     }
 );
 
 /// Whether a surfel that is in the picture is drawn: g is finite and, with culling, < 0.
-fn faces(points: &PointProjector<f32>, range: &Range<'_>, i: usize) -> bool {
-    let (position, normal) = range.surfel(i);
-    let placed: PlacedPoint<f32> = points.place(points.view.point(Vector3::from_glam(position)));
+fn faces(points: &PointProjector<f32>, [x, y]: [f32; 2], normal: Vec3) -> bool {
     let n = points.view.direction(Vector3::from_glam(normal));
-    let g = points.facing(&placed, n);
+    let g = points.facing_along(Vector2::new(x, y), n);
     g.is_finite() && !(points.cull && g >= 0.0)
 }
 
