@@ -124,7 +124,8 @@ impl Algorithm for Settings {
     const FAST_BYTES_A_PIXEL: Option<u64> = Some(256);
     const NEEDS_WHOLE_PICTURE: Option<&'static str> =
         Some("the pixels of the whole picture select the surfels that it draws");
-    type Memory = ();
+    /// The centres of each share of pass 2.
+    type Memory = Vec<fast::Centres>;
 
     fn splats(&self) -> Option<&SplatSettings> {
         Some(&self.splats)
@@ -138,8 +139,13 @@ impl Algorithm for Settings {
         picture::define(job, self, stages)
     }
 
-    fn draw(&self, job: &Job<'_>, (): &mut (), pool: &mut Pool) -> Result<Picture<f32>> {
-        picture::draw(job, self, pool)
+    fn draw(
+        &self,
+        job: &Job<'_>,
+        memory: &mut Vec<fast::Centres>,
+        pool: &mut Pool,
+    ) -> Result<Picture<f32>> {
+        picture::draw(job, self, memory, pool)
     }
 
     fn stage<R: Exact>(

@@ -81,7 +81,12 @@ pub(super) fn define<R: Exact>(
 
 /// The fast path for `f32`. Without pass 3 it runs the definition, because the paper shows such
 /// pictures only for their errors.
-pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Result<Picture<f32>> {
+pub(super) fn draw(
+    job: &Job<'_>,
+    settings: &Settings,
+    memory: &mut Vec<fast::Centres>,
+    pool: &mut Pool,
+) -> Result<Picture<f32>> {
     if !settings.second {
         return define(job, settings, false);
     }
@@ -91,7 +96,7 @@ pub(super) fn draw(job: &Job<'_>, settings: &Settings, pool: &mut Pool) -> Resul
         observed: false,
     };
     let mut target = framebuffer(job, wanted, pool);
-    let (now, tally, clock) = fast::render(job, settings, &mut target)?;
+    let (now, tally, clock) = fast::render(job, settings, &mut target, memory)?;
     Ok(Picture { seen: Some(now), ..finish(target, Vec::new(), tally, clock, job) })
 }
 

@@ -26,6 +26,7 @@ use crate::method::fast::{draw, prepare, prepare_some};
 use crate::method::prepare::Prepared;
 use crate::number::lanes::LANES;
 use crate::splat::{Shared, SplatSettings, Tally};
+pub use points::Centres;
 use ranks::Ranks;
 
 /// Draws a frame into a framebuffer, every pixel of it, with pass 3. Returns what the frame saw,
@@ -34,6 +35,7 @@ pub(super) fn render(
     job: &Job<'_>,
     settings: &Settings,
     target: &mut Framebuffer<f32>,
+    memory: &mut Vec<Centres>,
 ) -> Result<(Seen, Tally, Clock)> {
     let splats = &settings.splats;
     let (whole, before) = whole(job, settings)?;
@@ -53,7 +55,7 @@ pub(super) fn render(
     let (shared, epsilon) =
         (&flagged.splats.shared, splats.epsilon.in_units(whole.median_radius()));
     let limits = limits(shared, target, epsilon, job.exec);
-    let list = points::selected(job, settings, &whole, &limits);
+    let list = points::selected(job, settings, &whole, &limits, memory);
     target.weight = Plane::from_values(target.width, target.height, limits.values);
     let now = Seen::from_selected(whole.ids(), settings.flags, &list);
     clock.lap("indices");
