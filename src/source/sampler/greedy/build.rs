@@ -119,9 +119,9 @@ impl Cuts {
         let points = points.map_inline(|point| [point.x, point.y, point.z, 0.0]);
         let mut nodes = [1; N];
         for _ in 0..self.depth {
-            for i in 0..N {
-                let (plane, axis) = self.planes[nodes[i] & last];
-                nodes[i] = 2 * nodes[i] + usize::from(points[i][usize::from(axis & 3)] >= plane);
+            for (node, point) in nodes.iter_mut().zip(&points) {
+                let (plane, axis) = self.planes[*node & last];
+                *node = 2 * *node + usize::from(point[usize::from(axis & 3)] >= plane);
             }
         }
         nodes.map_inline(|node| self.leaf[node & last])
