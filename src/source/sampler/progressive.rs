@@ -63,7 +63,7 @@ const EVERY: u64 = 500;
 /// A sample is near below this fraction of the squared distance at which the last one was accepted.
 const NEAR: f32 = 1.0 / 16.0;
 /// Bytes of a point that is also picked, while its arrays grow, and of its leaf.
-const BYTES: u64 = 144;
+const BYTES: u64 = 112;
 
 /// How many samples a round takes, and how they are used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
