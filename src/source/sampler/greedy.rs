@@ -40,7 +40,6 @@
 //!   radius.
 //! - The first j of k picks are the j picks.
 //! - Another order of the given points changes the result only where distances tie.
-//! - Another order of the given points changes the result only where distances tie.
 //!
 //! # Why it is fast
 //!

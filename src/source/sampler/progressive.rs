@@ -46,11 +46,11 @@
 //! several, each is a pick for the next, as "all surfels chosen before" says. `AsShipped` is the
 //! schedule of the authors' program as it was described to us; the program was not at hand.
 
-use super::greedy::{Order, Start, squared_distance};
-use super::nearest::Nearest;
+use super::greedy::{Order, Start};
+use super::nearest::{Known, Nearest, look};
 use crate::error::Result;
 use crate::memory;
-use crate::number::random;
+use crate::number::{Real, random};
 use crate::progress::Progress;
 use glam::Vec3;
 
@@ -62,8 +62,8 @@ const FEWEST: usize = 20;
 const EVERY: u64 = 500;
 /// A sample is near below this fraction of the squared distance at which the last one was accepted.
 const NEAR: f32 = 1.0 / 16.0;
-/// Bytes of a point that is also picked, while its arrays grow, and of its cells.
-const BYTES: u64 = 144;
+/// Bytes of a point that is also picked, while its arrays grow, and of its leaf.
+const BYTES: u64 = 112;
 
 /// How many samples a round takes, and how they are used.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -88,9 +88,6 @@ pub struct Progressive {
     pub schedule: Schedule,
 }
 
-/// A sample: its squared distance to the nearest pick, and its index.
-type Sample = (f32, u32);
-
 impl Progressive {
     /// The first `count` picks, or fewer; see the [module](self). `progress` gets the name of a
     /// step, the number of picks, and the most that there may be.
@@ -103,15 +100,13 @@ impl Progressive {
             format!("an order of {} points", points.len())
         })?;
         let count = count.min(points.len());
-        let mut picks = Picks { points, near: Nearest::within(points), order: Order::default() };
+        let mut picks = Picks { points, near: Nearest::none(), order: Order::default() };
         if count > 0 {
-            picks.add(start);
+            picks.add_point(start);
         }
-        let mut rest = Rest {
-            indices: (0..points.len() as u32).filter(|&i| i != start).collect(),
-            seed: self.seed,
-            drawn: 0,
-        };
+        let mut indices: Vec<u32> = (0..points.len() as u32).collect();
+        indices.remove(start as usize);
+        let mut rest = Rest { indices, seed: self.seed, drawn: 0 };
         let (mut samples, mut accepted) = match self.schedule {
             Schedule::Paper => (SAMPLES, 1),
             Schedule::AsShipped => (SAMPLES, 0),
@@ -121,7 +116,7 @@ impl Progressive {
                 break;
             }
             progress("picking points", picks.order.index.len() as u64, count as u64);
-            let drawn = rest.draw(samples);
+            let drawn = picks.look(rest.draw(samples));
             // The last round accepts only as many as are still wanted.
             let room = accepted.min(count - picks.order.index.len());
             match self.schedule {
@@ -130,7 +125,7 @@ impl Progressive {
                     accepted = 1 + ((round + 1) / EVERY) as usize;
                 }
                 Schedule::AsShipped => {
-                    rest.indices.extend(as_shipped(&mut picks, &drawn, room));
+                    rest.indices.extend(as_shipped(&mut picks, drawn, room));
                     if round % EVERY == 0 {
                         samples = (samples / 2).max(FEWEST);
                         accepted = (accepted + 1).min(samples * 3 / 10);
@@ -145,42 +140,67 @@ impl Progressive {
 
 /// Accepts this many samples, each of which is a pick for the next; returns the samples that are
 /// not used up.
-fn paper(picks: &mut Picks<'_>, drawn: Vec<u32>, accepted: usize) -> Vec<u32> {
-    let mut samples: Vec<Sample> = drawn.iter().map(|&i| (picks.distance(i), i)).collect();
+fn paper(picks: &mut Picks<'_>, mut samples: Samples, accepted: usize) -> Vec<u32> {
     let mut last = 0.0;
     for _ in 0..accepted {
-        let Some(best) =
-            (0..samples.len()).reduce(|a, b| if before(samples[b], samples[a]) { b } else { a })
-        else {
-            break;
-        };
-        let (distance, index) = samples.remove(best);
-        last = distance;
-        picks.add(index);
-        for (distance, other) in &mut samples {
-            let new = squared_distance(picks.points[*other as usize], picks.points[index as usize]);
-            if new < *distance {
-                *distance = new;
-            }
-        }
+        let Some(new) = samples.take_farthest(&mut picks.near) else { break };
+        last = new.1.most;
+        picks.add(new);
+        samples.known.iter_mut().for_each(|known| known.lower(new.1.place));
     }
-    let far = |&(distance, _): &Sample| distance > 0.0 && !(distance < NEAR * last);
-    samples.into_iter().filter(far).map(|(_, index)| index).collect()
+    // Only the distance 0 is below the least positive number.
+    let near = (NEAR * last).at_least(f32::from_bits(1));
+    let mut known = samples.known.iter();
+    samples.indices.retain(|_| known.next().is_some_and(|known| picks.near.is_beyond(known, near)));
+    samples.indices
 }
 
 /// Accepts the samples farthest from the picks of earlier rounds; returns all others except the
 /// next one.
-fn as_shipped(picks: &mut Picks<'_>, drawn: &[u32], accepted: usize) -> Vec<u32> {
-    let mut samples: Vec<Sample> = drawn.iter().map(|&i| (picks.distance(i), i)).collect();
-    samples.sort_unstable_by(|a, b| b.0.total_cmp(&a.0).then(a.1.cmp(&b.1)));
-    let used = &samples[..samples.len().min(accepted + 1)];
-    used.iter().take(accepted).for_each(|&(_, index)| picks.add(index));
-    drawn.iter().copied().filter(|i| used.iter().all(|(_, other)| other != i)).collect()
+fn as_shipped(picks: &mut Picks<'_>, mut samples: Samples, accepted: usize) -> Vec<u32> {
+    let mut farthest = || samples.take_farthest(&mut picks.near);
+    let used: Vec<Sample> = (0..accepted).map_while(|_| farthest()).collect();
+    farthest();
+    for i in 0..used.len() {
+        let (index, mut known) = used[i];
+        used[..i].iter().for_each(|(_, other)| known.lower(other.place));
+        picks.add((index, known));
+    }
+    samples.indices
 }
 
-/// Whether a sample is accepted before another.
-fn before(a: Sample, b: Sample) -> bool {
-    a.0 > b.0 || (a.0 == b.0 && a.1 < b.1)
+/// The index of a sample, and what is known of its squared distance to the nearest pick.
+type Sample = (u32, Known);
+
+/// The samples of a round, in the order of the draws.
+struct Samples {
+    indices: Vec<u32>,
+    known: Vec<Known>,
+}
+
+impl Samples {
+    /// Removes the sample that is farthest from the picks; of equal ones, the lowest index.
+    fn take_farthest(&mut self, picks: &mut Nearest) -> Option<Sample> {
+        let (mut best, mut at) = (0, None);
+        for (i, (known, &index)) in self.known.iter_mut().zip(&self.indices).enumerate() {
+            // Only what may be farther is worth a search.
+            if key(known.most, index) > best {
+                picks.refine(known);
+                let key = key(known.most, index);
+                if key > best {
+                    (best, at) = (key, Some(i));
+                }
+            }
+        }
+        at.map(|at| (self.indices.remove(at), self.known.remove(at)))
+    }
+}
+
+/// The sample of the largest key is accepted next. Keys are positive, because indices are below
+/// 2^32 - 1.
+#[inline(always)]
+fn key(most: f32, index: u32) -> u64 {
+    u64::from(most.to_bits()) << 32 | u64::from(!index)
 }
 
 /// The picks so far.
@@ -191,14 +211,27 @@ struct Picks<'a> {
 }
 
 impl Picks<'_> {
-    fn distance(&self, index: u32) -> f32 {
-        self.near.distance(self.points[index as usize])
+    /// Looks how far samples are from the picks, at most.
+    fn look(&self, drawn: Vec<u32>) -> Samples {
+        // A loop of its own, so that the reads from memory overlap.
+        let mut known: Vec<Known> =
+            drawn.iter().map(|&i| Known::nothing(self.points[i as usize])).collect();
+        look(&self.near, &mut known);
+        Samples { indices: drawn, known }
     }
 
-    fn add(&mut self, index: u32) {
+    /// Adds a sample whose distance is known exactly.
+    fn add(&mut self, (index, known): Sample) {
         self.order.index.push(index);
-        self.order.distance.push(self.distance(index));
-        self.near.add(self.points[index as usize]);
+        self.order.distance.push(known.most);
+        self.near.add(&known);
+    }
+
+    /// Adds a point.
+    fn add_point(&mut self, index: u32) {
+        let mut known = Known::nothing(self.points[index as usize]);
+        self.near.refine(&mut known);
+        self.add((index, known));
     }
 }
 
@@ -234,13 +267,13 @@ pub fn shuffled(points: &[Vec3], seed: u64, count: usize, progress: Progress<'_>
     let mut keys: Vec<(u64, u32)> =
         (0..points.len() as u32).map(|i| (random::bits(seed, u64::from(i)), i)).collect();
     keys.sort_unstable();
-    let mut picks = Picks { points, near: Nearest::within(points), order: Order::default() };
+    let mut picks = Picks { points, near: Nearest::none(), order: Order::default() };
     let count = count.min(keys.len());
     for (done, &(_, index)) in keys[..count].iter().enumerate() {
         if done.is_multiple_of(EACH) {
             progress("picking points", done as u64, count as u64);
         }
-        picks.add(index);
+        picks.add_point(index);
     }
     progress("picking points", count as u64, count as u64);
     Ok(picks.order)
