@@ -37,6 +37,9 @@
 //! pass draws has no selected surfel, so it would never be seen again, or every other frame. With
 //! passes 2 to 4 it stays, and only the cost of pass 1 is saved.
 //!
+//! B(i) and the flags name surfels by their numbers alone. So objects and the points of a geometry may
+//! move from frame to frame \[GBP04, 4.3\]; scene files [do both](crate::io::scene_file#points-that-move).
+//!
 //! Triangles beside the surfels are drawn before pass 1, see [`polygons`].
 //!
 //! Frame i + 1 receives the flags of B(i), and how many surfels of each object B(i) has. No flags,

@@ -26,7 +26,7 @@ use crate::method::fast::{draw, prepare, prepare_some};
 use crate::method::prepare::Prepared;
 use crate::number::lanes::LANES;
 use crate::splat::{Shared, SplatSettings, Tally};
-pub use points::Centres;
+pub(super) use points::Centres;
 use ranks::Ranks;
 
 /// Draws a frame into a framebuffer, every pixel of it, with pass 3. Returns what the frame saw,
