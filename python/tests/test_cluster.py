@@ -179,9 +179,12 @@ def test_a_folder_that_is_replaced_meanwhile_gives_no_picture(client: Any, progr
 
 def test_workers_that_do_not_agree_give_no_picture(client: Any, tmp_path: Path) -> None:
     def changing() -> sr.Scene:
-        before = mark.exists()
-        mark.touch()
-        return sr.Scene.open("torus", count=801 if before else 800)
+        # Both workers may call this at the same time, and one alone makes the file.
+        try:
+            mark.touch(exist_ok=False)
+        except FileExistsError:
+            return sr.Scene.open("torus", count=801)
+        return sr.Scene.open("torus", count=800)
 
     mark = tmp_path / "loaded"
     with pytest.raises(RuntimeError, match="workers loaded different scenes"):
@@ -200,10 +203,12 @@ def test_workers_that_do_not_agree_give_no_picture(client: Any, tmp_path: Path) 
 def test_a_worker_that_dies_changes_nothing(client: Any, tmp_path: Path) -> None:
     def dying() -> sr.Scene:
         # The first worker that loads the scene ends, as a machine does that fails.
-        if not mark.exists():
-            mark.touch()
-            os.kill(os.getpid(), signal.SIGKILL)
-        return sr.Scene.open("torus", count=800)
+        try:
+            mark.touch(exist_ok=False)
+        except FileExistsError:
+            return sr.Scene.open("torus", count=800)
+        os.kill(os.getpid(), signal.SIGKILL)
+        raise AssertionError("a killed process goes on")
 
     mark = tmp_path / "died"
     picture = cluster.render(dying, CAMERA, client=client, regions=7)
