@@ -2,7 +2,7 @@
 
 use super::destination::{Depth, Destination, write};
 use super::walk::Walk;
-use super::{Ended, Ending, draw, progress, region, report};
+use super::{Ended, Ending, draw, progress, region, report, warn};
 use splatref::Result;
 use splatref::frame::Exec;
 use splatref::index::seen::Seen;
@@ -77,6 +77,7 @@ pub(super) fn render(
     let places: Vec<PathBuf> = shots.iter().flat_map(|shot| shot.places.clone()).collect();
     let last = shots.last().map_or(file.frame, |shot| shot.frame);
     let mut ready = draw::ready(file, exec)?;
+    let warned = ready.loaded.warnings.len();
     // What no later frame can have is found before the first is drawn.
     ready.check_frames(file.frame..last + 1)?;
     to.check_state(&ready, file, &places)?;
@@ -123,6 +124,8 @@ pub(super) fn render(
         }
     }
     drop(steps);
+    // Files of later frames may be doubtful, too.
+    warn(&ready.loaded.warnings[warned..]);
     to.keep(&ready, last, seen[0].as_ref(), exec)?;
 
     let pairs = if places.len() > shots.len() { ", two pictures each" } else { "" };

@@ -94,6 +94,21 @@ fn files_move_points_as_keys_do() {
     assert!(said.contains("right: "), "{said}");
 }
 
+/// Warnings name the files of all frames, not only those of the first.
+#[test]
+fn files_of_later_frames_are_doubted() {
+    let at = clouds();
+    // In f32, the sheet is one row at this x.
+    let far = sheet(16, 1e9, 1.0).replace("float x", "double x");
+    fs::write(at.path().join("cloud.002.ply"), far).unwrap();
+    let frames = ["render", "files.toml", "--frames", "all", "-o", "w.exr"];
+    let output = splatref(at.path(), &frames);
+    let said = String::from_utf8(output.stderr).unwrap();
+    assert_eq!(output.status.code(), Some(0), "{said}");
+    assert!(said.starts_with("splatref: warning: cloud.002.ply: of 256 places, only 16"), "{said}");
+    assert_eq!(said.lines().count(), 1, "{said}");
+}
+
 #[test]
 fn clouds_that_lose_points_are_refused() {
     let at = clouds();

@@ -1,8 +1,8 @@
 //! Name one file a frame: `cloud.%04d.ply` is `cloud.0007.ply` in frame 7.
 //!
 //! `%d` stands for the number of the frame in decimal digits. `%04d` does too, with zeros in front up to
-//! 4 digits; 1 to 9 digits are possible. The name of the file may hold one of them, the names of its
-//! folders none. Any other `%` is an ordinary character.
+//! 4 digits; 1 to 9 digits are possible. The name of the file may hold one of them. Any other `%` is an
+//! ordinary character, and so is every `%` in the name of a folder.
 
 use std::fs;
 use std::path::{Path, PathBuf};

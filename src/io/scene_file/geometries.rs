@@ -13,7 +13,6 @@ use super::objects::Geometry as Choice;
 use super::{Loaded, SceneFile, Source};
 use crate::error::{Error, Result};
 use crate::frame::Exec;
-use crate::io::gaussians;
 use crate::progress::Progress;
 use crate::scene::{Geometry, Object, Objects, Scene, Surfels};
 use crate::source::sampler::estimate;
@@ -107,8 +106,6 @@ pub(super) struct Moving {
     geometries: Vec<MovingGeometry>,
     /// The colour of surfels without one.
     fill: Vec3,
-    /// The frame whose files are in memory.
-    frame: u32,
 }
 
 impl Moving {
@@ -126,20 +123,21 @@ impl Moving {
         })
     }
 
-    /// The objects with the geometries of a frame, and what is to be doubted about its files. The objects
-    /// are still in their places of another frame.
+    /// The objects in a frame, with its geometries; and what is to be doubted about its files.
     ///
     /// # Errors
-    /// As [`SceneFile::load`]; [`Error::Format`] if a file has not the surfels of frame 0.
+    /// As [`SceneFile::load`] and [`Objects::at`]; [`Error::Format`] if a file has not the surfels of
+    /// frame 0.
     pub(super) fn at(
-        &mut self,
+        &self,
         objects: Objects,
         frame: u32,
         exec: &Exec,
     ) -> Result<(Objects, Vec<String>)> {
         let mut warnings = Vec::new();
-        if self.is_empty() || self.frame == frame {
-            return Ok((objects, warnings));
+        // The geometries are those of the frame that the objects are in.
+        if self.is_empty() || objects.frame() == frame {
+            return Ok((objects.at(frame)?, warnings));
         }
         let mut read = Vec::new();
         for one in &self.geometries {
@@ -147,9 +145,7 @@ impl Moving {
             read.push((one.index, geometry));
             warnings.extend(doubts);
         }
-        let moved = objects.with_geometries(read);
-        self.frame = frame;
-        Ok((moved, warnings))
+        Ok((objects.with_geometries(read).at(frame)?, warnings))
     }
 }
 
@@ -198,10 +194,6 @@ fn choice_at(choice: &Choice, frame: PathBuf) -> Choice {
 
 /// Checks that no point of a file was lost, because those behind it would get other numbers.
 fn check_whole(path: &Path, lost: u64) -> Result<()> {
-    if gaussians::holds(path) {
-        let what = "the file holds 3D Gaussians, which do not move; give points or a mesh";
-        return Err(Error::format(path, what));
-    }
     if lost > 0 {
         let what = format!(
             "{lost} points cannot be surfels, so the points behind them would change their numbers; \

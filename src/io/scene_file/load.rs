@@ -285,6 +285,13 @@ impl Loaded {
         }
     }
 
+    /// Takes what is to be doubted about files, each once.
+    pub(super) fn doubt(&mut self, warnings: Vec<String>) {
+        let is_new = |what: &String| !self.warnings.contains(what);
+        let new: Vec<String> = warnings.into_iter().filter(is_new).collect();
+        self.warnings.extend(new);
+    }
+
     /// Moves what is in world coordinates by the offset of the files.
     pub(super) fn move_to(&mut self, offset: DVec3) {
         self.scene.offset = offset;
@@ -306,9 +313,7 @@ impl Loaded {
         progress: Progress<'_>,
     ) -> Result<(Surfels, Primitives)> {
         let ModelParts { surfels, primitives, derived, painted, warnings, colored, .. } = part;
-        let is_new = |what: &String| !self.warnings.contains(what);
-        let new: Vec<String> = warnings.into_iter().filter(is_new).collect();
-        self.warnings.extend(new);
+        self.doubt(warnings);
         let surfels = if painted { surfels } else { prefiltered(surfels, model, exec, progress)? };
         let counts = primitives.counts();
         let count = surfels.len();

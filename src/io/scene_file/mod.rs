@@ -62,10 +62,10 @@
 //! Each file is read when its frame is drawn, with the choices of the geometry. All files must have the
 //! same points in the same order, because the method `deferred` remembers the points that the last frame
 //! saw by their numbers, and [states](crate::io::state) name them by these numbers too. A file with
-//! another number of surfels is refused, and so is one with a point that cannot be a surfel. Numbers that
-//! `color_by` colours have a range in each file. `Decided:` a scene has the [hash](crate::scene::Scene::sha256)
-//! of its frame; a state has the hash of frame 0. A `[[model]]` and a name on the command line always
-//! name one file.
+//! another number of surfels is refused, and so is one with a point that cannot be a surfel. `color_by`
+//! finds the least and the greatest number of each file anew, so a colour may stand for another number in
+//! another frame. `Decided:` a scene has the [hash](crate::scene::Scene::sha256) of its frame; a state has
+//! the hash of frame 0. A `[[model]]` and a name on the command line always name one file.
 //!
 //! # Cameras of other programs
 //!

@@ -208,8 +208,7 @@ impl Ready {
         match &scene.objects {
             None => Ok(scene.sha256()),
             Some(objects) => {
-                let (objects, _) = moving.clone().at(objects.clone(), 0, exec)?;
-                let objects = Some(objects.at(0)?);
+                let objects = Some(moving.at(objects.clone(), 0, exec)?.0);
                 let (surfels, primitives) = (Surfels::none(), Primitives::default());
                 Ok(Scene { objects, surfels, primitives, ..scene.clone() }.sha256())
             }
@@ -249,13 +248,14 @@ impl Ready {
     /// Puts the objects in their places of the frame, as the camera sees them. The method then gets
     /// the objects, or all their surfels if it does not draw objects.
     fn place(&mut self, exec: &Exec, progress: Progress<'_>) -> Result<()> {
-        let Loaded { scene, unread, moving, warnings, .. } = &mut self.loaded;
+        let Loaded { scene, unread, moving, .. } = &mut self.loaded;
+        let mut doubts = Vec::new();
         if let Some(objects) = scene.objects.take() {
             // Free the surfels of the last frame first.
             (scene.surfels, scene.primitives) = (Surfels::none(), Primitives::default());
-            let (objects, doubts) = moving.at(objects, self.frame, exec)?;
-            warnings.extend(doubts);
-            let view = objects.at(self.frame)?.seen_from(&self.camera, exec)?;
+            let (objects, of_files) = moving.at(objects, self.frame, exec)?;
+            doubts = of_files;
+            let view = objects.seen_from(&self.camera, exec)?;
             drop(objects);
             scene.objects = Some(match unread {
                 Some(hierarchy) => hierarchy.needed_by(view, exec, progress)?,
@@ -265,7 +265,9 @@ impl Ready {
                 *scene = flatten(scene, exec)?;
             }
         }
-        self.method.check_scene(scene)
+        self.method.check_scene(scene)?;
+        self.loaded.doubt(doubts);
+        Ok(())
     }
 
     /// Prepares a session of the scene and the method; also says how groups were made, if they
